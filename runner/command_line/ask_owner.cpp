@@ -4,10 +4,8 @@
 
 #include <charconv>
 #include <chrono>
-#include <optional>
 #include <stdexcept>
 #include <thread>
-#include <utility>
 
 #include "contract/durable_file.h"
 #include "contract/errors.h"

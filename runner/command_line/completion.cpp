@@ -1,9 +1,8 @@
-#include "runner/command_line/completion.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <vector>
+
+#include "runner/command_line/verb_set.h"
 
 namespace peclet::runner {
 namespace {
@@ -96,10 +95,10 @@ std::string offer(const CLI::Option& option) {
     std::replace(choices.begin(), choices.end(), ',', ' ');
     return "_peclet_words '" + choices + "'";
   }
-  if (value == value_name::campaign_file) return "_peclet_campaign_files";
-  if (value == value_name::campaign) return "_peclet_campaigns";
-  if (value == value_name::file) return "_peclet_files";
-  if (value == value_name::folder) return "_peclet_folders";
+  if (value == "FILE.json") return "_peclet_campaign_files";
+  if (value == "CAMPAIGN") return "_peclet_campaigns";
+  if (value == "FILE") return "_peclet_files";
+  if (value == "FOLDER") return "_peclet_folders";
   return "";
 }
 

@@ -42,10 +42,7 @@ Put the line of the example into ~/.bashrc. `cmake --install` puts the script wh
 
   eval "$(peclet completion bash)"
 )page");
-  verb->add_option("shell", options->shell, "The shell")
-      ->required()
-      ->type_name("SHELL")
-      ->check(CLI::IsMember({"bash"}));
+  add_option(verb, "shell SHELL", options->shell, "The shell")->required()->check(CLI::IsMember({"bash"}));
   add_output(verb, options->output);
   add_quiet(verb, options->quiet);
 }
@@ -58,11 +55,7 @@ void add_all(VerbSet& verbs) {
   app.formatter(std::make_shared<HelpFormatter>());
   add_running_verbs(verbs);
   add_looking_verbs(verbs);
-  add_drawing_verbs(verbs);
-  add_estimating_verbs(verbs);
   add_changing_verbs(verbs);
-  add_batch_verbs(verbs);
-  add_keeping_verbs(verbs);
   add_completion(verbs);
 }
 

@@ -1,4 +1,4 @@
-// Verbs that look at a campaign and change nothing.
+// Verbs that look at a campaign, or draw it, and change nothing.
 #include <fmt/format.h>
 
 #include <optional>
@@ -37,8 +37,7 @@ struct LookOptions {
 
 int show_status(const LookOptions& options) {
   OpenCampaign open = open_to_look(options.campaign, options.directory);
-  CampaignStatus status = read_status(open.database);
-  status.owner = current_owner(open.directory);
+  const CampaignStatus status = read_status(open.database, current_owner(open.directory));
   print(options.json ? status_json(status).dump(2) + '\n' : status_table(status) + workers_text(status));
   if (const std::string note = difference_from_file(options.campaign, options.directory, status.campaign);
       !note.empty()) {
@@ -75,8 +74,8 @@ it changes.
   peclet watch flow-curve.json
 )");
   add_campaign(verb, *options);
-  add_number(verb, "--interval", options->interval_seconds, number_from(0.1, 86'400), "Seconds between looks")
-      ->type_name("SECONDS")
+  add_number(verb, "--interval SECONDS", options->interval_seconds, number_from(0.1, 86'400),
+             "Seconds between looks")
       ->capture_default_str();
 }
 
@@ -100,9 +99,8 @@ said last, whether the window is long enough, and what would bring the point fur
   peclet explain flow-curve.peclet
 )");
   add_campaign(verb, *options);
-  verb->add_option("point", options->point,
-                   "Label of a point, its values alone, or 4 or more digits of its hash; all unless given")
-      ->type_name("POINT");
+  add_option(verb, "point POINT", options->point,
+             "Label of a point, its values alone, or 4 or more digits of its hash; all unless given");
   add_json(verb, options->json);
 }
 
@@ -125,7 +123,7 @@ listed, and nothing is left of them.
   ovito $(peclet files flow-curve.json 10 --paths | head -1)
 )");
   add_campaign(verb, *options);
-  verb->add_option("point", options->point, "As of explain; all unless given")->type_name("POINT");
+  add_option(verb, "point POINT", options->point, "As of explain; all unless given");
   CLI::Option* const paths = verb->add_flag("--paths", options->paths, "The paths alone, a line each");
   add_json(verb, options->json)->excludes(paths);
 }
@@ -183,9 +181,8 @@ rest gives the same bytes at any time.
                      "Only what depends on campaign, seeds and engine: equal runs give equal bytes");
   CLI::Option* const output = add_output(verb, options->output);
   CLI::Option* const bundle =
-      verb->add_option("--bundle", options->bundle,
-                       "All of it in one archive, for a paper's supplement: a file that ends in .tar.gz")
-          ->type_name(value_name::file);
+      add_option(verb, "--bundle FILE", options->bundle,
+                 "All of it in one archive, for a paper's supplement: a file that ends in .tar.gz");
   for (CLI::Option* const other : {json, csv, in_long, canonical, output}) bundle->excludes(other);
   add_quiet(verb, options->quiet);
 }
@@ -210,12 +207,9 @@ must not enter a mean: which seeds end first depends on the machine. Also while 
   peclet results flow-curve.json peclet=10 --seed 3 | jq .result
 )");
   add_campaign(verb, *options);
-  verb->add_option("point", options->point,
-                   "Label of a point, or 4 or more digits of its hash; all unless given")
-      ->type_name("POINT");
-  verb->add_option("--seed", options->seed, "Of this seed only")
-      ->type_name("SEED")
-      ->check(CLI::NonNegativeNumber);
+  add_option(verb, "point POINT", options->point,
+             "Label of a point, or 4 or more digits of its hash; all unless given");
+  add_option(verb, "--seed SEED", options->seed, "Of this seed only")->check(CLI::NonNegativeNumber);
 }
 
 void write_report(const LookOptions& options) {
@@ -259,30 +253,9 @@ Ctrl-C or SIGTERM, which does nothing to the campaign, with the exit code that `
       ->capture_default_str();
 }
 
-}  // namespace
-
-void add_looking_verbs(VerbSet& verbs) {
-  add_status(verbs);
-  add_watch(verbs);
-  add_explain(verbs);
-  add_files(verbs);
-  add_export(verbs);
-  add_results(verbs);
-  add_report(verbs);
-  add_serve(verbs);
-}
-
-// The verb that draws a campaign.
-
-namespace {
-
-struct PlotOptions {
-  std::filesystem::path campaign;  // file or folder
-  std::filesystem::path directory;
+// With `json` the numbers, and no picture; with `quiet` it is not said either what is left out.
+struct PlotOptions : LookOptions {
   FigureChoice choice;
-  std::filesystem::path output;  // "": SVG on standard output
-  bool json = false;             // the numbers, and no picture
-  bool quiet = false;            // does not say where it is, and what is left out
 };
 
 // The script is written first: it has the numbers where no picture can be drawn.
@@ -314,9 +287,7 @@ void draw_campaign(const PlotOptions& options) {
   }
 }
 
-}  // namespace
-
-void add_drawing_verbs(VerbSet& verbs) {
+void add_plot(VerbSet& verbs) {
   const auto [verb, options] = verbs.add<PlotOptions>(
       draw_campaign, "plot", "Draw a measured quantity over a swept parameter, with the script of the figure",
       {0, 1, 2, 6}, R"(
@@ -340,27 +311,20 @@ then.
   peclet plot flow-curve.json --output xy.py
 )");
   add_campaign(verb, *options);
-  verb->add_option("--quantity", options->choice.quantity,
-                   "Number to draw, as `export` calls it; the campaign's target unless given")
-      ->type_name("NAME");
-  verb->add_option("--over", options->choice.over,
-                   "Swept parameter of the axis: its pointer or the last word of it; the one with most "
-                   "values unless given")
-      ->type_name("PARAMETER");
-  verb->add_option("--log", options->choice.scale, "Axes that are logarithmic; those that fit unless given")
-      ->type_name("AXES")
+  add_option(verb, "--quantity NAME", options->choice.quantity,
+             "Number to draw, as `export` calls it; the campaign's target unless given");
+  add_option(verb, "--over PARAMETER", options->choice.over,
+             "Swept parameter of the axis: its pointer or the last word of it; the one with most "
+             "values unless given");
+  add_option(verb, "--log AXES", options->choice.scale,
+             "Axes that are logarithmic; those that fit unless given")
       ->check(CLI::IsMember({"none", "x", "y", "xy"}));
   verb->add_flag("--band", options->choice.tolerance, "A band around each mean as wide as the tolerance");
-  verb->add_option("--output", options->output,
-                   "File to write, ending in .svg, .png, .pdf or .py; SVG on standard output unless given")
-      ->type_name(value_name::file);
+  add_option(verb, "--output FILE", options->output,
+             "File to write, ending in .svg, .png, .pdf or .py; SVG on standard output unless given");
   verb->add_flag("--json", options->json, "Print the numbers as JSON, and draw nothing");
   add_quiet(verb, options->quiet);
 }
-
-// The verb that makes one number of the points of a curve.
-
-namespace {
 
 void show_jamming(const JammingOptions& options) {
   const JammingAnswer answer = find_jamming(options);
@@ -369,8 +333,7 @@ void show_jamming(const JammingOptions& options) {
 }
 
 void add_law_options(CLI::App* verb, JammingOptions& options) {
-  verb->add_option("--by", options.by, "Definition of the jamming point; both unless given")
-      ->type_name("DEFINITION")
+  add_option(verb, "--by DEFINITION", options.by, "Definition of the jamming point; both unless given")
       ->check(CLI::IsMember({"law", "steepest"}));
   add_number(verb, "--exponent", options.exponent, number_above(0),
              "Exponent of the law; fitted unless given");
@@ -388,17 +351,13 @@ void add_law_options(CLI::App* verb, JammingOptions& options) {
 void add_proposing_options(CLI::App* verb, JammingOptions& options) {
   verb->add_flag("--propose", options.propose,
                  "Say which fractions to run next, with a patch of the campaign file");
-  add_number(verb, "--budget", options.budget, number_above(0),
-             "Processor time for what is proposed; one point a curve unless given")
-      ->type_name("SECONDS");
-  verb->add_option("--write", options.write,
-                   "New campaign file with the proposed points; a file that is there is never replaced")
-      ->type_name(value_name::file);
+  add_number(verb, "--budget SECONDS", options.budget, number_above(0),
+             "Processor time for what is proposed; one point a curve unless given");
+  add_option(verb, "--write FILE", options.write,
+             "New campaign file with the proposed points; a file that is there is never replaced");
 }
 
-}  // namespace
-
-void add_estimating_verbs(VerbSet& verbs) {
+void add_jamming(VerbSet& verbs) {
   const auto [verb, options] = verbs.add<JammingOptions>(
       show_jamming, "jamming", "Estimate the volume fraction of jamming from the points of a sweep",
       {0, 1, 2, 6}, R"(
@@ -427,16 +386,29 @@ Without one of them the verb ends with 1, and says what is missing and what it w
   peclet jamming friction.json --propose --budget 3600 --write next.json
 )");
   add_campaign(verb, *options);
-  verb->add_option("--over", options->curves.over,
-                   "Swept volume fraction: its pointer or the last word of it")
-      ->type_name("PARAMETER")
+  add_option(verb, "--over PARAMETER", options->curves.over,
+             "Swept volume fraction: its pointer or the last word of it")
       ->capture_default_str();
-  verb->add_option("--quantity", options->curves.quantity, "Viscosity, as `export` calls it")
-      ->type_name("NAME")
+  add_option(verb, "--quantity NAME", options->curves.quantity, "Viscosity, as `export` calls it")
       ->capture_default_str();
   add_law_options(verb, *options);
   add_proposing_options(verb, *options);
   add_json(verb, options->json);
+}
+
+}  // namespace
+
+void add_looking_verbs(VerbSet& verbs) {
+  add_status(verbs);
+  add_watch(verbs);
+  add_explain(verbs);
+  add_files(verbs);
+  add_export(verbs);
+  add_results(verbs);
+  add_report(verbs);
+  add_serve(verbs);
+  add_plot(verbs);
+  add_jamming(verbs);
 }
 
 }  // namespace peclet::runner

@@ -1,9 +1,8 @@
-// Verbs that set a campaign up and run it.
+// Verbs that set a campaign up, run it, change what it is to do, hand its seeds over and keep it safe.
 #include "runner/batch/batch_task.h"
 #include "runner/campaign/campaign.h"
 #include "runner/command_line/ask_owner.h"
 #include "runner/command_line/hand_over.h"
-#include "runner/command_line/plan_campaign.h"
 #include "runner/command_line/print.h"
 #include "runner/command_line/run.h"
 #include "runner/command_line/validate.h"
@@ -30,9 +29,8 @@ Change it to what you want to know; `peclet validate` says what is wrong with it
 
   peclet init flow-curve.json
 )");
-  verb->add_option("campaign", options->campaign, "Campaign file (JSON) that is not there yet")
-      ->required()
-      ->type_name(value_name::campaign_file);
+  add_option(verb, "campaign FILE.json", options->campaign, "Campaign file (JSON) that is not there yet")
+      ->required();
 }
 
 void add_validate(VerbSet& verbs) {
@@ -98,9 +96,8 @@ end to standard output; with --jsonl events take its place, which schema/README.
 )");
   add_campaign_file(verb, *options);
   add_team(verb, *options);
-  add_number(verb, "--time-limit", options->time_limit, number_above(0),
-             "Seconds after which workers checkpoint and stop")
-      ->type_name("SECONDS");
+  add_number(verb, "--time-limit SECONDS", options->time_limit, number_above(0),
+             "Seconds after which workers checkpoint and stop");
   add_number(
       verb, "--budget", options->budget_hours, number_above(0),
       "Hours of processor time that this run may spend, where they lower the summed relative error most");
@@ -111,10 +108,9 @@ end to standard output; with --jsonl events take its place, which schema/README.
   add_seconds(verb, "--backup", options->backup_seconds, "Seconds between backups of the database");
   verb->add_flag("--jsonl", options->jsonl,
                  "What happens as JSON on standard output, one object a line, instead of the table");
-  verb->add_option("--notify", options->notify,
-                   "Command of the shell for the end, whatever ends the run but a faulty file or another "
-                   "owner; told by PECLET_SUMMARY, PECLET_EXIT_CODE, PECLET_CAMPAIGN and PECLET_DIRECTORY")
-      ->type_name("COMMAND");
+  add_option(verb, "--notify COMMAND", options->notify,
+             "Command of the shell for the end, whatever ends the run but a faulty file or another "
+             "owner; told by PECLET_SUMMARY, PECLET_EXIT_CODE, PECLET_CAMPAIGN and PECLET_DIRECTORY");
   add_accept_engine(verb, options->accept_engine);
   verb->add_flag("--quiet", options->quiet, "No progress on stderr");
   verb->add_flag("--force", options->force, "Use a network file system all the same, at your own risk");
@@ -134,9 +130,8 @@ void add_running_verbs(VerbSet& verbs) {
 namespace {
 
 void add_patience(CLI::App* verb, double& seconds) {
-  add_number(verb, "--wait", seconds, number_from(0),
+  add_number(verb, "--wait SECONDS", seconds, number_from(0),
              "Seconds to wait for the process that runs the campaign; 0: not at all")
-      ->type_name("SECONDS")
       ->capture_default_str();
 }
 
@@ -169,9 +164,9 @@ verb waits for it; points of a finished one that are no longer decided go on wit
              "/realisations/maximum: seeds after which a point is capped");
   add_number(verb, "--realisations", options->realisations, whole_number(1, most_realisations),
              "/realisations, where their number is fixed: seeds of every point");
-  verb->add_option("--keep-files", options->keep_files,
-                   "/keep_files: all, none, or of how many first seeds of each point files are kept");
-  verb->add_option("--point", options->points, "Point that is to have the priority; may be repeated")
+  add_option(verb, "--keep-files", options->keep_files,
+             "/keep_files: all, none, or of how many first seeds of each point files are kept");
+  add_option(verb, "--point", options->points, "Point that is to have the priority; may be repeated")
       ->allow_extra_args(false);
   add_number(verb, "--priority", options->priority, whole_number(-1'000'000, 1'000'000),
              "Points of a higher one are served first; 0 unless set");
@@ -189,8 +184,8 @@ is kept and shown.
   peclet cancel flow-curve.json peclet=10 --undo
 )");
   add_campaign(verb, *options);
-  verb->add_option("point", options->points,
-                   "Labels of points, their values alone, or 4 or more digits of their hashes")
+  add_option(verb, "point", options->points,
+             "Labels of points, their values alone, or 4 or more digits of their hashes")
       ->required();
   verb->add_flag("--undo", options->undo, "Take them up again");
   add_patience(verb, options->patience);
@@ -205,26 +200,15 @@ called failed (an overlap, a step too large) would fail again, and is not retrie
   peclet retry flow-curve.json peclet=10 --seed 17
 )");
   add_campaign(verb, *options);
-  verb->add_option(
-      "point", options->points,
-      "Labels of points, their values alone, or 4 or more digits of their hashes; all unless given");
+  add_option(verb, "point", options->points,
+             "Labels of points, their values alone, or 4 or more digits of their hashes; all unless given");
   add_number(verb, "--seed", options->seeds, whole_number(0, 2'147'483'647),
              "Of the one point that is named; may be repeated; all unless given")
       ->allow_extra_args(false);
   add_patience(verb, options->patience);
 }
 
-}  // namespace
-
-void add_changing_verbs(VerbSet& verbs) {
-  add_set(verbs);
-  add_cancel(verbs);
-  add_retry(verbs);
-}
-
 // Verbs that keep a campaign safe and sound.
-
-namespace {
 
 void add_backup(VerbSet& verbs) {
   const auto [verb, options] = verbs.add<BackupOptions>(
@@ -238,10 +222,9 @@ own file system is said to be.
   peclet backup flow-curve.json /mnt/usb/flow-curve --checkpoints
 )");
   add_campaign(verb, *options);
-  verb->add_option("target", options->target,
-                   "Folder for backup.db, made in one that must be there; the backup there before becomes "
-                   "backup.previous.db; the campaign's own backup/ unless given")
-      ->type_name(value_name::folder);
+  add_option(verb, "target FOLDER", options->target,
+             "Folder for backup.db, made in one that must be there; the backup there before becomes "
+             "backup.previous.db; the campaign's own backup/ unless given");
   verb->add_flag("--checkpoints", options->checkpoints,
                  "With checkpoints and spool, so that seeds that run now need not start again");
   add_json(verb, options->json);
@@ -255,12 +238,10 @@ What was there is kept aside. The campaign then goes on with `peclet run` to the
 
   peclet restore /mnt/usb/flow-curve flow-curve.json
 )");
-  verb->add_option("backup", options->backup, "Folder of backups, or one file")
-      ->required()
-      ->type_name(value_name::file);
-  verb->add_option("campaign", options->campaign, "Campaign file or .peclet folder; made when there is none")
-      ->required()
-      ->type_name(value_name::campaign);
+  add_option(verb, "backup FILE", options->backup, "Folder of backups, or one file")->required();
+  add_option(verb, "campaign CAMPAIGN", options->campaign,
+             "Campaign file or .peclet folder; made when there is none")
+      ->required();
   add_directory(verb, options->directory);
   verb->add_flag(
       "--force", options->force,
@@ -283,17 +264,7 @@ should the tolerance be tightened.
   add_json(verb, options->json);
 }
 
-}  // namespace
-
-void add_keeping_verbs(VerbSet& verbs) {
-  add_backup(verbs);
-  add_restore(verbs);
-  add_doctor(verbs);
-}
-
 // Verbs for seeds that run elsewhere, under a batch system.
-
-namespace {
 
 void add_hand_over(VerbSet& verbs) {
   const auto [verb, options] = verbs.add<HandOverOptions>(
@@ -310,14 +281,11 @@ taken one, the seeds are out until a job of that name has been looked for.
   peclet hand-over slurm flow-curve.json --shared /scratch/me/flow-curve --follow \
            --option=--partition=short --option=--time=4:00:00
 )");
-  verb->add_option("system", options->system, "slurm; with --template any name")
-      ->required()
-      ->type_name("SYSTEM");
+  add_option(verb, "system SYSTEM", options->system, "slurm; with --template any name")->required();
   add_campaign_file(verb, *options);
-  verb->add_option(
-          "--shared", options->shared,
-          "Folder that this machine and the nodes see in the same place; that of the last time unless given")
-      ->type_name(value_name::folder);
+  add_option(
+      verb, "--shared FOLDER", options->shared,
+      "Folder that this machine and the nodes see in the same place; that of the last time unless given");
   add_number(verb, "--seeds-per-task", options->seeds_per_task, whole_number(1, 100'000),
              "Seeds that one task runs, one after another")
       ->capture_default_str();
@@ -325,10 +293,9 @@ taken one, the seeds are out until a job of that name has been looked for.
              "Tasks of one job at most; what the batch system allows unless given");
   add_number(verb, "--threads", options->threads, whole_number(1, 4096), "Threads of each engine")
       ->capture_default_str();
-  verb->add_option("--option", options->options, "Word for the submit command (sbatch)")->type_name("WORD");
-  verb->add_option("--template", options->template_folder,
-                   "Folder with job.sh and the commands, for other sites")
-      ->type_name(value_name::folder)
+  add_option(verb, "--option WORD", options->options, "Word for the submit command (sbatch)");
+  add_option(verb, "--template FOLDER", options->template_folder,
+             "Folder with job.sh and the commands, for other sites")
       ->check(CLI::ExistingDirectory);
   verb->add_flag("--ahead", options->ahead, "Hand over the seeds of the look after the next one, too");
   verb->add_flag("--follow", options->follow,
@@ -365,10 +332,9 @@ while the folder of seeds that are out is not there.
 )");
   add_campaign_file(verb, *options);
   verb->add_flag("--cancel", options->cancel, "End the jobs and take their seeds back");
-  verb->add_option("--forget", options->forget,
-                   "Queue the seeds of this bundle again though nobody answers for it; results that come all "
-                   "the same count once")
-      ->type_name("BUNDLE")
+  add_option(verb, "--forget BUNDLE", options->forget,
+             "Queue the seeds of this bundle again though nobody answers for it; results that come all "
+             "the same count once")
       ->allow_extra_args(false)  // a campaign's file may follow
       ->excludes("--cancel");
   verb->add_flag("--quiet", options->quiet, "No notes on stderr");
@@ -383,18 +349,22 @@ SIGUSR1 make the engine save a checkpoint and leave.
 
   peclet task /scratch/me/flow-curve/bundles/NAME/manifest.json 7
 )");
-  verb->add_option("manifest", options->manifest, "The bundle's manifest.json")
-      ->required()
-      ->type_name(value_name::campaign_file);
+  add_option(verb, "manifest FILE.json", options->manifest, "The bundle's manifest.json")->required();
   add_number(verb, "index", options->index, whole_number(0, 1e9), "Number of the task, from 0")->required();
 }
 
 }  // namespace
 
-void add_batch_verbs(VerbSet& verbs) {
+void add_changing_verbs(VerbSet& verbs) {
+  add_set(verbs);
+  add_cancel(verbs);
+  add_retry(verbs);
   add_hand_over(verbs);
   add_ingest(verbs);
   add_task(verbs);
+  add_backup(verbs);
+  add_restore(verbs);
+  add_doctor(verbs);
 }
 
 }  // namespace peclet::runner

@@ -1,5 +1,3 @@
-#include "runner/command_line/plan_campaign.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,6 +10,7 @@
 #include "contract/errors.h"
 #include "runner/campaign/campaign_file.h"
 #include "runner/command_line/print.h"
+#include "runner/command_line/run.h"
 #include "runner/engines/cost_trial.h"
 #include "runner/engines/scene_check.h"
 #include "runner/reports/plan.h"
@@ -102,11 +101,6 @@ std::optional<CostGuess> guess_cost(const Campaign& campaign, const std::vector<
   return std::nullopt;
 }
 
-bool any_cost(const std::map<std::string, PointHistory>& known) {
-  return std::any_of(known.begin(), known.end(),
-                     [](const auto& point) { return point.second.cost.count > 0; });
-}
-
 Plan plan_of(const Campaign& campaign, const std::vector<SceneAnswer>& scenes,
              const std::map<std::string, PointHistory>& known, const RunOptions& options,
              const std::optional<CostGuess>& guess = {}) {
@@ -155,7 +149,9 @@ int plan_campaign(const PlanOptions& options) {
   const std::vector<SceneAnswer> scenes = check_scenes(campaign, file, command);
   std::optional<CostGuess> guess;
   std::vector<std::string> broke_off;
-  if (!any_cost(known)) guess = guess_cost(campaign, work_of(scenes), command, broke_off);
+  const bool has_cost =
+      std::any_of(known.begin(), known.end(), [](const auto& point) { return point.second.cost.count > 0; });
+  if (!has_cost) guess = guess_cost(campaign, work_of(scenes), command, broke_off);
   Plan plan = plan_of(campaign, scenes, known, options.run, guess);
   plan.broke_off = std::move(broke_off);
   tell(plan, options.json);

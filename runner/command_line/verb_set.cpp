@@ -8,7 +8,6 @@
 #include <map>
 #include <sstream>
 #include <system_error>
-#include <utility>
 
 #include "contract/errors.h"
 
@@ -109,31 +108,18 @@ CLI::App* VerbSet::add(const char* name, const char* description, const std::vec
   return verb;
 }
 
-void add_file(CLI::App* verb, std::filesystem::path& path) {
-  verb->add_option("campaign", path, "Campaign file (JSON)")
-      ->required()
-      ->check(CLI::Validator(named_file, ""))
-      ->type_name(value_name::campaign_file);
-}
-
-void add_file_or_folder(CLI::App* verb, std::filesystem::path& path) {
-  verb->add_option("campaign", path, "Campaign file, or its .peclet folder")
-      ->required()
-      ->check(CLI::Validator(named_file, ""))
-      ->type_name(value_name::campaign);
+void add_file(CLI::App* verb, std::filesystem::path& path, const char* shown, const char* meaning) {
+  add_option(verb, shown, path, meaning)->required()->check(CLI::Validator(named_file, ""));
 }
 
 void add_directory(CLI::App* verb, std::filesystem::path& path) {
-  verb->add_option(
-          "--directory", path,
-          "Folder of the campaign's database and checkpoints; NAME.peclet beside NAME.json unless given")
-      ->type_name(value_name::folder);
+  add_option(verb, "--directory FOLDER", path,
+             "Folder of the campaign's database and checkpoints; NAME.peclet beside NAME.json unless given");
 }
 
 CLI::Option* add_output(CLI::App* verb, std::filesystem::path& path) {
-  return verb
-      ->add_option("--output", path, "File to write, whole or not at all; standard output unless given")
-      ->type_name(value_name::file);
+  return add_option(verb, "--output FILE", path,
+                    "File to write, whole or not at all; standard output unless given");
 }
 
 CLI::Option* add_json(CLI::App* verb, bool& json) { return verb->add_flag("--json", json, "For programs"); }
@@ -143,13 +129,13 @@ void add_quiet(CLI::App* verb, bool& quiet) {
 }
 
 void add_accept_engine(CLI::App* verb, std::string& name) {
-  verb->add_option("--accept-engine", name,
-                   "Version, or 6 or more digits of the hash, of the engine that is there now: results of "
-                   "another one at open points are kept apart");
+  add_option(verb, "--accept-engine", name,
+             "Version, or 6 or more digits of the hash, of the engine that is there now: results of "
+             "another one at open points are kept apart");
 }
 
 void add_seconds(CLI::App* verb, const char* name, double& seconds, const char* meaning) {
-  add_number(verb, name, seconds, number_above(0), meaning)->type_name("SECONDS")->capture_default_str();
+  add_number(verb, std::string(name) + " SECONDS", seconds, number_above(0), meaning)->capture_default_str();
 }
 
 Key whole_number(double minimum, double maximum) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -12,7 +13,6 @@
 #include <vector>
 
 #include "contract/key_table.h"
-#include "runner/command_line/completion.h"
 #include "runner/command_line/print.h"
 
 namespace peclet::runner {
@@ -78,17 +78,13 @@ class VerbSet {
 // One function a verb, in the file of its group. In the order in which help lists them.
 void add_running_verbs(VerbSet& verbs);
 void add_looking_verbs(VerbSet& verbs);
-void add_drawing_verbs(VerbSet& verbs);
-void add_estimating_verbs(VerbSet& verbs);
 void add_changing_verbs(VerbSet& verbs);
-void add_batch_verbs(VerbSet& verbs);
-void add_keeping_verbs(VerbSet& verbs);
 
 // Options that several verbs have.
-void add_file(CLI::App* verb, std::filesystem::path& path);
+void add_file(CLI::App* verb, std::filesystem::path& path, const char* shown = "campaign FILE.json",
+              const char* meaning = "Campaign file (JSON)");
 void add_directory(CLI::App* verb, std::filesystem::path& path);
 CLI::Option* add_output(CLI::App* verb, std::filesystem::path& path);
-void add_file_or_folder(CLI::App* verb, std::filesystem::path& path);
 CLI::Option* add_json(CLI::App* verb, bool& json);
 // Does not say where --output was written.
 void add_quiet(CLI::App* verb, bool& quiet);
@@ -101,7 +97,7 @@ void add_campaign_file(CLI::App* verb, Options& options) {
 }
 template <typename Options>
 void add_campaign(CLI::App* verb, Options& options) {
-  add_file_or_folder(verb, options.campaign);
+  add_file(verb, options.campaign, "campaign CAMPAIGN", "Campaign file, or its .peclet folder");
   add_directory(verb, options.directory);
 }
 // A time > 0, which has a default.
@@ -113,17 +109,38 @@ Key whole_number(double minimum, double maximum);
 Key number_above(double minimum);
 Key number_from(double minimum, double maximum = 1e9);
 
+// Adds an option as help shows it: "--output FILE" is its name and what its value is called.
+template <typename Value>
+CLI::Option* add_option(CLI::App* verb, const std::string& shown, Value& value, const char* meaning) {
+  const std::size_t blank = std::min(shown.find(' '), shown.size());
+  CLI::Option* const option = verb->add_option(shown.substr(0, blank), value, meaning);
+  return blank < shown.size() ? option->type_name(shown.substr(blank + 1)) : option;
+}
+
 // The only reader of numbers of the command line: finite, in range, all of the word.
 // `value` is an int or a double, one of these that may be absent, or a list of them.
 // The parser throws InputError at the option's name for anything else.
 void check_number(CLI::Option* option, const Key& allowed);
 
 template <typename Value>
-CLI::Option* add_number(CLI::App* verb, const char* name, Value& value, const Key& allowed,
+CLI::Option* add_number(CLI::App* verb, const std::string& shown, Value& value, const Key& allowed,
                         const char* meaning) {
-  CLI::Option* const option = verb->add_option(name, value, meaning);
+  CLI::Option* const option = add_option(verb, shown, value, meaning);
   check_number(option, allowed);
   return option;
 }
+
+// What is read off the verbs and options themselves, so that it cannot say anything else.
+
+// Prints values without the parser's own words for their checks: "--threads NUMBER=1".
+class HelpFormatter : public CLI::Formatter {
+ public:
+  std::string make_option_opts(const CLI::Option* option) const override;
+};
+
+// Returns a script of bash for `eval`, or for a file in bash's own folder of completions. It offers verbs,
+// options, choices, and files where a value is called so: FILE.json (campaign files), CAMPAIGN (those and
+// .peclet folders), FILE and FOLDER.
+std::string bash_completion(const CLI::App& app);
 
 }  // namespace peclet::runner
