@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <cstdlib>
 #include <system_error>
 #include <vector>
@@ -88,7 +87,7 @@ Json figure_data(Database& database, const FigureChoice& choice) {
   const std::size_t column = chosen_column(sweep.page.drawables, wanted);
   const Drawable& quantity = sweep.page.drawables[column];
   if (choice.tolerance) require_tolerance(target, quantity.path);
-  const Swept& axis = chosen_axis(sweep.swept, choice.over, "--over");
+  const Swept& axis = chosen_axis(sweep.swept, choice.over);
   Json points = Json::array();
   for (const Json& point : sweep.page.points) {
     points.push_back(point_json(point, point.at("estimates")[column], quantity.path));

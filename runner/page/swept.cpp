@@ -13,19 +13,17 @@
 namespace peclet::runner {
 namespace {
 
-bool is_called(const Drawable& one, const std::string& name) {
-  return one.path == name || (!one.element.empty() && one.name + '/' + one.element == name);
+// "pressure", "stress/total/xy".
+std::string name_of(const Drawable& one) {
+  return one.element.empty() ? one.path : one.name + '/' + one.element;
 }
 
 // Names of all quantities; of a list, which may be long, its name and its first element.
 std::string names_of(const std::vector<Drawable>& drawables) {
   std::vector<std::string> names;
   for (const Drawable& one : drawables) {
-    if (one.element.empty()) {
-      names.push_back(one.path);
-    } else if (one.path == one.name + "/0" || one.path == one.name + "/0/0") {
-      names.push_back(one.name + '/' + one.element + " ...");
-    }
+    const bool is_first = one.path == one.name + "/0" || one.path == one.name + "/0/0";
+    if (one.element.empty() || is_first) names.push_back(name_of(one) + (is_first ? " ..." : ""));
   }
   return fmt::format("{}", fmt::join(names, ", "));
 }
@@ -34,18 +32,15 @@ std::string names_of(const std::vector<Drawable>& drawables) {
 
 std::size_t chosen_column(const std::vector<Drawable>& drawables, const std::string& name) {
   if (drawables.empty()) throw InputError("", "--quantity", name, "nothing has been measured yet");
-  for (std::size_t column = 0; column < drawables.size(); ++column) {
-    if (is_called(drawables[column], name)) return column;
-  }
   std::vector<std::string> names;
-  names.reserve(drawables.size());
-  for (const Drawable& one : drawables) {
-    names.push_back(one.element.empty() ? one.path : one.name + '/' + one.element);
+  for (std::size_t column = 0; column < drawables.size(); ++column) {
+    names.push_back(name_of(drawables[column]));
+    if (drawables[column].path == name || names.back() == name) return column;
   }
   const std::string meant = suggestion(name, names);
-  throw InputError("", "--quantity", name,
-                   meant.empty() ? "must be a number that is measured: " + names_of(drawables)
-                                 : "must be a number that is measured" + meant);
+  throw InputError(
+      "", "--quantity", name,
+      "must be a number that is measured" + (meant.empty() ? ": " + names_of(drawables) : meant));
 }
 
 namespace {
@@ -119,8 +114,7 @@ MeasuredSweep read_sweep(Database& database) {
   return sweep;
 }
 
-const Swept& chosen_axis(const std::vector<Swept>& swept, const std::string& name,
-                         const std::string& option) {
+const Swept& chosen_axis(const std::vector<Swept>& swept, const std::string& name) {
   if (name.empty()) {
     const auto rank = [](const Swept& one) {
       return one.distinct() < 2 ? 0 : (one.numeric ? 1'000'000 : 0) + one.distinct();
@@ -136,10 +130,10 @@ const Swept& chosen_axis(const std::vector<Swept>& swept, const std::string& nam
     if (is_called(one, name)) found.push_back(&one);
   }
   if (found.size() == 1) return *found.front();
-  if (names.empty()) throw InputError("", option, name, "must not be given: the campaign sweeps nothing");
+  if (names.empty()) throw InputError("", "--over", name, "must not be given: the campaign sweeps nothing");
   const std::string allowed = fmt::format("must be what one thing is called that is swept: {}{}",
                                           fmt::join(names, ", "), suggestion('/' + name, names));
-  throw InputError("", option, name, allowed);
+  throw InputError("", "--over", name, allowed);
 }
 
 std::vector<const Swept*> curves_by(const std::vector<Swept>& swept, const Swept& axis) {

@@ -37,8 +37,8 @@ MeasuredSweep read_sweep(Database& database);
 std::size_t chosen_column(const std::vector<Drawable>& drawables, const std::string& name);
 
 // The one called `name`, a pointer or a last step that no other has. Without a name the one with most values,
-// numbers before words. Throws InputError at `option`.
-const Swept& chosen_axis(const std::vector<Swept>& swept, const std::string& name, const std::string& option);
+// numbers before words. Throws InputError at --over.
+const Swept& chosen_axis(const std::vector<Swept>& swept, const std::string& name);
 
 // Those that tell curves apart: which vary, and whose value does not follow from that on the axis.
 std::vector<const Swept*> curves_by(const std::vector<Swept>& swept, const Swept& axis);
