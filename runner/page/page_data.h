@@ -61,23 +61,8 @@ constexpr int most_detailed_seeds = 64;
 // one than 400 numbers is thinned.
 Json point_details(Database& database, std::int64_t point, int end, const TargetRecord& target, int seeds);
 
-// Points decided, processor time spent, time to go, workers.
-Json page_progress(const CampaignStatus& status);
-
-// Who works on what now, and the attempts that ended last.
-Json page_work(Database& database, const CampaignStatus& status);
-
-// What the sweep sets, and what all points share of the scene, each key as of Vocabulary::key().
+// What the sweep sets, each key as of Vocabulary::key().
 Json page_parameters(const CampaignStatus& status, const Vocabulary& words);
-Json page_scene(const CampaignStatus& status, const Vocabulary& words);
-
-// What each verdict and mark that is used means.
-Json page_meanings(const CampaignStatus& status);
-
-// Pairs of a term and what it is, and the commands that make the numbers again. Without the hash of the
-// results nothing is said of it.
-Json page_provenance(Database& database, const CampaignStatus& status, const std::string& results_sha256);
-std::string page_commands(const CampaignStatus& status, const std::string& results_sha256);
 
 // Reads one campaign again and again, and of its points only those anew that have changed.
 class PageReader {

@@ -236,11 +236,11 @@ std::vector<Drawable> drawables_of(const Quantity& quantity) {
   return found;
 }
 
-// The first result that has completed; null where none has.
+// The first result that has completed; an empty object where none has.
 Json first_result(Database& database, const PointRecord& point) {
   const std::vector<int> completed = database.completed(point.id, most_realisations);
-  if (completed.empty()) return nullptr;
-  return database.result(point.id, completed.front()).value_or(Json());
+  if (completed.empty()) return Json::object();
+  return database.result(point.id, completed.front()).value_or(Json::object());
 }
 
 // Seeds that have ended, their values and the looks, in a few words.
@@ -264,72 +264,69 @@ class PointPage {
   KnownPoint read() {
     const Target& target = target_.target;
     StopRule rule(target, target_.minimum, target_.maximum);
-    const std::vector<std::optional<Outcome>> outcomes = database_.outcomes(point_.point.id);
-    const Values found = values_of(outcomes, end());
-    KnownPoint known;
-    known.key = key_of(point_, target_);
+    const Values found = values_of(database_.outcomes(point_.point.id), end());
     const Json first = first_result(database_, point_.point);
-    known.warnings = first.is_null() ? Json::array() : first.value("warnings", Json::array());
-    known.json = {{"groups", first.is_null() ? Json() : first.value("derived", Json())},
-                  {"looks", looks_json(point_.looks, target)},
-                  {"running_mean", running_mean(found, rule)},
-                  {"scatter", scatter(found)}};
-    add_estimates(known);
-    return known;
+    known_.key = key_of(point_, target_);
+    known_.warnings = first.value("warnings", Json::array());
+    known_.json = {{"groups", first.value("derived", Json())},
+                   {"looks", looks_json(point_.looks, target)},
+                   {"running_mean", running_mean(found, rule)},
+                   {"scatter", scatter(found)},
+                   {"uncontrolled", Json::object()},
+                   {"good_enough", Json::object()}};
+    add_estimates();
+    if (look_) add_deciding();
+    return std::move(known_);
   }
 
  private:
   // Seeds of the look; before the first one, all that have ended.
   int end() const { return look_ ? look_->seeds : std::numeric_limits<int>::max(); }
 
-  void add_estimates(KnownPoint& known) {
-    const double level = target_.level();
+  void add_estimates() {
     QuantityEstimates sums;
     book_.for_each(point_.point.id, end(), [&](const NumberStore::Entry& seed) {
       sums.add(seed.layout, seed.numbers, seed.has_jammed);
     });
-    Json uncontrolled = Json::object(), allowed = Json::object();
+    const auto of = [&](const Estimate& one) { return numbers(one, half_width(one, target_.level())); };
     for (const QuantityEstimate& found : sums.estimates()) {
       const std::vector<Drawable> drawables = drawables_of(found.quantity);
       for (std::size_t k = 0; k < drawables.size(); ++k) {
-        known.estimates.push_back(numbers(found.estimates[k], half_width(found.estimates[k], level)));
-        known.drawables.push_back(drawables[k]);
-        if (found.uncontrolled.empty()) continue;
-        uncontrolled[drawables[k].path] =
-            numbers(found.uncontrolled[k], half_width(found.uncontrolled[k], level));
+        known_.estimates.push_back(of(found.estimates[k]));
+        known_.drawables.push_back(drawables[k]);
+        if (!found.uncontrolled.empty()) {
+          known_.json["uncontrolled"][drawables[k].path] = of(found.uncontrolled[k]);
+        }
       }
     }
-    if (look_) add_deciding(known, uncontrolled, allowed);
-    known.json["uncontrolled"] = std::move(uncontrolled);
-    known.json["good_enough"] = std::move(allowed);
   }
 
   // What the look says of the target's observables goes before: its intervals are those that decide.
-  void add_deciding(KnownPoint& known, Json& uncontrolled, Json& allowed) {
+  void add_deciding() {
     const Target& target = target_.target;
     for (const ObservableLook& one : each_of(*look_, target)) {
-      const std::size_t place = place_of(known, one.observable);
-      known.estimates[place] = numbers(one.estimate, one.half_width);
+      const std::size_t place = place_of(one.observable);
+      known_.estimates[place] = numbers(one.estimate, one.half_width);
       if (one.observable == target.observable && has_control(*look_)) {
-        uncontrolled[known.drawables[place].path] = numbers(look_->estimate, look_->half_width);
+        known_.json["uncontrolled"][known_.drawables[place].path] =
+            numbers(look_->estimate, look_->half_width);
       }
     }
     for (const Criterion& criterion : target.criteria()) {
-      allowed[known.drawables[place_of(known, criterion.observable)].path] =
-          good_enough(criterion, *look_, target);
+      known_.json["good_enough"][bare(criterion.observable)] = good_enough(criterion, *look_, target);
     }
   }
 
   // An observable that is named as a quantity or an element; one that the results do not describe is one
   // without unit.
-  static std::size_t place_of(KnownPoint& known, const std::string& observable) {
+  std::size_t place_of(const std::string& observable) {
     const std::string path = bare(observable);
-    for (std::size_t place = 0; place < known.drawables.size(); ++place) {
-      if (known.drawables[place].path == path) return place;
+    for (std::size_t place = 0; place < known_.drawables.size(); ++place) {
+      if (known_.drawables[place].path == path) return place;
     }
-    known.drawables.push_back({path, path, "", "", ""});
-    known.estimates.emplace_back(nullptr);
-    return known.drawables.size() - 1;
+    known_.drawables.push_back({path, path, "", "", ""});
+    known_.estimates.emplace_back(nullptr);
+    return known_.drawables.size() - 1;
   }
 
   Database& database_;
@@ -337,6 +334,7 @@ class PointPage {
   const TargetRecord& target_;
   const PointSummary& point_;
   std::optional<Look> look_;
+  KnownPoint known_;
 };
 
 // Columns by path and unit, in the order in which they are first met.
@@ -363,7 +361,7 @@ Json estimates_json(const KnownPoint& known, Columns& columns) {
   return estimates;
 }
 
-Json point_json(const PointSummary& point, const std::optional<int>& looked_at) {
+Json point_json(const PointSummary& point) {
   const StateCounts& counts = point.counts;
   return {{"label", point.point.label},
           {"hash", point.point.hash},
@@ -373,7 +371,7 @@ Json point_json(const PointSummary& point, const std::optional<int>& looked_at) 
           {"marks", reservations(point)},
           {"decided", point.decided},
           {"seeds",
-           {{"looked_at", looked_at ? Json(*looked_at) : Json(nullptr)},
+           {{"looked_at", point.looks.empty() ? Json(nullptr) : Json(point.looks.back().seeds)},
             {"wanted", point.wanted},
             {"wanted_ended", point.wanted_ended},
             {"ended", counts.terminal()},
@@ -384,10 +382,6 @@ Json point_json(const PointSummary& point, const std::optional<int>& looked_at) 
           {"loss_reasons", point.loss_reasons},
           {"flags", point.flags},
           {"cpu_seconds", counts.cpu_seconds}};
-}
-
-std::optional<int> seeds_looked_at(const PointSummary& point) {
-  return point.looks.empty() ? std::nullopt : std::optional(point.looks.back().seeds);
 }
 
 }  // namespace
@@ -401,7 +395,7 @@ PagePoints page_points(Database& database, const CampaignStatus& status, KnownPo
     if (of_point.key != key_of(point, status.campaign.target)) {
       of_point = PointPage(database, book, status.campaign.target, point).read();
     }
-    Json json = point_json(point, seeds_looked_at(point));
+    Json json = point_json(point);
     json.update(of_point.json);
     json["estimates"] = estimates_json(of_point, columns);
     page.points.push_back(std::move(json));

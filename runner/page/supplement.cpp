@@ -18,8 +18,9 @@
 #include "runner/reports/status.h"
 
 namespace peclet::runner {
+namespace {
 
-std::string supplement_readme(const CampaignStatus& status) {
+std::string readme(const CampaignStatus& status) {
   const CampaignRecord& campaign = status.campaign;
   const std::string file = shell_word(campaign.name + ".json");
   const std::string confidence = percent(campaign.target.target.confidence);
@@ -62,8 +63,6 @@ last digit on, and agree within the errors.
                      campaign.name, version(), confidence, status_table(status), file);
 }
 
-namespace {
-
 // When a seed last ended; before the first one, when the campaign was last taken up.
 std::string last_change(Database& database, const CampaignRecord& campaign) {
   const std::string last_end = database.last_end();
@@ -102,15 +101,7 @@ Json figure_of(Database& database) try { return figure_data(database, {}); } cat
   throw InputError("", "--bundle", error.value(), error.allowed());
 }
 
-}  // namespace
-
-void check_supplement_name(const std::filesystem::path& output) {
-  const std::string name = output.filename().string();
-  if (name.ends_with(".tar.gz") || name.ends_with(".tgz")) return;
-  throw InputError("", "--bundle", output.string(), "must end in .tar.gz or .tgz");
-}
-
-std::vector<ArchivedFile> supplement_files(Database& database, std::optional<std::int64_t> owner) {
+std::vector<ArchivedFile> files_of(Database& database, std::optional<std::int64_t> owner) {
   const CampaignStatus status = read_status(database);
   const CampaignRecord& campaign = status.campaign;
   const auto has_number = [](const PointSummary& point) { return point.so_far.count > 0; };
@@ -122,7 +113,7 @@ std::vector<ArchivedFile> supplement_files(Database& database, std::optional<std
             campaign.target.target.observable));
   }
   const std::string script = figure_script(figure_of(database));
-  std::vector<ArchivedFile> files{{"README.md", supplement_readme(status)},
+  std::vector<ArchivedFile> files{{"README.md", readme(status)},
                                   {campaign.name + ".json", campaign.document.dump(2) + '\n'},
                                   {"results.csv", export_csv(database, true)},
                                   {"numbers.csv", export_long_csv(database)},
@@ -134,8 +125,16 @@ std::vector<ArchivedFile> supplement_files(Database& database, std::optional<std
   return files;
 }
 
+}  // namespace
+
+void check_supplement_name(const std::filesystem::path& output) {
+  const std::string name = output.filename().string();
+  if (name.ends_with(".tar.gz") || name.ends_with(".tgz")) return;
+  throw InputError("", "--bundle", output.string(), "must end in .tar.gz or .tgz");
+}
+
 std::string supplement(Database& database, std::optional<std::int64_t> owner) {
-  const std::vector<ArchivedFile> files = supplement_files(database, owner);
+  const std::vector<ArchivedFile> files = files_of(database, owner);
   const CampaignRecord campaign = database.campaign();
   return gzip(tar(campaign.name, files, seconds_of_utc(last_change(database, campaign))));
 }
@@ -147,60 +146,50 @@ namespace {
 constexpr std::size_t block = 512;
 
 // A header of ustar: fields at fixed places, numbers in octal digits.
-class Header {
- public:
-  Header(const std::string& folder, const ArchivedFile& file, std::int64_t time) {
-    put(0, 100, file.name);
-    put_octal(100, 8, file.executable ? 0755 : 0644);
-    put_octal(108, 8, 0);  // user and group are left to whoever unpacks
-    put_octal(116, 8, 0);
-    put_octal(124, 12, file.bytes.size());
-    put_octal(136, 12, static_cast<std::uint64_t>(std::max<std::int64_t>(0, time)));
-    put(148, 8, "        ");  // the sum counts its own place as blanks
-    put(156, 1, "0");         // a regular file
-    put(257, 8,
-        std::string("ustar\0"
-                    "00",
-                    8));
-    put(345, 155, folder);  // stands before the name, with a slash
-    std::uint64_t sum = 0;
-    for (const char c : bytes_) sum += static_cast<unsigned char>(c);
-    put(148, 8, fmt::format("{:06o}", sum) + std::string("\0 ", 2));
-  }
-  const std::string& bytes() const { return bytes_; }
-
- private:
-  void put(std::size_t at, std::size_t room, const std::string& text) {
+std::string header(const std::string& folder, const ArchivedFile& file, std::int64_t time) {
+  std::string bytes(block, '\0');
+  const auto put = [&](std::size_t at, std::size_t room, const std::string& text) {
     if (text.size() > room) throw std::length_error(text + ": too long for an archive");
-    bytes_.replace(at, text.size(), text);
-  }
+    bytes.replace(at, text.size(), text);
+  };
   // As many digits as there is room for, and a zero byte.
-  void put_octal(std::size_t at, std::size_t room, std::uint64_t number) {
+  const auto put_octal = [&](std::size_t at, std::size_t room, std::uint64_t number) {
     const std::string digits = fmt::format("{:0{}o}", number, room - 1);
     if (digits.size() >= room)
       throw std::length_error("a file of more than 8 GiB is too long for an archive");
     put(at, room, digits);
-  }
+  };
+  put(0, 100, file.name);
+  put_octal(100, 8, file.executable ? 0755 : 0644);
+  put_octal(108, 8, 0);  // user and group are left to whoever unpacks
+  put_octal(116, 8, 0);
+  put_octal(124, 12, file.bytes.size());
+  put_octal(136, 12, static_cast<std::uint64_t>(std::max<std::int64_t>(0, time)));
+  put(148, 8, "        ");  // the sum counts its own place as blanks
+  put(156, 1, "0");         // a regular file
+  put(257, 5, "ustar");
+  put(263, 2, "00");
+  put(345, 155, folder);  // stands before the name, with a slash
+  std::uint64_t sum = 0;
+  for (const char c : bytes) sum += static_cast<unsigned char>(c);
+  put(148, 8, fmt::format("{:06o}", sum) + std::string("\0 ", 2));
+  return bytes;
+}
 
-  std::string bytes_ = std::string(block, '\0');
-};
-
-class Stream {
+class Deflation {
  public:
-  Stream() {
+  Deflation() {
     constexpr int gzip_format = 16;
-    if (deflateInit2(&stream_, Z_BEST_COMPRESSION, Z_DEFLATED, MAX_WBITS + gzip_format, MAX_MEM_LEVEL,
+    if (deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, MAX_WBITS + gzip_format, MAX_MEM_LEVEL,
                      Z_DEFAULT_STRATEGY) != Z_OK) {
       throw std::runtime_error("zlib cannot begin");
     }
   }
-  ~Stream() { deflateEnd(&stream_); }
-  Stream(const Stream&) = delete;
-  Stream& operator=(const Stream&) = delete;
-  z_stream& get() { return stream_; }
+  ~Deflation() { deflateEnd(&stream); }
+  Deflation(const Deflation&) = delete;
+  Deflation& operator=(const Deflation&) = delete;
 
- private:
-  z_stream stream_{};
+  z_stream stream{};
 };
 
 }  // namespace
@@ -208,7 +197,7 @@ class Stream {
 std::string tar(const std::string& folder, const std::vector<ArchivedFile>& files, std::int64_t time) {
   std::string archive;
   for (const ArchivedFile& file : files) {
-    archive += Header(folder, file, time).bytes() + file.bytes;
+    archive += header(folder, file, time) + file.bytes;
     archive.resize((archive.size() + block - 1) / block * block, '\0');
   }
   // Two empty blocks are the end; tar writes twenty blocks at a time.
@@ -218,10 +207,11 @@ std::string tar(const std::string& folder, const std::vector<ArchivedFile>& file
 }
 
 std::string gzip(std::string_view bytes) {
-  Stream stream;
-  gz_header header{};
-  header.os = 3;  // Unix, wherever zlib was built
-  if (deflateSetHeader(&stream.get(), &header) != Z_OK) throw std::runtime_error("zlib takes no header");
+  Deflation deflation;
+  z_stream& stream = deflation.stream;
+  gz_header about{};
+  about.os = 3;  // Unix, wherever zlib was built
+  if (deflateSetHeader(&stream, &about) != Z_OK) throw std::runtime_error("zlib takes no header");
   std::string packed;
   std::string chunk(1U << 16U, '\0');
   constexpr std::size_t most = std::numeric_limits<uInt>::max() / 2;
@@ -229,16 +219,16 @@ std::string gzip(std::string_view bytes) {
   while (state != Z_STREAM_END) {
     const std::string_view part = bytes.substr(0, most);
     // zlib does not write there, but asks for a pointer that could.
-    stream.get().next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(part.data()));
-    stream.get().avail_in = static_cast<uInt>(part.size());
+    stream.next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(part.data()));
+    stream.avail_in = static_cast<uInt>(part.size());
     bytes.remove_prefix(part.size());
     do {
-      stream.get().next_out = reinterpret_cast<Bytef*>(chunk.data());
-      stream.get().avail_out = static_cast<uInt>(chunk.size());
-      state = deflate(&stream.get(), bytes.empty() ? Z_FINISH : Z_NO_FLUSH);
+      stream.next_out = reinterpret_cast<Bytef*>(chunk.data());
+      stream.avail_out = static_cast<uInt>(chunk.size());
+      state = deflate(&stream, bytes.empty() ? Z_FINISH : Z_NO_FLUSH);
       if (state == Z_STREAM_ERROR) throw std::runtime_error("zlib cannot go on");
-      packed.append(chunk, 0, chunk.size() - stream.get().avail_out);
-    } while (stream.get().avail_out == 0);
+      packed.append(chunk, 0, chunk.size() - stream.avail_out);
+    } while (stream.avail_out == 0);
   }
   return packed;
 }

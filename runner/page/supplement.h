@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "runner/reports/status.h"
 #include "runner/store/database.h"
 
 namespace peclet::runner {
@@ -28,22 +27,15 @@ std::string tar(const std::string& folder, const std::vector<ArchivedFile>& file
 // As gzip -9 deflates, without a name and a time (RFC 1952). Throws std::runtime_error.
 std::string gzip(std::string_view bytes);
 
-// What a reader finds first in a supplement.
-//
-// README.md: the table of results, what each file is, which number is the one, how to check and to redo it.
-std::string supplement_readme(const CampaignStatus& status);
-
 // Throws InputError at --bundle unless the name ends in .tar.gz or .tgz.
 void check_supplement_name(const std::filesystem::path& output);
 
-// The files, README.md first and SHA256SUMS last: campaign file, exports as JSON, CSV and long CSV, the page,
-// the figure with its script, provenance. All are of the one snapshot that the reader has. They depend on the
-// database alone, and on who runs the campaign (`owner`), which the page says.
-// Throws InputError where nothing has been measured yet, IntegrityError.
-std::vector<ArchivedFile> supplement_files(Database& database, std::optional<std::int64_t> owner);
-
-// The same as a compressed archive with a folder of the campaign's name in it, last changed when the last
-// seed ended. The same state gives the same bytes.
+// A compressed archive with a folder of the campaign's name in it, last changed when the last seed ended:
+// README.md first, campaign file, exports as JSON, CSV and long CSV, the page, the figure with its script,
+// provenance, and SHA256SUMS last. README.md has the table of results, and says what each file is, which
+// number is the one, and how to check and to redo it. All are of the one snapshot that the reader has. They
+// depend on the database alone, and on who runs the campaign (`owner`), which the page says; the same state
+// gives the same bytes. Throws InputError where nothing has been measured yet, IntegrityError.
 std::string supplement(Database& database, std::optional<std::int64_t> owner);
 
 }  // namespace peclet::runner
