@@ -1,7 +1,9 @@
-// The verbs that ask a campaign's owner, `peclet cancel` and `peclet retry`, and how they wait.
+// The verbs that change what a campaign is to do, also while it runs: `peclet set`, `peclet cancel` and
+// `peclet retry`. They ask the campaign's owner and wait for it.
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +30,25 @@ constexpr double usual_patience = 60;
 // refused.
 Reply await_reply(const CampaignDirectory& directory, const Request& request, const std::string& words,
                   double patience);
+
+// The verb `peclet set`: another target, other points, other priorities.
+struct SetOptions {
+  std::filesystem::path campaign;
+  std::filesystem::path directory;
+  std::optional<double> tolerance, absolute_tolerance, confidence;  // of /target
+  std::optional<int> minimum, maximum;                              // of /realisations
+  std::optional<int> realisations;                                  // /realisations, where it is a number
+  std::optional<std::string> keep_files;                            // /keep_files, as a word
+  std::vector<std::string> points;                                  // whose priority is set
+  std::optional<int> priority;
+  double patience = usual_patience;
+};
+
+// Changes these values in the text of the campaign file, of which nothing else changes, and has the campaign
+// take the file over as it is then: the file stays what counts, and a later `peclet run` undoes nothing. A
+// campaign that has not been run is changed in its file alone. A priority is no part of the file. Throws
+// InputError, with nothing written, for a file that `peclet run` would refuse; as await_reply().
+Reply set_campaign(const SetOptions& options);
 
 // The verb `peclet cancel`: points that get no more seeds.
 struct CancelOptions {

@@ -1,6 +1,7 @@
 #include "runner/command_line/hand_over.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <poll.h>
 #include <unistd.h>
 
@@ -55,10 +56,9 @@ fs::path shared_folder(const HandOverOptions& options, Database& database) {
   if (!options.shared.empty()) return chosen_folder(options);
   const std::string last = BundleStore(database.connection()).last_shared();
   if (last.empty()) {
-    throw InputError(
-        "", "", "--shared",
-        "must name a folder that this machine and the nodes see in the same place; later hand-overs use "
-        "the same one unless told otherwise");
+    throw InputError("", "", "--shared",
+                     "must name a folder that this machine and the nodes see in the same place; later "
+                     "hand-overs use the same one unless told otherwise");
   }
   return last;
 }
@@ -68,10 +68,9 @@ void refuse_lost_folder(const fs::path& shared, Database& database) {
   std::error_code error;
   if (fs::is_directory(shared, error) || !BundleStore(database.connection()).are_out_in(shared.string()))
     return;
-  throw InputError(
-      "", "", shared.string(),
-      "is not there, and seeds are out in it: put it back, or give them up with `peclet ingest --forget`; "
-      "`peclet ingest` names the bundles");
+  throw InputError("", "", shared.string(),
+                   "is not there, and seeds are out in it: put it back, or give them up with `peclet ingest "
+                   "--forget`; `peclet ingest` names the bundles");
 }
 
 BundleSettings bundle_settings(const HandOverOptions& options, OwnedCampaign& owned) {
@@ -95,6 +94,12 @@ BundleSettings bundle_settings(const HandOverOptions& options, OwnedCampaign& ow
   settings.engine_folder = owned.command.folder;
   settings.engine_provenance = owned.engine;
   return settings;
+}
+
+// Returns why the batch system takes no job; "" if it has taken what there was.
+std::string submit(Bundles& bundles, const BundleSettings& settings) {
+  const std::string refusal = bundles.submit_unconfirmed();
+  return refusal.empty() ? bundles.hand_over(settings) : refusal;
 }
 
 // Settles and hands over, turn by turn.
@@ -127,7 +132,7 @@ class Follower {
         give_up_on_lifeless_tasks(settled);
         requests_.carry_out();
         if (ledger_.scheduler().finished()) break;
-        give_up_on_refusals(submit(settings));
+        give_up_on_refusals(submit(bundles_, settings));
         report(settled);
         hindrance_.clear();
       } catch (const std::exception& error) {
@@ -152,11 +157,6 @@ class Follower {
       progress_.warn(
           fmt::format("{}; jobs go on, and results are taken in {}", hindrance->text, hindrance->end));
     }
-  }
-
-  std::string submit(const BundleSettings& settings) {
-    const std::string refusal = bundles_.submit_unconfirmed();
-    return refusal.empty() ? bundles_.hand_over(settings) : refusal;
   }
 
   // A limit on a user's jobs passes when some of them have ended; what else is refused stays so.
@@ -228,9 +228,10 @@ void admit(Ledger& ledger, const OwnedCampaign& owned, const HandOverOptions& op
   } catch (const OtherEngine& error) {
     // What would be kept apart is not described by what is there now.
     if (is_accepted) {
-      throw OtherEngine(error.what() +
-                        std::string(". Without --dry-run --accept-engine keeps its results apart, and "
-                                    "the points begin again"));
+      throw OtherEngine(
+          error.what() +
+          std::string(
+              ". Without --dry-run --accept-engine keeps its results apart, and the points begin again"));
     }
     const std::string words = fmt::format("hand-over {} {}", shell_word(options.system),
                                           words_for(options.campaign, options.directory));
@@ -244,11 +245,12 @@ void check_names(const std::vector<std::string>& names, Database& database) {
   const BundleStore book(database.connection());
   for (const std::string& name : names) {
     if (book.has(name)) continue;
-    std::string out;
-    for (const HandedOver& bundle : book.handed_over()) out += (out.empty() ? "" : ", ") + bundle.bundle;
+    std::vector<std::string> out;
+    for (const HandedOver& bundle : book.handed_over()) out.push_back(bundle.bundle);
     throw InputError("", "", "--forget " + name,
                      out.empty() ? "is no bundle, and no seed is handed over"
-                                 : "is no bundle; those of which seeds are out are: " + out);
+                                 : fmt::format("is no bundle; those of which seeds are out are: {}",
+                                               fmt::join(out, ", ")));
   }
 }
 
@@ -259,11 +261,6 @@ std::string standing_text(Database& database) {
                         bundle.job.empty() ? "not confirmed" : bundle.job);
   }
   return text.empty() ? "no seed is handed over\n" : text;
-}
-
-std::string advice(Database& database, const IngestOptions& options) {
-  const std::vector<HandedOver> bundles = BundleStore(database.connection()).handed_over();
-  return handed_over_advice(bundles, words_for(options.campaign, options.directory));
 }
 
 }  // namespace
@@ -289,8 +286,7 @@ int hand_over_campaign(const HandOverOptions& options) {
     }
     if (!options.follow) {
       bundles.settle();
-      std::string refusal = bundles.submit_unconfirmed();
-      if (refusal.empty()) refusal = bundles.hand_over(settings);
+      const std::string refusal = submit(bundles, settings);
       std::fputs(standing_text(owned.database).c_str(), stdout);
       if (!refusal.empty()) throw SubmissionRefused(refusal);
       return 0;
@@ -299,7 +295,7 @@ int hand_over_campaign(const HandOverOptions& options) {
     finished = Follower(ledger, bundles, requests, progress, owned.directory, options).run(settings);
     code = ending(read_status(owned.database), finished);
   }
-  std::fputs(status_table(owned.database, getpid()).c_str(), stdout);
+  std::fputs(status_table(read_status(owned.database, getpid())).c_str(), stdout);
   return code;
 }
 
@@ -321,7 +317,9 @@ int ingest_campaign(const IngestOptions& options) {
   }
   for (const std::string& name : options.forget) bundles.forget(name);
   if (!options.forget.empty()) settled = bundles.settle();
-  std::fputs((standing_text(owned.database) + advice(owned.database, options)).c_str(), stdout);
+  const std::string advice = handed_over_advice(BundleStore(owned.database.connection()).handed_over(),
+                                                words_for(options.campaign, options.directory));
+  std::fputs((standing_text(owned.database) + advice).c_str(), stdout);
   return settled.unreachable > 0 ? ExitCode::error : 0;
 }
 

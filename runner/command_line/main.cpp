@@ -1,16 +1,104 @@
 // peclet: campaigns of realisations, from scenes to converged averages.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+#include <algorithm>
 #include <exception>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
 
-#include "runner/command_line/options.h"
+#include "contract/errors.h"
+#include "contract/provenance.h"
+#include "contract/usage_fault.h"
 #include "runner/command_line/print.h"
+#include "runner/command_line/verb_set.h"
+
+namespace peclet::runner {
+namespace {
+
+std::string version_text() {
+  const Json& origin = provenance();
+  return fmt::format("peclet {} (commit {}{})", version(), origin.value("git_commit", "unknown"),
+                     origin.value("git_dirty", Json()) == true ? ", with changes" : "");
+}
+
+// The verb that is about no campaign.
+struct CompletionOptions {
+  std::string shell;             // bash
+  std::filesystem::path output;  // "": standard output
+  bool quiet = false;            // does not say where it is
+};
+
+void add_completion(VerbSet& verbs) {
+  const auto write = [&verbs](const CompletionOptions& options) {
+    deliver(bash_completion(verbs.app()), options.output, options.quiet);
+  };
+  const auto [verb, options] = verbs.add<CompletionOptions>(
+      write, "completion", "Print a script with which bash completes verbs, options and files", {0, 1, 2},
+      R"page(
+Put the line of the example into ~/.bashrc. `cmake --install` puts the script where bash finds it by itself.
+
+  eval "$(peclet completion bash)"
+)page");
+  add_option(verb, "shell SHELL", options->shell, "The shell")->required()->check(CLI::IsMember({"bash"}));
+  add_output(verb, options->output);
+  add_quiet(verb, options->quiet);
+}
+
+void add_all(VerbSet& verbs) {
+  CLI::App& app = verbs.app();
+  app.require_subcommand(1);
+  app.set_version_flag("--version", std::function<std::string()>(version_text));  // reads the program file
+  app.footer(exit_code_lines({}) + "`peclet help VERB` says more about a verb.");
+  app.formatter(std::make_shared<HelpFormatter>());
+  add_running_verbs(verbs);
+  add_looking_verbs(verbs);
+  add_changing_verbs(verbs);
+  add_completion(verbs);
+}
+
+std::vector<std::string> words_of(int argc, char** argv) {
+  std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+  if (words == std::vector<std::string>{"version"}) words.front() = "--version";
+  if (!words.empty() && words.front() == "help") {  // `peclet help run` is `peclet run --help`
+    words.erase(words.begin());
+    words.insert(words.begin() + std::min<std::ptrdiff_t>(1, std::ssize(words)), "--help");
+  }
+  return words;
+}
+
+int complain(const std::string& fault) {
+  say(fmt::format("peclet: {}\n", fault));
+  return ExitCode::usage;
+}
+
+// Returns the exit code of the verb that is named; 0 after help or version, 2 after a fault, both printed.
+int obey(const std::vector<std::string>& words) {
+  VerbSet verbs;
+  add_all(verbs);
+  CLI::App& app = verbs.app();
+  try {
+    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // as the parser wants them
+  } catch (const CLI::ParseError& end) {
+    const bool is_known =
+        words.empty() || words.front().starts_with("-") || verb_called(app, words) != nullptr;
+    if (end.get_exit_code() == 0 && is_known) return app.exit(end);  // help or version
+    return complain(usage_fault(app, words, end));
+  } catch (const InputError& fault) {
+    return complain(fmt::format("{}: {}", words.front(), fault.what()));
+  }
+  return verbs.action()();
+}
+
+}  // namespace
+}  // namespace peclet::runner
 
 int main(int argc, char** argv) {
   using namespace peclet::runner;
   try {
-    const CommandLine command = read_command_line(argc, argv);
-    return command.action ? command.action() : command.exit_code;
+    return obey(words_of(argc, argv));
   } catch (const std::exception& error) {
     say(fmt::format("peclet: {}\n", message_of(error)));
     return exit_code_of(error);

@@ -1,18 +1,16 @@
-// Verbs that look at a campaign and change nothing.
+// Verbs that look at a campaign, or draw it, and change nothing.
 #include <fmt/format.h>
 
-#include <memory>
+#include <optional>
 
 #include "contract/named_files.h"
 #include "runner/campaign/quoting.h"
-#include "runner/command_line/files.h"
 #include "runner/command_line/print.h"
 #include "runner/command_line/verb_set.h"
 #include "runner/command_line/watch.h"
 #include "runner/page/figure.h"
 #include "runner/page/jamming.h"
 #include "runner/page/page_html.h"
-#include "runner/page/picture.h"
 #include "runner/page/supplement.h"
 #include "runner/reports/explain.h"
 #include "runner/reports/export.h"
@@ -22,10 +20,24 @@
 namespace peclet::runner {
 namespace {
 
-int show_status(const StatusOptions& options) {
+// What verbs that look at a campaign are told; each has the options that it adds.
+struct LookOptions {
+  std::filesystem::path campaign;  // file or folder
+  std::filesystem::path directory;
+  std::string point;  // label, or at least 4 digits of the hash; "": all points
+  std::optional<int> seed;
+  bool json = false;
+  bool paths = false;  // of files, and nothing else
+  bool check = false;  // the exit code says how the campaign stands
+  bool csv = false, in_long = false, canonical = false;
+  std::filesystem::path output;  // "": standard output
+  std::filesystem::path bundle;  // "": no archive of everything
+  bool quiet = false;            // does not say where it is
+};
+
+int show_status(const LookOptions& options) {
   OpenCampaign open = open_to_look(options.campaign, options.directory);
-  CampaignStatus status = read_status(open.database);
-  status.owner = current_owner(open.directory);
+  const CampaignStatus status = read_status(open.database, current_owner(open.directory));
   print(options.json ? status_json(status).dump(2) + '\n' : status_table(status) + workers_text(status));
   if (const std::string note = difference_from_file(options.campaign, options.directory, status.campaign);
       !note.empty()) {
@@ -35,99 +47,88 @@ int show_status(const StatusOptions& options) {
 }
 
 void add_status(VerbSet& verbs) {
-  const auto options = std::make_shared<StatusOptions>();
-  CLI::App* const verb = verbs.add(
-      "status", "Show how far every point is, also while it runs", "peclet status flow-curve.json --check",
-      page(R"(
+  const auto [verb, options] = verbs.add<LookOptions>(
+      show_status, "status", "Show how far every point is, also while it runs", {0, 1, 2, 3, 4, 6}, R"(
 Shows the seeds that have ended, the mean and its standard error so far, the interval at the last look
 and the verdict of every point. It only reads, and may be used at any time.
-)",
-           {{"peclet status flow-curve.json --json", "for programs; schema/README.md describes it"}},
-           {0, 1, 2, 3, 4, 6}));
-  add_file_or_folder(verb, options->campaign);
-  add_directory(verb, options->directory);
-  verb->add_flag("--json", options->json, "For programs");
-  verb->add_flag(
-      "--check", options->check,
-      "Leave with 0 (every point converged or complete), 3 (decided, but not so), 4 (not finished) or "
-      "6 (suspect)");
-  verbs.choose(verb, options, show_status);
+
+  peclet status flow-curve.json --check
+  # for programs; schema/README.md describes it
+  peclet status flow-curve.json --json
+)");
+  add_campaign(verb, *options);
+  add_json(verb, options->json);
+  verb->add_flag("--check", options->check,
+                 "Leave with 0 (every point converged or complete), 3 (decided, but not so), 4 (not "
+                 "finished) or 6 (suspect)");
 }
 
 void add_watch(VerbSet& verbs) {
-  const auto options = std::make_shared<WatchOptions>();
-  CLI::App* const verb =
-      verbs.add("watch", "Show the status in a terminal, kept up to date", "peclet watch flow-curve.json",
-                page(R"(
+  const auto [verb, options] = verbs.add<WatchOptions>(
+      watch_campaign, "watch", "Show the status in a terminal, kept up to date", {0, 1, 2, 3, 4, 6}, R"(
 Ends when every point is decided, with the exit code that `status --check` would have, or at Ctrl-C,
 which does nothing to the campaign. A campaign that has not been run yet is waited for. Where the terminal
 has room, the mean so far is drawn over the swept parameter. Off a terminal the table is printed whenever
 it changes.
-)",
-                     {}, {0, 1, 2, 3, 4, 6}));
-  add_file_or_folder(verb, options->campaign);
-  add_directory(verb, options->directory);
-  add_number(verb, "--interval", options->interval_seconds, number_from(0.1, 86'400), "Seconds between looks")
-      ->type_name("SECONDS")
+
+  peclet watch flow-curve.json
+)");
+  add_campaign(verb, *options);
+  add_number(verb, "--interval SECONDS", options->interval_seconds, number_from(0.1, 86'400),
+             "Seconds between looks")
       ->capture_default_str();
-  verbs.choose(verb, options, watch_campaign);
 }
 
-void show_explanation(const ExplainOptions& options) {
+std::string explanation(const LookOptions& options) {
   OpenCampaign open = open_to_look(options.campaign, options.directory);
-  print(options.json ? explain_json(open.database, open.directory, options.point).dump(2) + '\n'
-                     : explain(open.database, open.directory, options.point));
+  return options.json ? explain_json(open.database, open.directory, options.point).dump(2) + '\n'
+                      : explain(open.database, open.directory, options.point);
 }
 
 void add_explain(VerbSet& verbs) {
-  const auto options = std::make_shared<ExplainOptions>();
-  CLI::App* const verb = verbs.add("explain", "Say why points are where they are, and what comes next",
-                                   "peclet explain flow-curve.json peclet=10",
-                                   page(R"(
+  const auto [verb, options] = verbs.add<LookOptions>(
+      explanation, "explain", "Say why points are where they are, and what comes next", {0, 1, 2, 6}, R"(
 A point is named by its label (peclet=10 volume_fraction=0.5), by its values alone as in a row of the
 tables ("10 0.5"), or by the beginning of its hash.
 
 Lists the looks at a point, a bootstrap interval beside Student's, lost seeds with what their engines
 said last, whether the window is long enough, and what would bring the point further.
-)",
-                                        {{"peclet explain flow-curve.peclet", "all points"}}, {0, 1, 2, 6}));
-  add_file_or_folder(verb, options->campaign);
-  verb->add_option("point", options->point,
-                   "Label of a point, its values alone, or 4 or more digits of its hash; all unless given")
-      ->type_name("POINT");
-  add_directory(verb, options->directory);
-  verb->add_flag("--json", options->json, "For programs");
-  verbs.choose(verb, options, show_explanation);
+
+  peclet explain flow-curve.json peclet=10
+  # all points
+  peclet explain flow-curve.peclet
+)");
+  add_campaign(verb, *options);
+  add_option(verb, "point POINT", options->point,
+             "Label of a point, its values alone, or 4 or more digits of its hash; all unless given");
+  add_json(verb, options->json);
 }
 
-void show_files(const FilesOptions& options) {
+std::string files(const LookOptions& options) {
   OpenCampaign open = open_to_look(options.campaign, options.directory);
-  print(list_files(open.database, open.directory, options));
+  return list_files(open.database, open.directory, {options.point, options.paths, options.json});
 }
 
 void add_files(VerbSet& verbs) {
-  const auto options = std::make_shared<FilesOptions>();
-  CLI::App* const verb = verbs.add("files", "List the files that realisations have left beside their results",
-                                   "peclet files flow-curve.json peclet=10 --paths",
-                                   page(R"(
+  const auto [verb, options] = verbs.add<LookOptions>(
+      files, "files", "List the files that realisations have left beside their results", {0, 1, 2, 6},
+      R"(
 A scene may ask its engine for files beside the numbers, as final.xyz of "files": {"final_configuration":
 true}. They lie in the campaign's folder, named by point and seed; those that /keep_files throws away are
 listed, and nothing is left of them.
-)",
-                                        {{"peclet-engine snapshot $(peclet files flow-curve.json 10 --paths "
-                                          "| head -1) --output spheres.png",
-                                          "draws what the first seed has left"},
-                                         {"ovito $(peclet files flow-curve.json 10 --paths | head -1)", ""}},
-                                        {0, 1, 2, 6}));
-  add_file_or_folder(verb, options->campaign);
-  verb->add_option("point", options->point, "As of explain; all unless given")->type_name("POINT");
-  add_directory(verb, options->directory);
+
+  peclet files flow-curve.json peclet=10 --paths
+  # draws what the first seed has left
+  peclet-engine snapshot $(peclet files flow-curve.json 10 --paths | head -1) --output spheres.png
+  ovito $(peclet files flow-curve.json 10 --paths | head -1)
+)");
+  add_campaign(verb, *options);
+  add_option(verb, "point POINT", options->point, "As of explain; all unless given");
   CLI::Option* const paths = verb->add_flag("--paths", options->paths, "The paths alone, a line each");
-  verb->add_flag("--json", options->json, "For programs")->excludes(paths);
-  verbs.choose(verb, options, show_files);
+  add_json(verb, options->json)->excludes(paths);
 }
 
-void export_campaign(const ExportOptions& options) {
+void export_campaign(const LookOptions& options) {
   if (!options.bundle.empty()) {
     check_supplement_name(options.bundle);
     check_output(options.bundle);
@@ -136,27 +137,15 @@ void export_campaign(const ExportOptions& options) {
     return;
   }
   OpenCampaign open = open_to_look(options.campaign, options.directory);
-  const auto text = [&] {
-    switch (options.format) {
-      case ExportFormat::json:
-        return export_json(open.database, options.canonical);
-      case ExportFormat::csv:
-        return export_csv(open.database, options.canonical);
-      case ExportFormat::long_csv:
-        return export_long_csv(open.database);
-    }
-    return std::string();
-  };
-  deliver(text(), options.output, options.quiet);
+  deliver(options.csv       ? export_csv(open.database, options.canonical)
+          : options.in_long ? export_long_csv(open.database)
+                            : export_json(open.database, options.canonical),
+          options.output, options.quiet);
 }
 
 void add_export(VerbSet& verbs) {
-  const auto options = std::make_shared<ExportOptions>();
-  CLI::App* const verb = verbs.add(
-      "export", "Print the results for programs to read",
-      "peclet export flow-curve.json --csv --output flow-curve.csv",
-      page(
-          R"(
+  const auto [verb, options] = verbs.add<LookOptions>(
+      export_campaign, "export", "Print the results for programs to read", {0, 1, 2, 6}, R"(
 The canonical form holds what depends on campaign, seeds and engine alone, so that two runs of one
 campaign can be compared byte by byte, however many workers they had and whatever killed them.
 --output replaces a file whole, follows a link, writes to a device, a FIFO or /dev/stdout, and says on
@@ -169,142 +158,104 @@ measured, --long a row for every number, with names, units and axes as the engin
 page of `report`, the figure of `plot` with its script, engines and versions, SHA-256 of each file, and a README
 that says what is what and how to make it again. All files are of one state of the campaign, and a campaign at
 rest gives the same bytes at any time.
-)",
-          {{"peclet export flow-curve.json --canonical | sha256sum", "one number for all results"},
-           {"peclet export flow-curve.json --long --output all.csv", "profiles and distributions, too"},
-           {"peclet export flow-curve.json --bundle flow-curve.tar.gz", "everything, for a paper's readers"}},
-          {0, 1, 2, 6}));
-  add_file_or_folder(verb, options->campaign);
-  add_directory(verb, options->directory);
-  CLI::Option* const json = verb->add_flag_callback(
-      "--json", [options] { options->format = ExportFormat::json; },
-      "Everything, seed by seed (the default)");
-  CLI::Option* const csv = verb->add_flag_callback(
-      "--csv", [options] { options->format = ExportFormat::csv; },
-      "One row per point, with the mean of every scalar");
+
+  peclet export flow-curve.json --csv --output flow-curve.csv
+  # one number for all results
+  peclet export flow-curve.json --canonical | sha256sum
+  # profiles and distributions, too
+  peclet export flow-curve.json --long --output all.csv
+  # everything, for a paper's readers
+  peclet export flow-curve.json --bundle flow-curve.tar.gz
+)");
+  add_campaign(verb, *options);
+  CLI::Option* const json = verb->add_flag("--json")->description("Everything, seed by seed (the default)");
+  CLI::Option* const csv =
+      verb->add_flag("--csv", options->csv, "One row per point, with the mean of every scalar");
   csv->excludes(json);
-  CLI::Option* const in_long = verb->add_flag_callback(
-      "--long", [options] { options->format = ExportFormat::long_csv; },
-      "CSV with one row per point, quantity and element: profiles and distributions, too");
+  CLI::Option* const in_long =
+      verb->add_flag("--long", options->in_long,
+                     "CSV with one row per point, quantity and element: profiles and distributions, too");
   in_long->excludes(json)->excludes(csv);
   CLI::Option* const canonical =
       verb->add_flag("--canonical", options->canonical,
                      "Only what depends on campaign, seeds and engine: equal runs give equal bytes");
-  CLI::Option* const output =
-      verb->add_option("--output", options->output,
-                       "File to write, whole or not at all; standard output unless given")
-          ->type_name(value_name::file);
-  CLI::Option* const bundle = verb->add_option("--bundle", options->bundle,
-                                               "All of it in one archive, for a paper's supplement: a file "
-                                               "that ends in .tar.gz")
-                                  ->type_name(value_name::file);
+  CLI::Option* const output = add_output(verb, options->output);
+  CLI::Option* const bundle =
+      add_option(verb, "--bundle FILE", options->bundle,
+                 "All of it in one archive, for a paper's supplement: a file that ends in .tar.gz");
   for (CLI::Option* const other : {json, csv, in_long, canonical, output}) bundle->excludes(other);
-  verb->add_flag("--quiet", options->quiet, "Do not say on stderr where it was written");
-  verbs.choose(verb, options, export_campaign);
+  add_quiet(verb, options->quiet);
 }
 
-void print_results(const ResultsOptions& options) {
+void print_results(const LookOptions& options) {
   OpenCampaign open = open_to_look(options.campaign, options.directory);
   for_each_result_line(open.database, options.point, options.seed,
                        [](const std::string& line) { print(line + '\n'); });
 }
 
 void add_results(VerbSet& verbs) {
-  const auto options = std::make_shared<ResultsOptions>();
-  CLI::App* const verb = verbs.add(
-      "results", "Print every stored result whole, one JSON object a line",
-      "peclet results flow-curve.json peclet=10 > runs.jsonl",
-      page(R"(
+  const auto [verb, options] = verbs.add<LookOptions>(
+      print_results, "results", "Print every stored result whole, one JSON object a line", {0, 1, 2, 6}, R"(
 The database holds results deflated; this prints them as their engines wrote them, with blocks, costs and where
 they come from, and with the point and whether its last look counts the seed ("deciding"). One that is surplus
 must not enter a mean: which seeds end first depends on the machine. Also while the campaign runs.
-)",
-           {{"peclet results flow-curve.json | jq -c 'select(.deciding) | .result.mean.relative_viscosity'",
-             "the values of all points, for R, Julia and others: schema/README.md"},
-            {"peclet results flow-curve.json peclet=10 --seed 3 | jq .result", "one realisation"}},
-           {0, 1, 2, 6}));
-  add_file_or_folder(verb, options->campaign);
-  verb->add_option("point", options->point,
-                   "Label of a point, or 4 or more digits of its hash; all unless given")
-      ->type_name("POINT");
-  add_directory(verb, options->directory);
-  verb->add_option("--seed", options->seed, "Of this seed only")
-      ->type_name("SEED")
-      ->check(CLI::NonNegativeNumber);
-  verbs.choose(verb, options, print_results);
+
+  peclet results flow-curve.json peclet=10 > runs.jsonl
+  # the values of all points, for R, Julia and others: schema/README.md
+  peclet results flow-curve.json | jq -c 'select(.deciding) | .result.mean.relative_viscosity'
+  # one realisation
+  peclet results flow-curve.json peclet=10 --seed 3 | jq .result
+)");
+  add_campaign(verb, *options);
+  add_option(verb, "point POINT", options->point,
+             "Label of a point, or 4 or more digits of its hash; all unless given");
+  add_option(verb, "--seed SEED", options->seed, "Of this seed only")->check(CLI::NonNegativeNumber);
 }
 
-void write_report(const ReportOptions& options) {
+void write_report(const LookOptions& options) {
   OpenCampaign open = open_to_look(options.campaign, options.directory);
   deliver(report_html(open.database, current_owner(open.directory)), options.output, options.quiet);
 }
 
 void add_report(VerbSet& verbs) {
-  const auto options = std::make_shared<ReportOptions>();
-  CLI::App* const verb =
-      verbs.add("report", "Make one HTML page of a campaign, for a colleague or a notebook",
-                "peclet report flow-curve.json --output flow-curve.html",
-                page(R"(
+  const auto [verb, options] = verbs.add<LookOptions>(
+      write_report, "report", "Make one HTML page of a campaign, for a colleague or a notebook", {0, 1, 2, 6},
+      R"(
 The page has every measured quantity over any swept parameter with its intervals, how the mean of each
 point came about, tables that sort, lost seeds by cause, what every mark means, where the numbers come from
 and the commands that make them again. Every chart can be saved as CSV, SVG and a script of matplotlib. It
 is one file that needs no other and no network, and runs in a browser with JavaScript; print it from there.
 A database at rest gives the same bytes at any time.
-)",
-                     {}, {0, 1, 2, 6}));
-  add_file_or_folder(verb, options->campaign);
-  add_directory(verb, options->directory);
-  verb->add_option("--output", options->output,
-                   "File to write, whole or not at all; standard output unless given")
-      ->type_name(value_name::file);
-  verb->add_flag("--quiet", options->quiet, "Do not say on stderr where it was written");
-  verbs.choose(verb, options, write_report);
+
+  peclet report flow-curve.json --output flow-curve.html
+)");
+  add_campaign(verb, *options);
+  add_output(verb, options->output);
+  add_quiet(verb, options->quiet);
 }
 
 void add_serve(VerbSet& verbs) {
-  const auto options = std::make_shared<ServeOptions>();
-  CLI::App* const verb = verbs.add(
-      "serve", "Show the page of a campaign in a browser, kept up to date", "peclet serve flow-curve.json",
-      page(R"(
+  const auto [verb, options] = verbs.add<ServeOptions>(
+      serve_campaign, "serve", "Show the page of a campaign in a browser, kept up to date",
+      {0, 1, 2, 3, 4, 6}, R"(
 Prints the address of the page that `peclet report` makes, live: numbers come as seeds end, and what was
 chosen on it stays. May be started before, while and after the campaign runs, and only reads. The address is
 reached from this machine alone, by everybody who has an account on it; from elsewhere through ssh. Ends at
 Ctrl-C or SIGTERM, which does nothing to the campaign, with the exit code that `status --check` would have.
-)",
-           {{"ssh -L 7325:localhost:7325 cluster", "then http://localhost:7325/ here is the page there"}},
-           {0, 1, 2, 3, 4, 6}));
-  add_file_or_folder(verb, options->campaign);
-  add_directory(verb, options->directory);
+
+  peclet serve flow-curve.json
+  # then http://localhost:7325/ here is the page there
+  ssh -L 7325:localhost:7325 cluster
+)");
+  add_campaign(verb, *options);
   add_number(verb, "--port", options->port, whole_number(0, 65'535),
              "Port to listen on; 0 is any that is free")
       ->capture_default_str();
-  verbs.choose(verb, options, serve_campaign);
 }
 
-}  // namespace
-
-void add_looking_verbs(VerbSet& verbs) {
-  add_status(verbs);
-  add_watch(verbs);
-  add_explain(verbs);
-  add_files(verbs);
-  add_export(verbs);
-  add_results(verbs);
-  add_report(verbs);
-  add_serve(verbs);
-}
-
-// The verb that draws a campaign.
-
-namespace {
-
-struct PlotOptions {
-  std::filesystem::path campaign;  // file or folder
-  std::filesystem::path directory;
+// With `json` the numbers, and no picture; with `quiet` it is not said either what is left out.
+struct PlotOptions : LookOptions {
   FigureChoice choice;
-  std::filesystem::path output;  // "": SVG on standard output
-  bool json = false;             // the numbers, and no picture
-  bool quiet = false;            // does not say where it is, and what is left out
 };
 
 // The script is written first: it has the numbers where no picture can be drawn.
@@ -336,15 +287,10 @@ void draw_campaign(const PlotOptions& options) {
   }
 }
 
-}  // namespace
-
-void add_drawing_verbs(VerbSet& verbs) {
-  const auto options = std::make_shared<PlotOptions>();
-  CLI::App* const verb = verbs.add(
-      "plot", "Draw a measured quantity over a swept parameter, with the script of the figure",
-      "peclet plot flow-curve.json --output flow-curve.pdf",
-      page(
-          R"(
+void add_plot(VerbSet& verbs) {
+  const auto [verb, options] = verbs.add<PlotOptions>(
+      draw_campaign, "plot", "Draw a measured quantity over a swept parameter, with the script of the figure",
+      {0, 1, 2, 6}, R"(
 Draws every point with its interval at the campaign's confidence, a curve for each value of what else is
 swept. Numbers are those of `export`: the target's are the ones that decide, with the control variate where
 there is one. Open marks have not converged; those with dashed bars may still change. Crosses have jammed.
@@ -354,39 +300,31 @@ picture lies its script, of the same name and the ending .py, which holds the nu
 again by itself. Where there is no python3 with matplotlib only the script is written, and the exit code is 1.
 A script that somebody has changed is never replaced. Axes are logarithmic where the numbers lie more evenly
 then.
-)",
-          {{"peclet plot flow-curve.json --quantity pressure --over volume_fraction --log y --output p.svg",
-            ""},
-           {"peclet plot flow-curve.json --band > flow-curve.svg", "with the tolerance around each mean"},
-           {"peclet plot flow-curve.json --quantity stress/total/xy --output xy.png",
-            "one component of the stress"},
-           {"peclet plot flow-curve.json --output xy.py", "the script alone, which needs no matplotlib yet"}},
-          {0, 1, 2, 6}));
-  add_file_or_folder(verb, options->campaign);
-  add_directory(verb, options->directory);
-  verb->add_option("--quantity", options->choice.quantity,
-                   "Number to draw, as `export` calls it; the campaign's target unless given")
-      ->type_name("NAME");
-  verb->add_option(
-          "--over", options->choice.over,
-          "Swept parameter of the axis: its pointer or the last word of it; the one with most values "
-          "unless given")
-      ->type_name("PARAMETER");
-  verb->add_option("--log", options->choice.scale, "Axes that are logarithmic; those that fit unless given")
-      ->type_name("AXES")
+
+  peclet plot flow-curve.json --output flow-curve.pdf
+  peclet plot flow-curve.json --quantity pressure --over volume_fraction --log y --output p.svg
+  # with the tolerance around each mean
+  peclet plot flow-curve.json --band > flow-curve.svg
+  # one component of the stress
+  peclet plot flow-curve.json --quantity stress/total/xy --output xy.png
+  # the script alone, which needs no matplotlib yet
+  peclet plot flow-curve.json --output xy.py
+)");
+  add_campaign(verb, *options);
+  add_option(verb, "--quantity NAME", options->choice.quantity,
+             "Number to draw, as `export` calls it; the campaign's target unless given");
+  add_option(verb, "--over PARAMETER", options->choice.over,
+             "Swept parameter of the axis: its pointer or the last word of it; the one with most "
+             "values unless given");
+  add_option(verb, "--log AXES", options->choice.scale,
+             "Axes that are logarithmic; those that fit unless given")
       ->check(CLI::IsMember({"none", "x", "y", "xy"}));
   verb->add_flag("--band", options->choice.tolerance, "A band around each mean as wide as the tolerance");
-  verb->add_option("--output", options->output,
-                   "File to write, ending in .svg, .png, .pdf or .py; SVG on standard output unless given")
-      ->type_name(value_name::file);
+  add_option(verb, "--output FILE", options->output,
+             "File to write, ending in .svg, .png, .pdf or .py; SVG on standard output unless given");
   verb->add_flag("--json", options->json, "Print the numbers as JSON, and draw nothing");
-  verb->add_flag("--quiet", options->quiet, "Do not say on stderr where it was written");
-  verbs.choose(verb, options, draw_campaign);
+  add_quiet(verb, options->quiet);
 }
-
-// The verb that makes one number of the points of a curve.
-
-namespace {
 
 void show_jamming(const JammingOptions& options) {
   const JammingAnswer answer = find_jamming(options);
@@ -395,8 +333,7 @@ void show_jamming(const JammingOptions& options) {
 }
 
 void add_law_options(CLI::App* verb, JammingOptions& options) {
-  verb->add_option("--by", options.by, "Definition of the jamming point; both unless given")
-      ->type_name("DEFINITION")
+  add_option(verb, "--by DEFINITION", options.by, "Definition of the jamming point; both unless given")
       ->check(CLI::IsMember({"law", "steepest"}));
   add_number(verb, "--exponent", options.exponent, number_above(0),
              "Exponent of the law; fitted unless given");
@@ -414,23 +351,16 @@ void add_law_options(CLI::App* verb, JammingOptions& options) {
 void add_proposing_options(CLI::App* verb, JammingOptions& options) {
   verb->add_flag("--propose", options.propose,
                  "Say which fractions to run next, with a patch of the campaign file");
-  add_number(verb, "--budget", options.budget, number_above(0),
-             "Processor time for what is proposed; one point a curve unless given")
-      ->type_name("SECONDS");
-  verb->add_option("--write", options.write,
-                   "New campaign file with the proposed points; a file that is there is never replaced")
-      ->type_name(value_name::file);
+  add_number(verb, "--budget SECONDS", options.budget, number_above(0),
+             "Processor time for what is proposed; one point a curve unless given");
+  add_option(verb, "--write FILE", options.write,
+             "New campaign file with the proposed points; a file that is there is never replaced");
 }
 
-}  // namespace
-
-void add_estimating_verbs(VerbSet& verbs) {
-  const auto options = std::make_shared<JammingOptions>();
-  CLI::App* const verb = verbs.add(
-      "jamming", "Estimate the volume fraction of jamming from the points of a sweep",
-      "peclet jamming friction.json",
-      page(
-          R"(
+void add_jamming(VerbSet& verbs) {
+  const auto [verb, options] = verbs.add<JammingOptions>(
+      show_jamming, "jamming", "Estimate the volume fraction of jamming from the points of a sweep",
+      {0, 1, 2, 6}, R"(
 Makes a curve of viscosity over volume fraction for each value of what else is swept, and gives its jamming
 point phi_m by two definitions: where a power law A (1 - phi / phi_m)^-beta through the flowing points above
 a viscosity of 10 diverges, and where the viscosity rises most steeply. Errors are of the seeds; where the
@@ -446,25 +376,39 @@ Points are known by their scenes: what has been run is not run again.
 
 The fits are made by python3 of PATH with NumPy, and by the package peclet that is installed with this program.
 Without one of them the verb ends with 1, and says what is missing and what it would have run.
-)",
-          {{"peclet jamming friction.json --unit-prefactor --above 1", "the law that holds at all fractions"},
-           {"peclet jamming friction.json --by law --exponent 2 --json", "for programs; schema/README.md"},
-           {"peclet jamming friction.json --propose --budget 3600 --write next.json",
-            "a campaign file with points for an hour of processor time"}},
-          {0, 1, 2, 6}));
-  add_file_or_folder(verb, options->campaign);
-  add_directory(verb, options->directory);
-  verb->add_option("--over", options->curves.over,
-                   "Swept volume fraction: its pointer or the last word of it")
-      ->type_name("PARAMETER")
+
+  peclet jamming friction.json
+  # the law that holds at all fractions
+  peclet jamming friction.json --unit-prefactor --above 1
+  # for programs; schema/README.md
+  peclet jamming friction.json --by law --exponent 2 --json
+  # a campaign file with points for an hour of processor time
+  peclet jamming friction.json --propose --budget 3600 --write next.json
+)");
+  add_campaign(verb, *options);
+  add_option(verb, "--over PARAMETER", options->curves.over,
+             "Swept volume fraction: its pointer or the last word of it")
       ->capture_default_str();
-  verb->add_option("--quantity", options->curves.quantity, "Viscosity, as `export` calls it")
-      ->type_name("NAME")
+  add_option(verb, "--quantity NAME", options->curves.quantity, "Viscosity, as `export` calls it")
       ->capture_default_str();
   add_law_options(verb, *options);
   add_proposing_options(verb, *options);
-  verb->add_flag("--json", options->json, "For programs");
-  verbs.choose(verb, options, show_jamming);
+  add_json(verb, options->json);
+}
+
+}  // namespace
+
+void add_looking_verbs(VerbSet& verbs) {
+  add_status(verbs);
+  add_watch(verbs);
+  add_explain(verbs);
+  add_files(verbs);
+  add_export(verbs);
+  add_results(verbs);
+  add_report(verbs);
+  add_serve(verbs);
+  add_plot(verbs);
+  add_jamming(verbs);
 }
 
 }  // namespace peclet::runner

@@ -1,14 +1,10 @@
-// Verbs that set a campaign up and run it.
-#include <memory>
-
+// Verbs that set a campaign up, run it, change what it is to do, hand its seeds over and keep it safe.
 #include "runner/batch/batch_task.h"
 #include "runner/campaign/campaign.h"
 #include "runner/command_line/ask_owner.h"
 #include "runner/command_line/hand_over.h"
-#include "runner/command_line/plan_campaign.h"
 #include "runner/command_line/print.h"
 #include "runner/command_line/run.h"
-#include "runner/command_line/set.h"
 #include "runner/command_line/validate.h"
 #include "runner/command_line/verb_set.h"
 #include "runner/maintenance/backup.h"
@@ -26,69 +22,62 @@ void add_team(CLI::App* verb, RunOptions& run) {
 }
 
 void add_init(VerbSet& verbs) {
-  const auto options = std::make_shared<InitOptions>();
-  CLI::App* const verb =
-      verbs.add("init", "Write a small campaign to begin with", "peclet init flow-curve.json",
-                page(R"(
+  const auto [verb, options] =
+      verbs.add<InitOptions>(init_campaign, "init", "Write a small campaign to begin with", {0, 1, 2}, R"(
 The file is a whole campaign that runs in minutes: 100 spheres with friction at three Péclet numbers.
 Change it to what you want to know; `peclet validate` says what is wrong with it.
-)",
-                     {}, {0, 1, 2}));
-  verb->add_option("campaign", options->campaign, "Campaign file (JSON) that is not there yet")
-      ->required()
-      ->type_name(value_name::campaign_file);
-  verbs.choose(verb, options, [](const InitOptions& given) { print(init_campaign(given)); });
+
+  peclet init flow-curve.json
+)");
+  add_option(verb, "campaign FILE.json", options->campaign, "Campaign file (JSON) that is not there yet")
+      ->required();
 }
 
 void add_validate(VerbSet& verbs) {
-  const auto options = std::make_shared<ValidateOptions>();
-  CLI::App* const verb = verbs.add(
-      "validate", "Check a campaign and all its scenes; writes nothing", "peclet validate flow-curve.json",
-      page(R"(
+  const auto [verb, options] = verbs.add<ValidateOptions>(
+      validate_campaign, "validate", "Check a campaign and all its scenes; writes nothing", {0, 1, 2}, R"(
 Reads the campaign and asks its engine about the scene of every point: the groups that follow from it,
 the time step, and warnings. The first fault is named with its place in the file, its value and what is
 allowed, a target that no result would have included. The file may be a pipe.
-)",
-           {{"peclet validate <(my-generator)", "what a program writes"},
-            {"peclet validate flow-curve.json --json | jq '.points[].timestep'", "the time steps alone"}},
-           {0, 1, 2}));
+
+  peclet validate flow-curve.json
+  # what a program writes
+  peclet validate <(my-generator)
+  # the time steps alone
+  peclet validate flow-curve.json --json | jq '.points[].timestep'
+)");
   add_file(verb, options->campaign);
-  verb->add_flag("--json", options->json, "For programs");
-  verbs.choose(verb, options, [](const ValidateOptions& given) { print(validate_campaign(given)); });
+  add_json(verb, options->json);
 }
 
 void add_plan(VerbSet& verbs) {
-  const auto options = std::make_shared<PlanOptions>();
-  CLI::App* const verb = verbs.add(
-      "plan", "Say how much work a campaign is: seeds, hours, finish; writes nothing without --pilot",
-      "peclet plan flow-curve.json --pilot 4 --workers 8",
-      page(R"(
+  const auto [verb, options] = verbs.add<PlanOptions>(
+      plan_campaign, "plan",
+      "Say how much work a campaign is: seeds, hours, finish; writes nothing without --pilot",
+      {0, 1, 2, 5, 6, 75}, R"(
 The work is counted in particle-steps, and in processor time where realisations have been run before:
 from the fewest seeds that a point may take to the most. Where none has, one of the point in the middle is
 tried for two seconds, in a temporary folder, or one of another point where that one jams, and the table says
 that its times are a guess.
-)",
-           {}, {0, 1, 2, 5, 6, 75}));
-  add_file(verb, options->run.campaign);
-  add_directory(verb, options->run.directory);
+
+  peclet plan flow-curve.json --pilot 4 --workers 8
+)");
+  add_campaign_file(verb, options->run);
   add_number(verb, "--pilot", options->pilot, whole_number(2, 1'000'000),
-             "Run the first seeds of every point, 4 unless given, which count later as any others; "
-             "predict from them, and store that for `status` to judge")
+             "Run the first seeds of every point, 4 unless given, which count later as any others; predict "
+             "from them, and store that for `status` to judge")
       ->expected(0, 1)
       ->default_str("4");
   add_team(verb, options->run);
   verb->add_flag("--quiet", options->run.quiet, "No progress on stderr");
   verb->add_flag("--force", options->run.force, "Use a network file system all the same, at your own risk");
-  verb->add_flag("--json", options->json, "For programs");
-  verbs.choose(verb, options, plan_campaign);
+  add_json(verb, options->json);
 }
 
 void add_run(VerbSet& verbs) {
-  const auto options = std::make_shared<RunOptions>();
-  CLI::App* const verb = verbs.add(
-      "run", "Run a campaign until every point is decided; go on with one that was stopped",
-      "peclet run flow-curve.json --workers 8",
-      page(R"(
+  const auto [verb, options] = verbs.add<RunOptions>(
+      run_campaign, "run", "Run a campaign until every point is decided; go on with one that was stopped",
+      {0, 1, 2, 3, 5, 6, 75}, R"(
 Runs seeds of every point until the interval of its mean is within the tolerance, or all seeds that are
 allowed have ended. The same command goes on with a campaign that was stopped or killed, and takes up
 changes of its file; nothing that has finished is run again.
@@ -96,22 +85,22 @@ changes of its file; nothing that has finished is run again.
 Ctrl-C (or SIGTERM) lets the workers write checkpoints and stop, a second one stops at once; either way
 the exit code is 75 and the campaign can be resumed. Progress goes to standard error, the table at the
 end to standard output; with --jsonl events take its place, which schema/README.md describes.
-)",
-           {{"peclet run flow-curve.json --time-limit 28800", "eight hours of it; the same again tomorrow"},
-            {"peclet run flow-curve.json --jsonl | jq -r 'select(.event == \"decided\") | .point.label'",
-             "follow it with a program"},
-            {"peclet run flow-curve.json --notify 'echo \"$PECLET_SUMMARY\" | mail -s peclet me@example.org'",
-             "and write to me when it ends"}},
-           {0, 1, 2, 3, 5, 6, 75}));
-  add_file(verb, options->campaign);
-  add_directory(verb, options->directory);
+
+  peclet run flow-curve.json --workers 8
+  # eight hours of it; the same again tomorrow
+  peclet run flow-curve.json --time-limit 28800
+  # follow it with a program
+  peclet run flow-curve.json --jsonl | jq -r 'select(.event == "decided") | .point.label'
+  # and write to me when it ends
+  peclet run flow-curve.json --notify 'echo "$PECLET_SUMMARY" | mail -s peclet me@example.org'
+)");
+  add_campaign_file(verb, *options);
   add_team(verb, *options);
-  add_number(verb, "--time-limit", options->time_limit, number_above(0),
-             "Seconds after which workers checkpoint and stop")
-      ->type_name("SECONDS");
-  add_number(verb, "--budget", options->budget_hours, number_above(0),
-             "Hours of processor time that this run may spend, where they lower the summed relative "
-             "error most");
+  add_number(verb, "--time-limit SECONDS", options->time_limit, number_above(0),
+             "Seconds after which workers checkpoint and stop");
+  add_number(
+      verb, "--budget", options->budget_hours, number_above(0),
+      "Hours of processor time that this run may spend, where they lower the summed relative error most");
   add_seconds(verb, "--lease", options->lease_seconds,
               "Seconds without a new step after which a worker counts as hung");
   add_seconds(verb, "--checkpoint", options->checkpoint_seconds,
@@ -119,14 +108,12 @@ end to standard output; with --jsonl events take its place, which schema/README.
   add_seconds(verb, "--backup", options->backup_seconds, "Seconds between backups of the database");
   verb->add_flag("--jsonl", options->jsonl,
                  "What happens as JSON on standard output, one object a line, instead of the table");
-  verb->add_option("--notify", options->notify,
-                   "Command of the shell for the end, whatever ends the run but a faulty file or another "
-                   "owner; told by PECLET_SUMMARY, PECLET_EXIT_CODE, PECLET_CAMPAIGN and PECLET_DIRECTORY")
-      ->type_name("COMMAND");
+  add_option(verb, "--notify COMMAND", options->notify,
+             "Command of the shell for the end, whatever ends the run but a faulty file or another "
+             "owner; told by PECLET_SUMMARY, PECLET_EXIT_CODE, PECLET_CAMPAIGN and PECLET_DIRECTORY");
   add_accept_engine(verb, options->accept_engine);
   verb->add_flag("--quiet", options->quiet, "No progress on stderr");
   verb->add_flag("--force", options->force, "Use a network file system all the same, at your own risk");
-  verbs.choose(verb, options, run_campaign);
 }
 
 }  // namespace
@@ -143,33 +130,27 @@ void add_running_verbs(VerbSet& verbs) {
 namespace {
 
 void add_patience(CLI::App* verb, double& seconds) {
-  add_number(verb, "--wait", seconds, number_from(0),
+  add_number(verb, "--wait SECONDS", seconds, number_from(0),
              "Seconds to wait for the process that runs the campaign; 0: not at all")
-      ->type_name("SECONDS")
       ->capture_default_str();
 }
 
-int tell(const Reply& reply) {
-  print(reply.text);
-  return reply.exit_code;
-}
-
 void add_set(VerbSet& verbs) {
-  const auto options = std::make_shared<SetOptions>();
-  CLI::App* const verb =
-      verbs.add("set", "Change target, points or priorities of a campaign, also while it runs",
-                "peclet set flow-curve.json --tolerance 0.03 --maximum 2000",
-                page(R"(
+  const auto [verb, options] = verbs.add<SetOptions>(
+      set_campaign, "set", "Change target, points or priorities of a campaign, also while it runs",
+      {0, 1, 2, 4, 6}, R"(
 Changes target, numbers of seeds or priorities. The values are changed in the campaign's file, of which every
 other byte stays, and the campaign takes the file over as it is; without options it does only that, with
 points that you have added to the sweep, for instance. A running campaign does so within seconds, and this
 verb waits for it; points of a finished one that are no longer decided go on with `peclet run`.
-)",
-                     {{"peclet set flow-curve.json", "take over a file that was edited"},
-                      {"peclet set flow-curve.json --point peclet=10 --priority 1", "this point first"}},
-                     {0, 1, 2, 4, 6}));
-  add_file(verb, options->campaign);
-  add_directory(verb, options->directory);
+
+  peclet set flow-curve.json --tolerance 0.03 --maximum 2000
+  # take over a file that was edited
+  peclet set flow-curve.json
+  # this point first
+  peclet set flow-curve.json --point peclet=10 --priority 1
+)");
+  add_campaign_file(verb, *options);
   add_number(verb, "--tolerance", options->tolerance, *campaign_keys().find("/target/relative_tolerance"),
              "/target/relative_tolerance: 0.05 or 5%");
   add_number(verb, "--absolute-tolerance", options->absolute_tolerance,
@@ -183,174 +164,128 @@ verb waits for it; points of a finished one that are no longer decided go on wit
              "/realisations/maximum: seeds after which a point is capped");
   add_number(verb, "--realisations", options->realisations, whole_number(1, most_realisations),
              "/realisations, where their number is fixed: seeds of every point");
-  verb->add_option("--keep-files", options->keep_files,
-                   "/keep_files: all, none, or of how many first seeds of each point files are kept");
-  verb->add_option("--point", options->points, "Point that is to have the priority; may be repeated")
+  add_option(verb, "--keep-files", options->keep_files,
+             "/keep_files: all, none, or of how many first seeds of each point files are kept");
+  add_option(verb, "--point", options->points, "Point that is to have the priority; may be repeated")
       ->allow_extra_args(false);
   add_number(verb, "--priority", options->priority, whole_number(-1'000'000, 1'000'000),
              "Points of a higher one are served first; 0 unless set");
   add_patience(verb, options->patience);
-  verbs.choose(verb, options, [](const SetOptions& given) { return tell(set_campaign(given)); });
 }
 
 void add_cancel(VerbSet& verbs) {
-  const auto options = std::make_shared<CancelOptions>();
-  CLI::App* const verb = verbs.add(
-      "cancel", "Give points no more seeds, also while the campaign runs",
-      "peclet cancel flow-curve.json peclet=10",
-      page(R"(
+  const auto [verb, options] = verbs.add<CancelOptions>(
+      cancel_points, "cancel", "Give points no more seeds, also while the campaign runs", {0, 1, 2, 4, 6}, R"(
 The points get no more seeds and hold nothing up; seeds that run are saved and put back. What has been done
 is kept and shown.
-)",
-           {{"peclet cancel flow-curve.json peclet=10 --undo", "take it up again"}}, {0, 1, 2, 4, 6}));
-  add_file_or_folder(verb, options->campaign);
-  verb->add_option("point", options->points,
-                   "Labels of points, their values alone, or 4 or more digits of their hashes")
+
+  peclet cancel flow-curve.json peclet=10
+  # take it up again
+  peclet cancel flow-curve.json peclet=10 --undo
+)");
+  add_campaign(verb, *options);
+  add_option(verb, "point", options->points,
+             "Labels of points, their values alone, or 4 or more digits of their hashes")
       ->required();
-  add_directory(verb, options->directory);
   verb->add_flag("--undo", options->undo, "Take them up again");
   add_patience(verb, options->patience);
-  verbs.choose(verb, options, [](const CancelOptions& given) { return tell(cancel_points(given)); });
 }
 
 void add_retry(VerbSet& verbs) {
-  const auto options = std::make_shared<RetryOptions>();
-  CLI::App* const verb = verbs.add("retry", "Queue seeds again that were given up, with a clean record",
-                                   "peclet retry flow-curve.json peclet=10 --seed 17",
-                                   page(R"(
+  const auto [verb, options] = verbs.add<RetryOptions>(
+      retry_seeds, "retry", "Queue seeds again that were given up, with a clean record", {0, 1, 2, 4, 6}, R"(
 Seeds are given up after three failures that were their own: crashes, or no progress. What the engine itself
 called failed (an overlap, a step too large) would fail again, and is not retried.
-)",
-                                        {}, {0, 1, 2, 4, 6}));
-  add_file_or_folder(verb, options->campaign);
-  verb->add_option(
-      "point", options->points,
-      "Labels of points, their values alone, or 4 or more digits of their hashes; all unless given");
-  add_directory(verb, options->directory);
+
+  peclet retry flow-curve.json peclet=10 --seed 17
+)");
+  add_campaign(verb, *options);
+  add_option(verb, "point", options->points,
+             "Labels of points, their values alone, or 4 or more digits of their hashes; all unless given");
   add_number(verb, "--seed", options->seeds, whole_number(0, 2'147'483'647),
              "Of the one point that is named; may be repeated; all unless given")
       ->allow_extra_args(false);
   add_patience(verb, options->patience);
-  verbs.choose(verb, options, [](const RetryOptions& given) { return tell(retry_seeds(given)); });
-}
-
-}  // namespace
-
-void add_changing_verbs(VerbSet& verbs) {
-  add_set(verbs);
-  add_cancel(verbs);
-  add_retry(verbs);
 }
 
 // Verbs that keep a campaign safe and sound.
 
-namespace {
-
 void add_backup(VerbSet& verbs) {
-  const auto options = std::make_shared<BackupOptions>();
-  CLI::App* const verb =
-      verbs.add("backup", "Copy a campaign's database and files, checked, also while it runs",
-                "peclet backup flow-curve.json /mnt/usb/flow-curve --checkpoints",
-                page(R"(
+  const auto [verb, options] = verbs.add<BackupOptions>(
+      backup_campaign, "backup", "Copy a campaign's database and files, checked, also while it runs",
+      {0, 1, 2, 6}, R"(
 `peclet run` makes such backups by itself; this makes one now, or elsewhere. The copy is checked before
 it takes the place of the one before. Of the folder's path only the last part is made: where a disk is
 not mounted, there is an error and no copy on another disk. A copy that turns out to be on the campaign's
 own file system is said to be.
-)",
-                     {}, {0, 1, 2, 6}));
-  add_file_or_folder(verb, options->campaign);
-  verb->add_option("target", options->target,
-                   "Folder for backup.db, made in one that must be there; the backup there before becomes "
-                   "backup.previous.db; the campaign's own backup/ unless given")
-      ->type_name(value_name::folder);
-  add_directory(verb, options->directory);
+
+  peclet backup flow-curve.json /mnt/usb/flow-curve --checkpoints
+)");
+  add_campaign(verb, *options);
+  add_option(verb, "target FOLDER", options->target,
+             "Folder for backup.db, made in one that must be there; the backup there before becomes "
+             "backup.previous.db; the campaign's own backup/ unless given");
   verb->add_flag("--checkpoints", options->checkpoints,
                  "With checkpoints and spool, so that seeds that run now need not start again");
-  verb->add_flag("--json", options->json, "For programs");
-  verbs.choose(verb, options, [](const BackupOptions& given) { print(backup_campaign(given)); });
+  add_json(verb, options->json);
 }
 
 void add_restore(VerbSet& verbs) {
-  const auto options = std::make_shared<RestoreOptions>();
-  CLI::App* const verb =
-      verbs.add("restore", "Put a backup in the place of a lost or damaged database, here or elsewhere",
-                "peclet restore /mnt/usb/flow-curve flow-curve.json",
-                page(R"(
+  const auto [verb, options] = verbs.add<RestoreOptions>(
+      restore_campaign, "restore",
+      "Put a backup in the place of a lost or damaged database, here or elsewhere", {0, 1, 2, 5, 6}, R"(
 What was there is kept aside. The campaign then goes on with `peclet run` to the same results.
-)",
-                     {}, {0, 1, 2, 5, 6}));
-  verb->add_option("backup", options->backup, "Folder of backups, or one file")
-      ->required()
-      ->type_name(value_name::file);
-  verb->add_option("campaign", options->campaign, "Campaign file or .peclet folder; made when there is none")
-      ->required()
-      ->type_name(value_name::campaign);
+
+  peclet restore /mnt/usb/flow-curve flow-curve.json
+)");
+  add_option(verb, "backup FILE", options->backup, "Folder of backups, or one file")->required();
+  add_option(verb, "campaign CAMPAIGN", options->campaign,
+             "Campaign file or .peclet folder; made when there is none")
+      ->required();
   add_directory(verb, options->directory);
   verb->add_flag(
       "--force", options->force,
       "Also in the place of a sound database that is as new, or another campaign's; it is kept aside");
-  verbs.choose(verb, options, [](const RestoreOptions& given) { print(restore_campaign(given)); });
-}
-
-int diagnose(const DoctorOptions& options) {
-  const Diagnosis diagnosis = examine_campaign(options);
-  print(diagnosis.text);
-  return diagnosis.exit_code;
 }
 
 void add_doctor(VerbSet& verbs) {
-  const auto options = std::make_shared<DoctorOptions>();
-  CLI::App* const verb = verbs.add("doctor", "Examine a campaign: database, files, processes, clock and disk",
-                                   "peclet doctor flow-curve.json --repair",
-                                   page(R"(
+  const auto [verb, options] = verbs.add<DoctorOptions>(
+      examine_campaign, "doctor", "Examine a campaign: database, files, processes, clock and disk",
+      {0, 1, 2, 5, 6},
+      R"(
 Says what is wrong, how bad it is and what cures it. Without --repair nothing is changed. With it, among
 other things, checkpoints of seeds that no point needs any more are removed: they cost their time again
 should the tolerance be tightened.
-)",
-                                        {}, {0, 1, 2, 5, 6}));
-  add_file_or_folder(verb, options->campaign);
-  add_directory(verb, options->directory);
+
+  peclet doctor flow-curve.json --repair
+)");
+  add_campaign(verb, *options);
   verb->add_flag("--repair", options->repair, "Do the safe repairs that are named as cures");
-  verb->add_flag("--json", options->json, "For programs");
-  verbs.choose(verb, options, diagnose);
-}
-
-}  // namespace
-
-void add_keeping_verbs(VerbSet& verbs) {
-  add_backup(verbs);
-  add_restore(verbs);
-  add_doctor(verbs);
+  add_json(verb, options->json);
 }
 
 // Verbs for seeds that run elsewhere, under a batch system.
 
-namespace {
-
 void add_hand_over(VerbSet& verbs) {
-  const auto options = std::make_shared<HandOverOptions>();
-  CLI::App* const verb =
-      verbs.add("hand-over", "Give seeds to a batch system: job arrays that need no database and no daemon",
-                "peclet hand-over slurm flow-curve.json --shared /scratch/me/flow-curve --follow \\\n"
-                "           --option=--partition=short --option=--time=4:00:00",
-                page(R"(
+  const auto [verb, options] = verbs.add<HandOverOptions>(
+      hand_over_campaign, "hand-over",
+      "Give seeds to a batch system: job arrays that need no database and no daemon", {0, 1, 2, 3, 5, 6, 75},
+      R"(
 Turns the seeds that the next looks need into job arrays. The database stays on this machine; nodes see
 the folder --shared and the two programs. Without --follow it hands over once, and `peclet ingest` takes
 in what has been done. The answer is the same, byte for byte, as that of `peclet run`.
 
 When the batch system refuses a job, its seeds stay here and the exit code is 1. When it is not known whether it has
 taken one, the seeds are out until a job of that name has been looked for.
-)",
-                     {}, {0, 1, 2, 3, 5, 6, 75}));
-  verb->add_option("system", options->system, "slurm; with --template any name")
-      ->required()
-      ->type_name("SYSTEM");
-  add_file(verb, options->campaign);
-  add_directory(verb, options->directory);
-  verb->add_option("--shared", options->shared,
-                   "Folder that this machine and the nodes see in the same place; that of the last time "
-                   "unless given")
-      ->type_name(value_name::folder);
+
+  peclet hand-over slurm flow-curve.json --shared /scratch/me/flow-curve --follow \
+           --option=--partition=short --option=--time=4:00:00
+)");
+  add_option(verb, "system SYSTEM", options->system, "slurm; with --template any name")->required();
+  add_campaign_file(verb, *options);
+  add_option(
+      verb, "--shared FOLDER", options->shared,
+      "Folder that this machine and the nodes see in the same place; that of the last time unless given");
   add_number(verb, "--seeds-per-task", options->seeds_per_task, whole_number(1, 100'000),
              "Seeds that one task runs, one after another")
       ->capture_default_str();
@@ -358,10 +293,9 @@ taken one, the seeds are out until a job of that name has been looked for.
              "Tasks of one job at most; what the batch system allows unless given");
   add_number(verb, "--threads", options->threads, whole_number(1, 4096), "Threads of each engine")
       ->capture_default_str();
-  verb->add_option("--option", options->options, "Word for the submit command (sbatch)")->type_name("WORD");
-  verb->add_option("--template", options->template_folder,
-                   "Folder with job.sh and the commands, for other sites")
-      ->type_name(value_name::folder)
+  add_option(verb, "--option WORD", options->options, "Word for the submit command (sbatch)");
+  add_option(verb, "--template FOLDER", options->template_folder,
+             "Folder with job.sh and the commands, for other sites")
       ->check(CLI::ExistingDirectory);
   verb->add_flag("--ahead", options->ahead, "Hand over the seeds of the look after the next one, too");
   verb->add_flag("--follow", options->follow,
@@ -377,63 +311,60 @@ taken one, the seeds are out until a job of that name has been looked for.
   verb->add_flag("--dry-run", options->dry_run, "Say what would be handed over; submit nothing");
   verb->add_flag("--quiet", options->quiet, "No progress on stderr");
   verb->add_flag("--force", options->force, "Use a network file system for the database all the same");
-  verbs.choose(verb, options, hand_over_campaign);
 }
 
 void add_ingest(VerbSet& verbs) {
-  const auto options = std::make_shared<IngestOptions>();
-  CLI::App* const verb = verbs.add(
-      "ingest", "Take in what a batch system has done with the seeds it was given",
-      "peclet ingest flow-curve.json",
-      page(R"(
+  const auto [verb, options] = verbs.add<IngestOptions>(
+      ingest_campaign, "ingest", "Take in what a batch system has done with the seeds it was given",
+      {0, 1, 2, 5, 6}, R"(
 Takes results, failures and preempted tasks in from the folder that is shared with the nodes, and hands
 nothing over.
 
 Seeds of which nobody knows anything (their folder is gone, the batch system does not answer) stay out, because
 they may be running. --forget gives a bundle of them up by the name that `peclet ingest` prints. The exit code is 1
 while the folder of seeds that are out is not there.
-)",
-           {{"peclet ingest flow-curve.json --cancel", "end the jobs; `peclet run` can have their seeds"},
-            {"peclet ingest flow-curve.json --forget flow-curve-1a2b3c-0001",
-             "its folder is gone, and so are its jobs"}},
-           {0, 1, 2, 5, 6}));
-  add_file(verb, options->campaign);
-  add_directory(verb, options->directory);
+
+  peclet ingest flow-curve.json
+  # end the jobs; `peclet run` can have their seeds
+  peclet ingest flow-curve.json --cancel
+  # its folder is gone, and so are its jobs
+  peclet ingest flow-curve.json --forget flow-curve-1a2b3c-0001
+)");
+  add_campaign_file(verb, *options);
   verb->add_flag("--cancel", options->cancel, "End the jobs and take their seeds back");
-  verb->add_option(
-          "--forget", options->forget,
-          "Queue the seeds of this bundle again though nobody answers for it; results that come all the "
-          "same count once")
-      ->type_name("BUNDLE")
+  add_option(verb, "--forget BUNDLE", options->forget,
+             "Queue the seeds of this bundle again though nobody answers for it; results that come all "
+             "the same count once")
       ->allow_extra_args(false)  // a campaign's file may follow
       ->excludes("--cancel");
   verb->add_flag("--quiet", options->quiet, "No notes on stderr");
   verb->add_flag("--force", options->force, "Use a network file system for the database all the same");
-  verbs.choose(verb, options, ingest_campaign);
 }
 
 void add_task(VerbSet& verbs) {
-  const auto options = std::make_shared<TaskOptions>();
-  CLI::App* const verb = verbs.add("task", "Run one task of a bundle; what job scripts call on a node",
-                                   "peclet task /scratch/me/flow-curve/bundles/NAME/manifest.json 7",
-                                   page(R"(
+  const auto [verb, options] = verbs.add<TaskOptions>(
+      run_task, "task", "Run one task of a bundle; what job scripts call on a node", {0, 1, 2, 6, 75}, R"(
 Runs the seeds of the task one after another, those apart that have ended already. SIGTERM, SIGINT and
 SIGUSR1 make the engine save a checkpoint and leave.
-)",
-                                        {}, {0, 1, 2, 6, 75}));
-  verb->add_option("manifest", options->manifest, "The bundle's manifest.json")
-      ->required()
-      ->type_name(value_name::campaign_file);
+
+  peclet task /scratch/me/flow-curve/bundles/NAME/manifest.json 7
+)");
+  add_option(verb, "manifest FILE.json", options->manifest, "The bundle's manifest.json")->required();
   add_number(verb, "index", options->index, whole_number(0, 1e9), "Number of the task, from 0")->required();
-  verbs.choose(verb, options, run_task);
 }
 
 }  // namespace
 
-void add_batch_verbs(VerbSet& verbs) {
+void add_changing_verbs(VerbSet& verbs) {
+  add_set(verbs);
+  add_cancel(verbs);
+  add_retry(verbs);
   add_hand_over(verbs);
   add_ingest(verbs);
   add_task(verbs);
+  add_backup(verbs);
+  add_restore(verbs);
+  add_doctor(verbs);
 }
 
 }  // namespace peclet::runner

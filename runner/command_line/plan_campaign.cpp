@@ -1,19 +1,16 @@
-#include "runner/command_line/plan_campaign.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 #include <set>
-#include <system_error>
 #include <utility>
 
 #include "contract/errors.h"
 #include "runner/campaign/campaign_file.h"
+#include "runner/command_line/print.h"
+#include "runner/command_line/run.h"
 #include "runner/engines/cost_trial.h"
 #include "runner/engines/scene_check.h"
 #include "runner/reports/plan.h"
@@ -73,12 +70,7 @@ void store_predictions(const Plan& plan, Database& database) {
   booking.commit();
 }
 
-void print(const Plan& plan, bool json) {
-  const std::string text = json ? plan_json(plan).dump(2) + '\n' : plan_text(plan);
-  if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0) {
-    throw std::system_error(errno, std::generic_category(), "standard output");
-  }
-}
+void tell(const Plan& plan, bool json) { print(json ? plan_json(plan).dump(2) + '\n' : plan_text(plan)); }
 
 std::vector<double> work_of(const std::vector<SceneAnswer>& scenes) {
   std::vector<double> work;
@@ -109,11 +101,6 @@ std::optional<CostGuess> guess_cost(const Campaign& campaign, const std::vector<
   return std::nullopt;
 }
 
-bool any_cost(const std::map<std::string, PointHistory>& known) {
-  return std::any_of(known.begin(), known.end(),
-                     [](const auto& point) { return point.second.cost.count > 0; });
-}
-
 Plan plan_of(const Campaign& campaign, const std::vector<SceneAnswer>& scenes,
              const std::map<std::string, PointHistory>& known, const RunOptions& options,
              const std::optional<CostGuess>& guess = {}) {
@@ -140,17 +127,16 @@ int plan_campaign(const PlanOptions& options) {
   if (options.pilot) {
     return run_pilot(options.run, *options.pilot, [&](const ClaimedCampaign& claimed, Database& database) {
       if (!is_of(database, claimed.campaign)) {
-        fmt::print(
-            stderr,
-            "peclet: {0}: the campaign was changed while the pilot ran: its results are stored, but no "
-            "prediction is; `peclet plan {1}` predicts from what is there\n",
-            file.string(), words_for(file, options.run.directory));
+        fmt::print(stderr,
+                   "peclet: {0}: the campaign was changed while the pilot ran: its results are stored, but "
+                   "no prediction is; `peclet plan {1}` predicts from what is there\n",
+                   file.string(), words_for(file, options.run.directory));
         return;
       }
       const Plan plan =
           plan_of(claimed.campaign, claimed.scenes, history(database, claimed.campaign), options.run);
       store_predictions(plan, database);
-      print(plan, options.json);
+      tell(plan, options.json);
     });
   }
   const CampaignDirectory directory = campaign_directory(file, options.run.directory);
@@ -163,10 +149,12 @@ int plan_campaign(const PlanOptions& options) {
   const std::vector<SceneAnswer> scenes = check_scenes(campaign, file, command);
   std::optional<CostGuess> guess;
   std::vector<std::string> broke_off;
-  if (!any_cost(known)) guess = guess_cost(campaign, work_of(scenes), command, broke_off);
+  const bool has_cost =
+      std::any_of(known.begin(), known.end(), [](const auto& point) { return point.second.cost.count > 0; });
+  if (!has_cost) guess = guess_cost(campaign, work_of(scenes), command, broke_off);
   Plan plan = plan_of(campaign, scenes, known, options.run, guess);
   plan.broke_off = std::move(broke_off);
-  print(plan, options.json);
+  tell(plan, options.json);
   return 0;
 }
 

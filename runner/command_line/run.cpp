@@ -9,7 +9,6 @@
 #include <exception>
 #include <memory>
 #include <set>
-#include <string>
 
 #include "contract/errors.h"
 #include "contract/text.h"
@@ -74,10 +73,9 @@ void judge_worker_count(const WorkerCount& size, RunListener& listener) {
   constexpr int tolerable = 4;
   const int cores = usable_cores();
   if (size.workers * std::int64_t{size.threads} <= std::int64_t{tolerable} * cores) return;
-  listener.warn(
-      fmt::format("{} workers of {} threads share {} cores: that is slower than --workers {}, and takes "
-                  "more memory",
-                  size.workers, size.threads, cores, std::max(1, cores / size.threads)));
+  listener.warn(fmt::format(
+      "{} workers of {} threads share {} cores: that is slower than --workers {}, and takes more memory",
+      size.workers, size.threads, cores, std::max(1, cores / size.threads)));
 }
 
 // A run's database and picture, ready to be dispatched from: what an earlier owner left undone is done.
@@ -243,11 +241,10 @@ namespace {
 // With the table at the end, and its totals on one line.
 int run_and_conclude(const RunOptions& options, std::string& summary) {
   return run(options, std::nullopt, [&](const ClaimedCampaign&, OpenedRun& opened, int code) {
-    CampaignStatus status = read_status(opened.database);
+    const CampaignStatus status = read_status(opened.database, getpid());
     summary = fmt::format("{}: {}{}", status.campaign.name, code == ExitCode::stopped ? "stopped; " : "",
                           point_totals(status));
     if (options.jsonl) return;
-    status.owner = getpid();
     std::string text = status_table(status);
     if (options.budget_hours) {
       text += budget_text(opened.ledger.spent_seconds(), seconds_per_hour * *options.budget_hours,
@@ -259,13 +256,11 @@ int run_and_conclude(const RunOptions& options, std::string& summary) {
 }
 
 // A faulty file and another owner are answered at once, to whom has asked.
-bool is_answered_at_once(int code) { return code == ExitCode::usage || code == ExitCode::owned; }
-
 void notify_of(const RunOptions& options, int code, const std::string& summary) {
-  if (options.notify.empty() || is_answered_at_once(code)) return;
+  if (options.notify.empty() || code == ExitCode::usage || code == ExitCode::owned) return;
   const CampaignDirectory directory = campaign_directory(options.campaign, options.directory);
   const std::string failure = notify(options.notify, {options.campaign, directory.root(), code, summary});
-  if (!failure.empty()) std::fputs(fmt::format("peclet: {}\n", failure).c_str(), stderr);
+  if (!failure.empty()) say(fmt::format("peclet: {}\n", failure));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The verb `peclet run`: from a campaign file to converged points.
+// The verbs `peclet run`, from a campaign file to converged points, and `peclet plan`.
 #pragma once
 
 #include <filesystem>
@@ -56,5 +56,18 @@ int run_campaign(const RunOptions& options);
 // with the campaign in hand when all have ended. Returns 0 then, else 6 or 75.
 int run_pilot(const RunOptions& options, int seeds,
               const std::function<void(const ClaimedCampaign&, Database&)>& conclude);
+
+// The verb `peclet plan`: the pilot is run, the plan made of what the database has, and told.
+struct PlanOptions {
+  RunOptions run;            // of the pilot; its workers are those that the campaign is planned for
+  std::optional<int> pilot;  // seeds of each point to run first; none: nothing is run and nothing written
+  bool json = false;
+};
+
+// Asks the engine how long the realisations are, and the database, if there is one, what they cost; where it
+// does not know, the engine tries a realisation of the point with the median work for two seconds. With a
+// pilot runs it first and stores its predictions. Prints the plan; returns 0, or as run_pilot(). Throws as
+// run_campaign().
+int plan_campaign(const PlanOptions& options);
 
 }  // namespace peclet::runner

@@ -8,7 +8,6 @@
 #include <map>
 #include <sstream>
 #include <system_error>
-#include <utility>
 
 #include "contract/errors.h"
 
@@ -33,18 +32,6 @@ std::string wrapped(const std::string& text) {
 
 }  // namespace
 
-VerbPage page(const std::string& prose, std::vector<VerbExample> examples, std::vector<int> exit_codes) {
-  VerbPage made{{}, std::move(examples), std::move(exit_codes)};
-  std::istringstream lines(prose);
-  std::string paragraph;
-  for (std::string line; std::getline(lines, line);) {
-    if (line.empty() && !paragraph.empty()) made.paragraphs.push_back(std::exchange(paragraph, ""));
-    if (!line.empty()) paragraph += (paragraph.empty() ? "" : " ") + line;
-  }
-  if (!paragraph.empty()) made.paragraphs.push_back(paragraph);
-  return made;
-}
-
 std::string exit_code_lines(const std::vector<int>& codes) {
   static const std::map<int, std::string> meanings{
       {ExitCode::done, "done; of a run: every point converged, or has all its seeds"},
@@ -65,20 +52,25 @@ std::string exit_code_lines(const std::vector<int>& codes) {
   return text;
 }
 
-std::string help_footer(const VerbPage& page, const std::string& example) {
-  std::string text;
-  for (const std::string& paragraph : page.paragraphs) text += wrapped(paragraph) + '\n';
-  text += exit_code_lines(page.exit_codes) + '\n';
-  text += page.examples.empty() ? "Example:\n" : "Examples:\n";
-  text += "  " + example + '\n';
-  for (const VerbExample& more : page.examples) {
-    text += (more.purpose.empty() ? "" : "  # " + more.purpose + '\n') + "  " + more.command + '\n';
-  }
-  text.pop_back();
-  return text;
-}
-
 namespace {
+
+// What follows the options in --help.
+std::string help_footer(const std::string& page, const std::vector<int>& exit_codes) {
+  std::istringstream lines(page);
+  std::string text, paragraph, examples;
+  int commands = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("  ")) {
+      examples += '\n' + line;
+      commands += line[2] != ' ' && line[2] != '#' ? 1 : 0;
+    } else if (line.empty() && !paragraph.empty()) {
+      text += wrapped(std::exchange(paragraph, "")) + '\n';
+    } else {
+      paragraph += line + ' ';
+    }
+  }
+  return text + exit_code_lines(exit_codes) + (commands > 1 ? "\nExamples:" : "\nExample:") + examples;
+}
 
 // The word spelt anew for the parser, which would take 010 for 8 and 1e3 for no integer. What is at most 1
 // may be given in per cent. Throws InputError at the option's name.
@@ -109,41 +101,41 @@ std::string named_file(const std::string& word) {
 
 }  // namespace
 
-CLI::App* VerbSet::add(const char* name, const char* description, const char* example, const VerbPage& page) {
+CLI::App* VerbSet::add(const char* name, const char* description, const std::vector<int>& exit_codes,
+                       const char* page) {
   CLI::App* const verb = app_.add_subcommand(name, description);
-  verb->footer(help_footer(page, example));
+  verb->footer(help_footer(page, exit_codes));
   return verb;
 }
 
-void add_file(CLI::App* verb, std::filesystem::path& path) {
-  verb->add_option("campaign", path, "Campaign file (JSON)")
-      ->required()
-      ->check(CLI::Validator(named_file, ""))
-      ->type_name(value_name::campaign_file);
-}
-
-void add_file_or_folder(CLI::App* verb, std::filesystem::path& path) {
-  verb->add_option("campaign", path, "Campaign file, or its .peclet folder")
-      ->required()
-      ->check(CLI::Validator(named_file, ""))
-      ->type_name(value_name::campaign);
+void add_file(CLI::App* verb, std::filesystem::path& path, const char* shown, const char* meaning) {
+  add_option(verb, shown, path, meaning)->required()->check(CLI::Validator(named_file, ""));
 }
 
 void add_directory(CLI::App* verb, std::filesystem::path& path) {
-  verb->add_option("--directory", path,
-                   "Folder of the campaign's database and checkpoints; NAME.peclet beside "
-                   "NAME.json unless given")
-      ->type_name(value_name::folder);
+  add_option(verb, "--directory FOLDER", path,
+             "Folder of the campaign's database and checkpoints; NAME.peclet beside NAME.json unless given");
+}
+
+CLI::Option* add_output(CLI::App* verb, std::filesystem::path& path) {
+  return add_option(verb, "--output FILE", path,
+                    "File to write, whole or not at all; standard output unless given");
+}
+
+CLI::Option* add_json(CLI::App* verb, bool& json) { return verb->add_flag("--json", json, "For programs"); }
+
+void add_quiet(CLI::App* verb, bool& quiet) {
+  verb->add_flag("--quiet", quiet, "Do not say on stderr where it was written");
 }
 
 void add_accept_engine(CLI::App* verb, std::string& name) {
-  verb->add_option("--accept-engine", name,
-                   "Version, or 6 or more digits of the hash, of the engine that is there now: results of "
-                   "another one at open points are kept apart");
+  add_option(verb, "--accept-engine", name,
+             "Version, or 6 or more digits of the hash, of the engine that is there now: results of "
+             "another one at open points are kept apart");
 }
 
 void add_seconds(CLI::App* verb, const char* name, double& seconds, const char* meaning) {
-  add_number(verb, name, seconds, number_above(0), meaning)->type_name("SECONDS")->capture_default_str();
+  add_number(verb, std::string(name) + " SECONDS", seconds, number_above(0), meaning)->capture_default_str();
 }
 
 Key whole_number(double minimum, double maximum) {

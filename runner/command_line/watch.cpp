@@ -21,7 +21,6 @@
 #include "runner/owner/open_campaign.h"
 #include "runner/page/live_campaign.h"
 #include "runner/page/loopback_server.h"
-#include "runner/reports/curve.h"
 #include "runner/reports/status.h"
 #include "runner/store/database.h"
 #include "runner/store/locks.h"
@@ -66,23 +65,6 @@ struct Sight {
   std::string curve{};  // where there is room for it
 };
 
-// A reader of its own each time: one that stayed open would hold back the owner's write-ahead log.
-Sight look(const WatchOptions& options, std::size_t width) {
-  OpenCampaign open = open_campaign(options.campaign, options.directory);
-  CampaignStatus status = read_status(open.database);
-  status.owner = current_owner(open.directory);
-  return {status_table(status, width) + workers_text(status, width), standing(status),
-          curve_text(status, width)};
-}
-
-// Throws InputError for a campaign with a fault, because `run` would refuse it.
-Sight look_for_beginning(const WatchOptions& options, std::size_t width) {
-  const std::string text = fmt::format("{}: nothing has been run yet; waiting for `peclet run {}`\n",
-                                       read_new_campaign(options.campaign, options.directory).name,
-                                       words_for(options.campaign, options.directory));
-  return {folded(text, width), ExitCode::unfinished};
-}
-
 bool is_continuation(char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U; }
 
 std::string fitted_line(std::string_view line, int columns) {
@@ -99,20 +81,28 @@ std::string fitted_line(std::string_view line, int columns) {
 
 std::vector<std::string_view> lines_of(std::string_view text) {
   std::vector<std::string_view> lines;
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    lines.push_back(text.substr(0, end));
-    text.remove_prefix(std::min(end + 1, text.size()));
-  }
+  while (!text.empty()) lines.push_back(take_line(text));
   return lines;
 }
 
+// Opens a reader of its own each time: one that stayed open would hold back the owner's write-ahead log.
+// Throws InputError for a campaign with a fault, because `run` would refuse it.
 Sight sight_of(const WatchOptions& options, std::size_t width) {
-  if (awaits_its_first_run(options.campaign, options.directory)) return look_for_beginning(options, width);
+  const auto waits = [&](const std::string& text) -> Sight {
+    return {folded(text + '\n', width), ExitCode::unfinished};
+  };
+  if (awaits_its_first_run(options.campaign, options.directory)) {
+    return waits(fmt::format("{}: nothing has been run yet; waiting for `peclet run {}`",
+                             read_new_campaign(options.campaign, options.directory).name,
+                             words_for(options.campaign, options.directory)));
+  }
   try {
-    return look(options, width);
+    OpenCampaign open = open_campaign(options.campaign, options.directory);
+    const CampaignStatus status = read_status(open.database, current_owner(open.directory));
+    return {status_table(status, width) + workers_text(status, width), standing(status),
+            curve_text(status, width)};
   } catch (const BeingSetUp& error) {
-    return {folded(std::string(error.what()) + '\n', width), ExitCode::unfinished};
+    return waits(error.what());
   }
 }
 
@@ -137,18 +127,16 @@ void show(const std::string& text, const Size& size) {
 }  // namespace
 
 std::string fitted(std::string_view text, int rows, int columns) {
-  const std::vector<std::string_view> lines = lines_of(text);
+  std::vector<std::string_view> lines = lines_of(text);
   const auto most = static_cast<std::size_t>(std::max(rows, 1));
-  const bool cut = lines.size() > most;
+  std::string more;
+  if (lines.size() > most) {
+    more = fmt::format("and {} more lines: `peclet status` has them", lines.size() - most + 1);
+    lines.resize(most - 1);
+    lines.push_back(more);
+  }
   std::string shown;
-  for (std::size_t i = 0; i < (cut ? most - 1 : lines.size()); ++i) {
-    shown += fitted_line(lines[i], std::max(columns, 1)) + '\n';
-  }
-  if (cut) {
-    shown += fitted_line(fmt::format("and {} more lines: `peclet status` has them", lines.size() - most + 1),
-                         std::max(columns, 1)) +
-             '\n';
-  }
+  for (const std::string_view line : lines) shown += fitted_line(line, std::max(columns, 1)) + '\n';
   return shown;
 }
 

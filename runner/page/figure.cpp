@@ -3,57 +3,21 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
+#include <cstdlib>
+#include <system_error>
 #include <vector>
 
+#include "contract/durable_file.h"
 #include "contract/errors.h"
 #include "contract/sha256.h"
-#include "contract/text.h"
-#include "runner/page/page_data.h"
+#include "runner/engines/command.h"
 #include "runner/page/page_html.h"
 #include "runner/page/swept.h"
-#include "runner/reports/status.h"
-#include "runner/store/vocabulary.h"
 
 namespace peclet::runner {
 namespace {
 
 constexpr std::string_view seal = "# sha256 of all above: ";
-
-std::string bare(const std::string& path) { return path.starts_with('/') ? path.substr(1) : path; }
-
-bool is_called(const Drawable& one, const std::string& name) {
-  return one.path == name || (!one.element.empty() && one.name + '/' + one.element == name);
-}
-
-// Names of all quantities; of a list, which may be long, its name and its first element.
-std::string names_of(const std::vector<Drawable>& drawables) {
-  std::vector<std::string> names;
-  for (const Drawable& one : drawables) {
-    if (one.element.empty()) {
-      names.push_back(one.path);
-    } else if (one.path == one.name + "/0" || one.path == one.name + "/0/0") {
-      names.push_back(one.name + '/' + one.element + " ...");
-    }
-  }
-  return fmt::format("{}", fmt::join(names, ", "));
-}
-
-std::size_t chosen_column(const std::vector<Drawable>& drawables, const std::string& name) {
-  if (drawables.empty()) throw InputError("", "--quantity", name, "nothing has been measured yet");
-  for (std::size_t column = 0; column < drawables.size(); ++column) {
-    if (is_called(drawables[column], name)) return column;
-  }
-  std::vector<std::string> names;
-  names.reserve(drawables.size());
-  for (const Drawable& one : drawables) {
-    names.push_back(one.element.empty() ? one.path : one.name + '/' + one.element);
-  }
-  const std::string meant = suggestion(name, names);
-  throw InputError("", "--quantity", name,
-                   meant.empty() ? "must be a number that is measured: " + names_of(drawables)
-                                 : "must be a number that is measured" + meant);
-}
 
 void require_tolerance(const Target& target, const std::string& path) {
   for (const Criterion& criterion : target.criteria()) {
@@ -116,34 +80,26 @@ void require_numbers(const Json& points, const Swept& axis, const FigureChoice& 
 }  // namespace
 
 Json figure_data(Database& database, const FigureChoice& choice) {
-  const CampaignStatus status = read_status(database);
-  KnownPoints known;
-  const PagePoints page = page_points(database, status, known);
-  const Target& target = status.campaign.target.target;
+  const MeasuredSweep sweep = read_sweep(database);
+  const CampaignRecord& campaign = sweep.status.campaign;
+  const Target& target = campaign.target.target;
   const std::string wanted = bare(choice.quantity.empty() ? target.observable : choice.quantity);
-  const std::size_t column = chosen_column(page.drawables, wanted);
-  const Drawable& quantity = page.drawables[column];
+  const std::size_t column = chosen_column(sweep.page.drawables, wanted);
+  const Drawable& quantity = sweep.page.drawables[column];
   if (choice.tolerance) require_tolerance(target, quantity.path);
-  const Json parameters = page_parameters(status, kept_vocabulary(database));
-  const std::vector<Swept> swept = swept_parameters(parameters, page.points);
-  const Swept& axis = chosen_axis(swept, choice.over, "--over");
+  const Swept& axis = chosen_axis(sweep.swept, choice.over);
   Json points = Json::array();
-  for (const Json& point : page.points) {
+  for (const Json& point : sweep.page.points) {
     points.push_back(point_json(point, point.at("estimates")[column], quantity.path));
   }
   require_numbers(points, axis, choice, quantity.path);
-  return {{"campaign", status.campaign.name},
-          {"quantity",
-           {{"path", quantity.path},
-            {"name", quantity.name},
-            {"element", quantity.element},
-            {"symbol", quantity.symbol},
-            {"unit", quantity.unit}}},
+  return {{"campaign", campaign.name},
+          {"quantity", to_json(quantity)},
           {"over", axis.pointer},
           {"confidence", target.confidence},
           {"log", choice.scale ? Json(*choice.scale) : Json(nullptr)},
           {"tolerance", choice.tolerance},
-          {"parameters", parameters},
+          {"parameters", sweep.parameters},
           {"points", points}};
 }
 
@@ -168,6 +124,71 @@ bool is_own_script(std::string_view text) {
   const std::size_t last = text.rfind(seal);
   if (last == std::string_view::npos) return false;
   return text.substr(last + seal.size()) == sha256(text.substr(0, last)) + '\n';
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string name = (fs::temp_directory_path() / "peclet-plot-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) throw std::system_error(errno, std::generic_category(), name);
+    path_ = name;
+  }
+  ~ScratchFolder() {
+    std::error_code ignored;  // what is left of it lies where temporary files are
+    fs::remove_all(path_, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+}  // namespace
+
+PictureForm picture_form(const fs::path& output) {
+  const std::string ending = output.extension().string();
+  if (ending == ".svg") return PictureForm::svg;
+  if (ending == ".png") return PictureForm::png;
+  if (ending == ".pdf") return PictureForm::pdf;
+  if (ending == ".py") return PictureForm::script;
+  throw InputError("", "--output", output.string(), "must end in .svg, .png, .pdf or .py");
+}
+
+fs::path script_beside(const fs::path& output) {
+  fs::path script = output;
+  script.replace_extension(".py");
+  std::error_code unknown;  // what cannot be looked at cannot be written either, and is said then
+  if (fs::is_regular_file(script, unknown) && !is_own_script(read_file(script))) {
+    throw InputError(script.string(), "", "",
+                     "is there already, and is not as peclet plot wrote it: the script of the figure would "
+                     "replace it; move it away, or choose another name for --output");
+  }
+  return script;
+}
+
+Picture drawn(const std::string& script, PictureForm form) {
+  constexpr std::chrono::seconds patience(120);  // the first use of matplotlib looks through all fonts
+  const ScratchFolder folder;
+  const fs::path source = folder.path() / "figure.py",
+                 output = folder.path() / (form == PictureForm::png   ? "figure.png"
+                                           : form == PictureForm::pdf ? "figure.pdf"
+                                                                      : "figure.svg");
+  write_durably(source, script);
+  try {
+    const CommandAnswer answer = run_command({"python3", source.string(), output.string()}, patience);
+    // The script itself says what cures a lack of matplotlib.
+    if (!answer.succeeded()) throw NotDrawn("python3 draws no picture: " + answer.complaint());
+    return {read_file(output), answer.output};
+  } catch (const std::system_error& fault) {
+    throw NotDrawn(
+        fmt::format("pictures are drawn by the python3 in PATH, which cannot be run ({})", fault.what()));
+  }
 }
 
 }  // namespace peclet::runner

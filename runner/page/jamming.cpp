@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <stdexcept>
@@ -13,83 +12,55 @@
 #include "contract/durable_file.h"
 #include "contract/errors.h"
 #include "contract/named_files.h"
-#include "contract/text.h"
 #include "runner/campaign/campaign.h"
 #include "runner/campaign/campaign_file.h"
 #include "runner/campaign/quoting.h"
 #include "runner/engines/command.h"
 #include "runner/owner/open_campaign.h"
-#include "runner/page/page_data.h"
 #include "runner/page/swept.h"
-#include "runner/reports/status.h"
 #include "runner/statistics/cohorts.h"
 #include "runner/store/own_files.h"
-#include "runner/store/vocabulary.h"
 
 namespace peclet::runner {
 namespace {
 
-constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
-
-bool is_soft(const JammingPoint& point, double softest) {
+bool is_soft(const Json& point, double softest) {
   constexpr double largest_over_mean = 10;
-  if (point.overlap) return *point.overlap > softest;
-  return point.largest_overlap && *point.largest_overlap > largest_over_mean * softest;
+  if (point["overlap"].is_number()) return point["overlap"] > softest;
+  return point["largest_overlap"].is_number() && point["largest_overlap"] > largest_over_mean * softest;
 }
 
-// Sets the state, and what the seeds of the look, or all that have ended, say.
-void judge(JammingPoint& made, Database& database, const PointSummary& point, double softest) {
+std::string state_of(const PointSummary& point, const Json& known, double softest) {
+  const Endings& endings = point.endings;
+  if (point.point.suspect) return "suspect";
+  if (endings.ended == 0) return "open";
+  if (endings.has_jammed()) return "jammed";
+  if (2 * endings.lost >= endings.ended) return "lost";
+  if (endings.has_partly_jammed()) return "partly jammed";
+  return is_soft(known, softest) ? "soft" : "flowing";
+}
+
+// Sets what the seeds of the look, or all that have ended, say.
+void add_seeds(Json& made, Database& database, const PointSummary& point) {
   const int end = point.looks.empty() ? std::numeric_limits<int>::max() : point.looks.back().seeds;
   RunningEstimate overlaps;
+  double cpu_seconds = 0;
   for (const RealisationRecord& seed : database.realisations(point.point.id)) {
-    made.cpu_seconds += seed.cpu_seconds.value_or(0);
+    cpu_seconds += seed.cpu_seconds.value_or(0);
     const bool counts = seed.seed < end && seed.state == SeedState::done;
     if (counts && seed.largest_overlap) overlaps.add(*seed.largest_overlap);
   }
-  if (overlaps.estimate().count > 0) made.largest_overlap = overlaps.estimate().mean;
-  const Endings& endings = point.endings;
-  made.ended = endings.ended;
-  made.jammed = endings.jammed;
-  if (point.point.suspect) {
-    made.state = "suspect";
-  } else if (made.ended == 0) {
-    made.state = "open";
-  } else if (endings.has_jammed()) {
-    made.state = "jammed";
-  } else if (2 * endings.lost >= endings.ended) {
-    made.state = "lost";
-  } else if (endings.has_partly_jammed()) {
-    made.state = "partly jammed";
-  } else {
-    made.state = is_soft(made, softest) ? "soft" : "flowing";
-  }
+  const bool is_known = overlaps.estimate().count > 0;
+  made["largest_overlap"] = is_known ? Json(overlaps.estimate().mean) : Json(nullptr);
+  made["seeds"] = point.endings.ended;
+  made["jammed"] = point.endings.jammed;
+  made["cpu_seconds"] = cpu_seconds;
 }
 
-std::optional<std::size_t> place_of(const std::vector<Drawable>& drawables, const std::string& path) {
-  for (std::size_t column = 0; column < drawables.size(); ++column) {
-    if (drawables[column].path == path) return column;
-  }
-  return std::nullopt;
-}
-
-// The place of the quantity among what has been measured; none where nothing has.
-std::optional<std::size_t> column_of(const std::vector<Drawable>& drawables, const std::string& quantity) {
-  if (drawables.empty()) return std::nullopt;
-  const std::string path = quantity.starts_with('/') ? quantity.substr(1) : quantity;
-  if (const std::optional<std::size_t> place = place_of(drawables, path)) return place;
-  std::vector<std::string> names;
-  names.reserve(drawables.size());
-  for (const Drawable& one : drawables) names.push_back(one.path);
-  throw InputError("", "--quantity", quantity, "must be a number that is measured" + suggestion(path, names));
-}
-
-Estimate estimate_of(const Json& point, const std::optional<std::size_t>& column) {
+// [mean, standard error, half-width, count] of the point, as of KnownPoint.
+Json numbers_of(const Json& point, const std::optional<std::size_t>& column) {
   const Json numbers = column ? point.at("estimates").at(*column) : Json();
-  if (numbers.is_null()) return {0, not_known, not_known};
-  const auto number = [&](std::size_t place) {
-    return numbers[place].is_number() ? numbers[place].get<double>() : not_known;
-  };
-  return {numbers[3].get<int>(), number(0), number(1)};
+  return numbers.is_null() ? Json{nullptr, nullptr, nullptr, 0} : numbers;
 }
 
 void require_fractions(const Swept& axis, const std::string& name) {
@@ -99,52 +70,57 @@ void require_fractions(const Swept& axis, const std::string& name) {
   throw InputError("", "--over", name, "must be a swept volume fraction: numbers > 0 and < 1");
 }
 
-// Sets "μ = 0.5, Pe = 10", by which curves are told apart, and the same by pointer. A key without a symbol
-// has the last step of its pointer.
-void name_curve(JammingCurve& curve, const std::vector<const Swept*>& by, const Json& point,
-                std::size_t place) {
-  curve.settings = Json::object();
+// A curve without points. Its name "μ = 0.5, Pe = 10" tells it apart; a key without a symbol has the last
+// step of its pointer.
+Json named_curve(const std::vector<const Swept*>& by, const Json& point, std::size_t place) {
+  std::vector<std::string> names;
+  Json settings = Json::object();
   for (const Swept* const one : by) {
-    curve.name += fmt::format("{}{} = {}", curve.name.empty() ? "" : ", ", one->name, one->words[place]);
-    curve.settings[one->pointer] = point.at("settings").value(one->pointer, Json());
+    names.push_back(one->name + " = " + one->words[place]);
+    settings[one->pointer] = point.at("settings").value(one->pointer, Json());
   }
+  return {{"name", fmt::format("{}", fmt::join(names, ", "))},
+          {"settings", std::move(settings)},
+          {"points", Json::array()}};
 }
 
 }  // namespace
 
-JammingCurves read_curves(Database& database, const CurveChoice& choice) {
-  const CampaignStatus status = read_status(database);
-  KnownPoints known;
-  const PagePoints page = page_points(database, status, known);
-  const std::vector<Swept> swept =
-      swept_parameters(page_parameters(status, kept_vocabulary(database)), page.points);
-  const Swept& axis = chosen_axis(swept, choice.over, "--over");
+Json read_curves(Database& database, const CurveChoice& choice) {
+  const MeasuredSweep sweep = read_sweep(database);
+  const Swept& axis = chosen_axis(sweep.swept, choice.over);
   require_fractions(axis, choice.over);
-  const std::vector<const Swept*> by = curves_by(swept, axis);
-  const std::optional<std::size_t> column = column_of(page.drawables, choice.quantity);
-  const std::optional<std::size_t> overlaps = place_of(page.drawables, "mean_overlap");
-  JammingCurves made{status.campaign.name, choice.quantity, axis.pointer, {}};
-  std::map<std::string, std::size_t> places;  // of curves, by their settings
-  for (std::size_t i = 0; i < page.points.size(); ++i) {
-    JammingCurve named;
-    name_curve(named, by, page.points[i], i);
-    const auto [place, is_new] = places.emplace(named.settings.dump(), made.curves.size());
-    if (is_new) made.curves.push_back(std::move(named));
-    JammingPoint point;
-    point.label = status.points[i].point.label;
-    point.fraction = axis.numbers[i];
-    point.estimate = estimate_of(page.points[i], column);
-    if (const Estimate overlap = estimate_of(page.points[i], overlaps); overlap.count > 0) {
-      point.overlap = overlap.mean;
-    }
-    judge(point, database, status.points[i], choice.softest);
-    made.curves[place->second].points.push_back(std::move(point));
+  const std::vector<const Swept*> by = curves_by(sweep.swept, axis);
+  const std::vector<Drawable>& drawables = sweep.page.drawables;
+  std::optional<std::size_t> column, overlaps;
+  if (!drawables.empty()) column = chosen_column(drawables, bare(choice.quantity));
+  for (std::size_t place = 0; place < drawables.size(); ++place) {
+    if (drawables[place].path == "mean_overlap") overlaps = place;
   }
-  for (JammingCurve& curve : made.curves) {
-    std::stable_sort(curve.points.begin(), curve.points.end(),
-                     [](const JammingPoint& a, const JammingPoint& b) { return a.fraction < b.fraction; });
+  Json curves = Json::array();
+  std::map<Json, std::size_t> places;  // of curves, by their settings
+  for (std::size_t i = 0; i < sweep.status.points.size(); ++i) {
+    const PointSummary& summary = sweep.status.points[i];
+    const Json& known = sweep.page.points[i];
+    Json named = named_curve(by, known, i);
+    const auto [place, is_new] = places.emplace(named["settings"], curves.size());
+    if (is_new) curves.push_back(std::move(named));
+    const Json viscosity = numbers_of(known, column);
+    Json point = {{"label", summary.point.label}, {"fraction", axis.numbers[i]},
+                  {"mean", viscosity[0]},         {"standard_error", viscosity[1]},
+                  {"count", viscosity[3]},        {"overlap", numbers_of(known, overlaps)[0]}};
+    add_seeds(point, database, summary);
+    point["state"] = state_of(summary, point, choice.softest);
+    curves[place->second]["points"].push_back(std::move(point));
   }
-  return made;
+  for (Json& curve : curves) {
+    std::stable_sort(curve["points"].begin(), curve["points"].end(),
+                     [](const Json& a, const Json& b) { return a["fraction"] < b["fraction"]; });
+  }
+  return {{"campaign", sweep.status.campaign.name},
+          {"quantity", choice.quantity},
+          {"over", axis.pointer},
+          {"curves", std::move(curves)}};
 }
 
 namespace {
@@ -185,44 +161,20 @@ Source source_of(const JammingOptions& options, const CampaignRecord& campaign) 
 
 Json json_or_null(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
 
-Json curves_json(const JammingCurves& campaign) {
-  Json curves = Json::array();
-  for (const JammingCurve& curve : campaign.curves) {
-    Json points = Json::array();
-    for (const JammingPoint& point : curve.points) {
-      points.push_back({{"label", point.label},
-                        {"fraction", point.fraction},
-                        {"state", point.state},
-                        {"mean", number_json(point.estimate.mean)},
-                        {"standard_error", number_json(point.estimate.standard_error)},
-                        {"count", point.estimate.count},
-                        {"seeds", point.ended},
-                        {"jammed", point.jammed},
-                        {"overlap", json_or_null(point.overlap)},
-                        {"largest_overlap", json_or_null(point.largest_overlap)},
-                        {"cpu_seconds", point.cpu_seconds}});
-    }
-    curves.push_back({{"name", curve.name}, {"settings", curve.settings}, {"points", points}});
-  }
+// What the script reads: the curves and the options; `sweep` is that of the source, if points are to be
+// proposed.
+Json document_of(const JammingOptions& options, Json curves, const Json& sweep) {
+  curves.update({{"softest", options.curves.softest},
+                 {"by", options.by},
+                 {"exponent", json_or_null(options.exponent)},
+                 {"common_exponent", options.common_exponent},
+                 {"unit_prefactor", options.unit_prefactor},
+                 {"above", options.above},
+                 {"propose", options.propose},
+                 {"budget", json_or_null(options.budget)},
+                 {"json", options.json},
+                 {"sweep", sweep}});
   return curves;
-}
-
-// What the script reads; `sweep` is that of the source, if points are to be proposed.
-Json document_of(const JammingOptions& options, const JammingCurves& campaign, const Json& sweep) {
-  return {{"campaign", campaign.campaign},
-          {"quantity", campaign.quantity},
-          {"over", campaign.over},
-          {"softest", options.curves.softest},
-          {"by", options.by},
-          {"exponent", json_or_null(options.exponent)},
-          {"common_exponent", options.common_exponent},
-          {"unit_prefactor", options.unit_prefactor},
-          {"above", options.above},
-          {"propose", options.propose},
-          {"budget", json_or_null(options.budget)},
-          {"json", options.json},
-          {"sweep", sweep},
-          {"curves", curves_json(campaign)}};
 }
 
 // The script of the package that was installed with this program or is in its source; else the one of a
@@ -249,17 +201,14 @@ Json fitted(const Json& document) {
                   fmt::join(command, " "), said.complaint()));
 }
 
-// Throws InputError for a campaign with these points that none may be.
-void write_campaign(const fs::path& written, const std::string& source, const Json& sweep) {
+// Returns what is said of the file. Throws InputError for a campaign with these points that none may be.
+std::string write_campaign(const fs::path& written, const std::string& source, const Json& sweep,
+                           const CampaignDirectory& directory) {
   const std::string text = with_value(source, {"sweep"}, sweep);
   parse_campaign(parse_json_input(text, written.string()), written.string());
   write_durably(written, text);
-}
-
-std::string written_message(const JammingOptions& options, const CampaignDirectory& directory) {
   return fmt::format("wrote {0}; `peclet run {1} --directory {2}` adds its points to what there is\n",
-                     options.write.string(), shell_word(options.write.string()),
-                     shell_word(directory.root().string()));
+                     written.string(), shell_word(written.string()), shell_word(directory.root().string()));
 }
 
 }  // namespace
@@ -269,7 +218,7 @@ JammingAnswer find_jamming(const JammingOptions& options) {
   check_new_file(options.write);
   OpenCampaign open = open_campaign(options.campaign, options.directory);
   const CampaignRecord campaign = open.database.campaign();
-  const JammingCurves curves = read_curves(open.database, options.curves);
+  const Json curves = read_curves(open.database, options.curves);
   Source source;
   Json sweep = Json::array();
   if (options.propose) {
@@ -287,8 +236,7 @@ JammingAnswer find_jamming(const JammingOptions& options) {
     answer.message = fmt::format("note: {}\n", note);
   }
   if (!options.write.empty() && found.at("sweep").is_array()) {
-    write_campaign(options.write, source.text, found["sweep"]);
-    answer.message += written_message(options, open.directory);
+    answer.message += write_campaign(options.write, source.text, found["sweep"], open.directory);
   }
   return answer;
 }

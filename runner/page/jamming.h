@@ -18,36 +18,11 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "contract/json.h"
-#include "runner/statistics/statistics.h"
 #include "runner/store/database.h"
 
 namespace peclet::runner {
-
-struct JammingPoint {
-  std::string label;
-  double fraction = 0;
-  Estimate estimate{};  // of the viscosity, the one that decides; NaN without
-  std::string state;
-  int ended = 0, jammed = 0;  // seeds
-  // In radii of the smaller sphere, means over the seeds: of contacts, and the largest.
-  std::optional<double> overlap{}, largest_overlap{};
-  double cpu_seconds = 0;  // of all its seeds
-};
-
-struct JammingCurve {
-  std::string name;                  // "μ = 0.5", or "friction = 0.5"; "" of the only one
-  Json settings;                     // of what is swept besides, by pointer
-  std::vector<JammingPoint> points;  // in ascending order
-};
-
-struct JammingCurves {
-  std::string campaign, quantity;
-  std::string over;  // pointer of the volume fraction
-  std::vector<JammingCurve> curves;
-};
 
 struct CurveChoice {
   std::string over = "volume_fraction";         // as of chosen_axis()
@@ -55,9 +30,16 @@ struct CurveChoice {
   double softest = 0.001;                       // overlap
 };
 
+// Returns {"campaign", "quantity", "over": pointer of the volume fraction, "curves"}. A curve has a "name",
+// as "μ = 0.5" or "friction = 0.5" ("" of the only one), "settings" of what is swept besides, by pointer, and
+// "points" in ascending order of "fraction": their "label" and "state"; "mean", "standard_error" and "count"
+// of the viscosity, of the estimate that decides; "seeds" that have ended and that have "jammed"; "overlap"
+// and "largest_overlap", in radii of the smaller sphere, means over the seeds: of contacts, and the largest;
+// "cpu_seconds" of all seeds. Numbers that do not exist are null.
+//
 // Throws InputError for a parameter that is not swept or is no volume fraction (0 < phi < 1), or a quantity
 // that is not measured; IntegrityError.
-JammingCurves read_curves(Database& database, const CurveChoice& choice);
+Json read_curves(Database& database, const CurveChoice& choice);
 
 // `peclet jamming`: the jamming point of a campaign's curves, and which volume fractions would tell more.
 //

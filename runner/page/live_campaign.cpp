@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <charconv>
-#include <string>
 #include <utility>
 
 #include "contract/errors.h"
@@ -131,17 +130,18 @@ void LiveCampaign::become(Json document) {
   };
   for (std::size_t place = 0; place < points_.size(); ++place) take(points_[place], std::move(points[place]));
   take(head_, std::move(document));
-  if (!changed) return;
-  revision_ = next;
-  page_.reset();
-  changes_.clear();
+  if (changed) advance_to(next);
 }
 
 void LiveCampaign::tell(const std::string& fault) {
   if (head_.json.value("fault", "") == fault) return;
   head_.json["fault"] = fault;
   head_.text.clear();  // whatever is read next is new
-  ++revision_;
+  advance_to(revision_ + 1);
+}
+
+void LiveCampaign::advance_to(int revision) {
+  revision_ = revision;
   page_.reset();
   changes_.clear();
 }

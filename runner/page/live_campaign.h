@@ -83,6 +83,7 @@ class LiveCampaign {
   void wait_for_beginning(const std::string& set_up = "");
   void become(Json document);
   void tell(const std::string& fault);
+  void advance_to(int revision);
   Json live() const;
 
   std::filesystem::path campaign_, directory_;

@@ -26,7 +26,6 @@
 #include <list>
 #include <optional>
 #include <stdexcept>
-#include <string>
 #include <system_error>
 #include <utility>
 
@@ -204,10 +203,8 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
 
 HttpAnswer refusal(int status) {
   const auto reason = http::obsolete_reason(http::int_to_status(static_cast<unsigned>(status)));
-  HttpAnswer answer;
-  answer.status = status;
-  answer.body = std::make_shared<const std::string>(fmt::format("{} {}\n", status, reason.to_string()));
-  return answer;
+  return {.status = status,
+          .body = std::make_shared<const std::string>(fmt::format("{} {}\n", status, reason.to_string()))};
 }
 
 class LoopbackServer::Listener {

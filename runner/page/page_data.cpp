@@ -5,14 +5,12 @@
 
 #include <algorithm>
 #include <limits>
-#include <map>
+#include <set>
 #include <utility>
 
 #include "contract/sha256.h"
 #include "runner/campaign/quoting.h"
-#include "runner/page/page_points.h"
 #include "runner/reports/export.h"
-#include "runner/store/vocabulary.h"
 
 namespace peclet::runner {
 namespace {
@@ -25,22 +23,10 @@ Json target_json(const TargetRecord& target) {
   return json;
 }
 
-Json quantities_json(const std::vector<Drawable>& drawables) {
-  Json list = Json::array();
-  for (const Drawable& one : drawables) {
-    list.push_back({{"path", one.path},
-                    {"name", one.name},
-                    {"element", one.element},
-                    {"symbol", one.symbol},
-                    {"unit", one.unit}});
-  }
-  return list;
-}
-
 Json warnings_json(const CampaignStatus& status, const KnownPoints& known) {
   Json list = Json::array();
   for (const PointSummary& point : status.points) {
-    for (const Json& warning : known.at(point.point.id).first.warnings) {
+    for (const Json& warning : known.at(point.point.id).warnings) {
       list.push_back({{"point", point.point.label},
                       {"code", warning.value("code", "")},
                       {"message", warning.value("message", "")}});
@@ -64,102 +50,33 @@ void add_details(Database& database, const CampaignStatus& status, Json& points)
   }
 }
 
-}  // namespace
-
-Json PageReader::read(Database& database, std::optional<std::int64_t> owner, bool whole) {
-  status_ = read_status(database);
-  status_.owner = owner;
-  const CampaignStatus& status = status_;
-  const Vocabulary words = kept_vocabulary(database);
-  PagePoints points = page_points(database, status, known_);
-  if (whole) add_details(database, status, points.points);
-  const std::string results = whole ? sha256(export_csv(database, true)) : "";
-  return {{"schema_version", 1},
-          {"campaign", status.campaign.name},
-          {"target", target_json(status.campaign.target)},
-          {"progress", page_progress(status)},
-          {"parameters", page_parameters(status, words)},
-          {"quantities", quantities_json(points.drawables)},
-          {"derived", words.derived()},
-          {"points", std::move(points.points)},
-          {"work", page_work(database, status)},
-          {"meanings", page_meanings(status)},
-          {"warnings", warnings_json(status, known_)},
-          {"scene", page_scene(status, words)},
-          {"provenance", page_provenance(database, status, results)},
-          {"commands", page_commands(status, results)},
-          {"document", status.campaign.document}};
-}
-
-const PointSummary* PageReader::find(const std::string& hash) const {
-  const auto found = std::find_if(status_.points.begin(), status_.points.end(),
-                                  [&](const PointSummary& point) { return point.point.hash == hash; });
-  return found == status_.points.end() ? nullptr : &*found;
-}
-
-std::optional<std::string> PageReader::key(const std::string& hash) const {
-  const PointSummary* const point = find(hash);
-  return point == nullptr ? std::nullopt : std::optional(known_.at(point->point.id).key);
-}
-
-Json PageReader::details(Database& database, const std::string& hash) const {
-  return details_of(database, *find(hash), status_.campaign.target, most_detailed_seeds);
-}
-
-Json page_data(Database& database, std::optional<std::int64_t> owner) {
-  return PageReader().read(database, owner, true);
-}
-
 // What the campaign has cost and is expected to cost, and who works on it.
-Json page_progress(const CampaignStatus& status) {
-  int decided = 0, ended = 0, lost = 0, surplus = 0, running = 0;
-  std::size_t workers = 0;
-  double cpu_seconds = 0;
-  std::map<std::string, int> standings;
-  for (const PointSummary& point : status.points) {
-    ++standings[standing_word(point)];
-    decided += point.decided ? 1 : 0;
-    ended += point.counts.terminal();
-    lost += point.lost();
-    surplus += point.surplus();
-    running += point.counts.running;
-    workers += point.leases.size();
-    cpu_seconds += point.counts.cpu_seconds;
-  }
-  int handed_over = 0;
-  for (const HandedOver& bundle : status.handed_over) handed_over += bundle.seeds;
+Json progress_json(const CampaignStatus& status) {
+  const CampaignTotals totals = totals_of(status);
   return {{"points", status.points.size()},
-          {"decided", decided},
-          {"standings", standings},
+          {"decided", totals.decided},
+          {"standings", totals.standings},
           {"check", standing(status)},
           {"seeds",
-           {{"ended", ended},
-            {"lost", lost},
-            {"surplus", surplus},
-            {"running", running},
-            {"handed_over", handed_over}}},
-          {"cpu_seconds", cpu_seconds},
+           {{"ended", totals.ended},
+            {"lost", totals.lost},
+            {"surplus", totals.surplus},
+            {"running", totals.running},
+            {"handed_over", totals.handed_over}}},
+          {"cpu_seconds", totals.cpu_seconds},
           {"seconds_to_go", to_json(status.to_go)},
           {"owner", status.owner ? Json(*status.owner) : Json(nullptr)},
-          {"workers", status.owner ? Json(workers) : Json(nullptr)}};
+          {"workers", status.owner ? Json(totals.workers) : Json(nullptr)}};
 }
 
 // Who works on what, and who did last.
 
-namespace {
-
 // However long a campaign is, as many as a chart can show.
 constexpr int most_attempts = 300;
 
-using Places = std::map<std::int64_t, std::size_t>;  // in the list of points, by PointRecord::id
-
-Places places_of(const CampaignStatus& status) {
-  Places places;
+Json attempts_json(Database& database, const CampaignStatus& status) {
+  std::map<std::int64_t, std::size_t> places;  // in the list of points, by PointRecord::id
   for (std::size_t i = 0; i < status.points.size(); ++i) places[status.points[i].point.id] = i;
-  return places;
-}
-
-Json attempts_json(Database& database, const Places& places) {
   Json list = Json::array();
   for (const AttemptSpan& span : database.last_attempts(most_attempts)) {
     const auto place = places.find(span.point);
@@ -192,59 +109,39 @@ Json workers_json(const CampaignStatus& status) {
   return list;
 }
 
-}  // namespace
-
-Json page_work(Database& database, const CampaignStatus& status) {
-  return {{"now", workers_json(status)}, {"attempts", attempts_json(database, places_of(status))}};
-}
-
 // Where the numbers come from, and how to make them again.
 
-namespace {
-
-std::string text_of(const Json& object, const char* key) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_string() ? found->get<std::string>() : "";
-}
-
-// Nothing is said of what is not known.
-class Items {
- public:
-  void add(const std::string& term, const std::string& meaning) {
-    if (meaning.find_first_not_of(' ') != std::string::npos) items_.push_back({term, meaning});
-  }
-  void add_engine(const Json& origin) {
-    std::string commit = text_of(origin, "git_commit");
-    if (!commit.empty() && origin.value("git_dirty", Json()) == true) commit += ", with changes";
-    add("engine", fmt::format("version {}", text_of(origin, "version")));
-    add("commit", commit);
-    add("binary SHA-256", text_of(origin, "binary_sha256"));
-    add("instruction set", text_of(origin, "instruction_set"));
-    add("compiler", text_of(origin, "compiler") + ' ' + text_of(origin, "flags"));
-    add("processor", text_of(origin, "cpu"));
-  }
-  Json json() const { return items_; }
-
- private:
-  Json items_ = Json::array();
-};
-
-}  // namespace
-
-Json page_provenance(Database& database, const CampaignStatus& status, const std::string& results_sha256) {
+// Pairs of a term and what it is. Without the hash of the results nothing is said of it.
+Json provenance_json(Database& database, const CampaignStatus& status, const std::string& results_sha256) {
   const CampaignRecord& campaign = status.campaign;
-  Items items;
-  for (const EngineRecord& engine : database.engines()) items.add_engine(engine.provenance);
-  items.add("machines", fmt::format("{}", fmt::join(database.hosts(), ", ")));
-  items.add("campaign begun", campaign.created_at);
-  items.add("file last taken up", campaign.updated_at);
-  items.add("last seed ended", database.last_end());
-  items.add("campaign SHA-256", sha256(canonical_json(campaign.document)));
-  if (!results_sha256.empty()) items.add("results SHA-256", results_sha256 + " (of the canonical table)");
-  return items.json();
+  Json items = Json::array();
+  // Nothing is said of what is not known.
+  const auto add = [&](const std::string& term, const std::string& meaning) {
+    if (meaning.find_first_not_of(' ') != std::string::npos) items.push_back({term, meaning});
+  };
+  for (const EngineRecord& engine : database.engines()) {
+    const auto origin = [&](const char* key) {
+      const Json text = engine.provenance.value(key, Json());
+      return text.is_string() ? text.get<std::string>() : std::string();
+    };
+    const bool is_dirty = engine.provenance.value("git_dirty", Json()) == true;
+    add("engine", fmt::format("version {}", origin("version")));
+    add("commit", origin("git_commit") + (is_dirty && !origin("git_commit").empty() ? ", with changes" : ""));
+    add("binary SHA-256", origin("binary_sha256"));
+    add("instruction set", origin("instruction_set"));
+    add("compiler", origin("compiler") + ' ' + origin("flags"));
+    add("processor", origin("cpu"));
+  }
+  add("machines", fmt::format("{}", fmt::join(database.hosts(), ", ")));
+  add("campaign begun", campaign.created_at);
+  add("file last taken up", campaign.updated_at);
+  add("last seed ended", database.last_end());
+  add("campaign SHA-256", sha256(canonical_json(campaign.document)));
+  if (!results_sha256.empty()) add("results SHA-256", results_sha256 + " (of the canonical table)");
+  return items;
 }
 
-std::string page_commands(const CampaignStatus& status, const std::string& results_sha256) {
+std::string commands_text(const CampaignStatus& status, const std::string& results_sha256) {
   const std::string file = shell_word(status.campaign.name + ".json");
   return fmt::format(
       "# with the engine above, and the campaign below as {0}\n"
@@ -254,9 +151,45 @@ std::string page_commands(const CampaignStatus& status, const std::string& resul
       file, results_sha256.empty() ? "" : "# " + results_sha256 + '\n');
 }
 
-// What the words of the page mean.
+// The scene in words: what the sweep sets, what all points share, and what the engine calls each key.
+
+std::set<std::string> swept_pointers(const CampaignStatus& status) {
+  std::set<std::string> pointers;
+  for (const PointSummary& point : status.points) {
+    for (const auto& [pointer, value] : point.point.settings.items()) pointers.insert(pointer);
+  }
+  return pointers;
+}
+
+}  // namespace
+
+Json page_parameters(const CampaignStatus& status, const Vocabulary& words) {
+  Json list = Json::array();
+  for (const std::string& pointer : swept_pointers(status)) list.push_back(words.key(pointer));
+  return list;
+}
 
 namespace {
+
+Json scene_json(const CampaignStatus& status, const Vocabulary& words) {
+  Json list = Json::array();
+  if (status.points.empty()) return list;
+  const std::set<std::string> swept = swept_pointers(status);
+  const auto is_swept = [&](const std::string& pointer) {
+    return std::any_of(swept.begin(), swept.end(), [&](const std::string& set) {
+      return pointer == set || pointer.starts_with(set + '/');
+    });
+  };
+  const Json flat = status.points.front().point.scene.flatten();
+  for (const auto& [pointer, value] : flat.items()) {
+    if (is_swept(pointer)) continue;
+    list.push_back(words.key(pointer));
+    list.back()["value"] = value;
+  }
+  return list;
+}
+
+// What the words of the page mean.
 
 // What a mark of the table means; the marks are those of reservations() and the verdicts.
 std::string meaning(const std::string& mark) {
@@ -265,8 +198,8 @@ std::string meaning(const std::string& mark) {
        "the interval is within the tolerance, but the mean leaves out the seeds that were lost; if they were "
        "lost because of what they would have given, it is biased"},
       {"capped",
-       "all seeds that are allowed have ended, and the interval is still wider than the tolerance, or "
-       "there is none"},
+       "all seeds that are allowed have ended, and the interval is still wider than the tolerance, or there "
+       "is none"},
       {"complete-with-losses",
        "all seeds that were asked for have ended, and the mean leaves out those that were lost; if they were "
        "lost because of what they would have given, it is biased"},
@@ -287,18 +220,15 @@ std::string meaning(const std::string& mark) {
        "says"},
       {"near-maximum",
        "the interval is within the tolerance, but perhaps by luck: with a spread as large as the values "
-       "leave "
-       "open the point would need more seeds than are allowed, and intervals of such points hold the mean "
-       "less "
-       "often than they say"},
+       "leave open the point would need more seeds than are allowed, and intervals of such points hold the "
+       "mean less often than they say"},
       {"equal-values",
        "all values are one and the same number, so that there is no spread to make an interval from"},
       {"repeated-seeds",
        "some seeds ended in the same state, so that their values are not independent and have no interval"},
       {"earlier-look",
        "the target was tighter before: the first look within the present one decides, as if there had been "
-       "no "
-       "other, and leaves out seeds that ended later"},
+       "no other, and leaves out seeds that ended later"},
       {"suspect", "a seed gave two different results; no number of this point can be trusted"},
       {"flagged jammed", "seeds that stood still under the given stress; their rate 0 is part of the mean"},
       {"flagged patience", "seeds whose window is too short to tell whether they have jammed"},
@@ -311,9 +241,7 @@ std::string meaning(const std::string& mark) {
   return known == meanings.end() ? "the engine's own mark; its warning says more" : known->second;
 }
 
-}  // namespace
-
-Json page_meanings(const CampaignStatus& status) {
+Json meanings_json(const CampaignStatus& status) {
   Json meanings = Json::object();
   for (const PointSummary& point : status.points) {
     const std::string standing = standing_word(point);
@@ -327,6 +255,53 @@ Json page_meanings(const CampaignStatus& status) {
     }
   }
   return meanings;
+}
+
+}  // namespace
+
+Json PageReader::read(Database& database, std::optional<std::int64_t> owner, bool whole) {
+  status_ = read_status(database, owner);
+  const CampaignStatus& status = status_;
+  const Vocabulary words = kept_vocabulary(database);
+  PagePoints points = page_points(database, status, known_);
+  if (whole) add_details(database, status, points.points);
+  Json quantities = Json::array();
+  for (const Drawable& one : points.drawables) quantities.push_back(to_json(one));
+  const std::string results = whole ? sha256(export_csv(database, true)) : "";
+  return {{"schema_version", 1},
+          {"campaign", status.campaign.name},
+          {"target", target_json(status.campaign.target)},
+          {"progress", progress_json(status)},
+          {"parameters", page_parameters(status, words)},
+          {"quantities", std::move(quantities)},
+          {"derived", words.derived()},
+          {"points", std::move(points.points)},
+          {"work", {{"now", workers_json(status)}, {"attempts", attempts_json(database, status)}}},
+          {"meanings", meanings_json(status)},
+          {"warnings", warnings_json(status, known_)},
+          {"scene", scene_json(status, words)},
+          {"provenance", provenance_json(database, status, results)},
+          {"commands", commands_text(status, results)},
+          {"document", status.campaign.document}};
+}
+
+const PointSummary* PageReader::find(const std::string& hash) const {
+  const auto found = std::find_if(status_.points.begin(), status_.points.end(),
+                                  [&](const PointSummary& point) { return point.point.hash == hash; });
+  return found == status_.points.end() ? nullptr : &*found;
+}
+
+std::optional<std::string> PageReader::key(const std::string& hash) const {
+  const PointSummary* const point = find(hash);
+  return point == nullptr ? std::nullopt : std::optional(known_.at(point->point.id).key);
+}
+
+Json PageReader::details(Database& database, const std::string& hash) const {
+  return details_of(database, *find(hash), status_.campaign.target, most_detailed_seeds);
+}
+
+Json page_data(Database& database, std::optional<std::int64_t> owner) {
+  return PageReader().read(database, owner, true);
 }
 
 }  // namespace peclet::runner

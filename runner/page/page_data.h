@@ -12,20 +12,10 @@
 
 #include "contract/json.h"
 #include "runner/reports/status.h"
-#include "runner/statistics/quantity_estimates.h"
 #include "runner/store/database.h"
-#include "runner/store/number_store.h"
 #include "runner/store/vocabulary.h"
 
 namespace peclet::runner {
-
-// The parts of the page's document.
-//
-// What the first result of a point says of it: dimensionless groups, and what the engine warns of; null
-// without one.
-struct FirstResult {
-  Json groups, warnings;
-};
 
 // A number of the results that can be drawn: a quantity, or one of its elements.
 struct Drawable {
@@ -34,6 +24,9 @@ struct Drawable {
   std::string element;  // "xy"; "" of a quantity that is one number
   std::string symbol, unit;
 };
+Json to_json(const Drawable& one);
+// Returns the path of what a target calls "pressure" or "/stress/total/3".
+std::string bare(const std::string& observable);
 
 // What takes time to read of a point: all that depends on its seeds one by one. While `key` is what it was,
 // so is the rest.
@@ -42,15 +35,9 @@ struct KnownPoint {
   Json json = Json::object();  // members of the point
   std::vector<Drawable> drawables;
   std::vector<Json> estimates;  // in step with these: [mean, standard error, half-width, count]
-  FirstResult first;
+  Json warnings;                // of the engine in its first result
 };
 using KnownPoints = std::map<std::int64_t, KnownPoint>;  // by PointRecord::id
-
-// Seeds that have ended, their values and the looks, in a few words.
-std::string key_of(const PointSummary& point, const TargetRecord& target);
-// Throws IntegrityError when stored looks are not what the stored results say.
-KnownPoint read_point(Database& database, NumberStore& book, const TargetRecord& target,
-                      const PointSummary& point);
 
 // The points with their estimates of every drawable, in step with `drawables`. What is not known yet, or has
 // changed, is read.
@@ -60,23 +47,22 @@ struct PagePoints {
 };
 PagePoints page_points(Database& database, const CampaignStatus& status, KnownPoints& known);
 
-// Points decided, processor time spent, time to go, workers.
-Json page_progress(const CampaignStatus& status);
+// What is in the results of a point and in no column of the database: the course of the target within the
+// window, and profiles and distributions.
+//
+// Results are read whole, some milliseconds each, so that of a point with very many seeds the first ones
+// stand for all.
+constexpr int most_detailed_seeds = 64;
 
-// Who works on what now, and the attempts that ended last.
-Json page_work(Database& database, const CampaignStatus& status);
+// {"seeds": how many results it is made of, "of": how many the estimate of the point is made of, "blocks",
+// null without: {"mean", "half_width"}, "profiles": [{"name", "symbol", "unit", "axis": {"name", "unit",
+// "values"}, "mean", "standard_error", "half_width"}]}: means over the first `seeds` results below the seed
+// `end`, half-widths at the level of the target. Profiles are quantities over one axis of numbers; a longer
+// one than 400 numbers is thinned.
+Json point_details(Database& database, std::int64_t point, int end, const TargetRecord& target, int seeds);
 
-// What the sweep sets, and what all points share of the scene, each key as of Vocabulary::key().
+// What the sweep sets, each key as of Vocabulary::key().
 Json page_parameters(const CampaignStatus& status, const Vocabulary& words);
-Json page_scene(const CampaignStatus& status, const Vocabulary& words);
-
-// What each verdict and mark that is used means.
-Json page_meanings(const CampaignStatus& status);
-
-// Pairs of a term and what it is, and the commands that make the numbers again. Without the hash of the
-// results nothing is said of it.
-Json page_provenance(Database& database, const CampaignStatus& status, const std::string& results_sha256);
-std::string page_commands(const CampaignStatus& status, const std::string& results_sha256);
 
 // Reads one campaign again and again, and of its points only those anew that have changed.
 class PageReader {

@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <array>
-#include <stdexcept>
+#include <algorithm>
+#include <map>
 #include <string_view>
-#include <utility>
 
 #include "contract/sha256.h"
 #include "runner/campaign/quoting.h"
@@ -22,19 +21,7 @@ std::string policy_hash(std::string_view content) { return "'sha256-" + sha256_b
 std::string inert(const Json& data) {
   std::string safe;
   for (const char c : data.dump()) {
-    switch (c) {
-      case '<':
-        safe += "\\u003c";
-        break;
-      case '>':
-        safe += "\\u003e";
-        break;
-      case '&':
-        safe += "\\u0026";
-        break;
-      default:
-        safe += c;
-    }
+    safe += c == '<' || c == '>' || c == '&' ? fmt::format("\\u{:04x}", c) : std::string(1, c);
   }
   return safe;
 }
@@ -46,25 +33,14 @@ const std::string& whole_script() {
   return script;
 }
 
-// The template with what belongs at each mark. What is put in is not looked through again.
-std::string filled(std::string_view text,
-                   const std::array<std::pair<std::string_view, std::string>, 5>& marks) {
+// The template with what belongs at each @MARK@, of which the text has no other @. What is put in is not
+// looked through again.
+std::string filled(std::string_view text, const std::map<std::string_view, std::string>& marks) {
   std::string page;
-  while (!text.empty()) {
-    const std::size_t at = text.find('@');
-    page += text.substr(0, at);
-    if (at == std::string_view::npos) break;
-    text.remove_prefix(at);
-    bool found = false;
-    for (const auto& [mark, content] : marks) {
-      if (!text.starts_with(mark)) continue;
-      page += content;
-      text.remove_prefix(mark.size());
-      found = true;
-      break;
-    }
-    if (!found)
-      throw std::logic_error("the page has a mark that is none: " + std::string(text.substr(0, 20)));
+  for (bool is_mark = false; !text.empty(); is_mark = !is_mark) {
+    const std::string_view part = text.substr(0, text.find('@'));
+    page += is_mark ? marks.at(part) : part;
+    text.remove_prefix(std::min(part.size() + 1, text.size()));
   }
   return page;
 }
@@ -82,11 +58,11 @@ std::string page_program() {
 }
 
 std::string page_html(const Json& data) {
-  return filled(page_template, {{{"@NAME@", escaped(data.at("campaign").get<std::string>())},
-                                 {"@POLICY@", page_policy(data.contains("live"))},
-                                 {"@STYLE@", page_style},
-                                 {"@SCRIPT@", whole_script()},
-                                 {"@DATA@", inert(data)}}});
+  return filled(page_template, {{"NAME", escaped(data.at("campaign").get<std::string>())},
+                                {"POLICY", page_policy(data.contains("live"))},
+                                {"STYLE", page_style},
+                                {"SCRIPT", whole_script()},
+                                {"DATA", inert(data)}});
 }
 
 std::string report_html(Database& database, std::optional<std::int64_t> owner) {

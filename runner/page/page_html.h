@@ -6,7 +6,6 @@
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -18,16 +17,9 @@ namespace peclet::runner {
 // The files of runner/page/assets, and the script that draws figures.
 extern const char* const page_template;  // with @STYLE@, @SCRIPT@ and others where they go
 extern const char* const page_style;
-extern const std::array<const char*, 15> page_scripts;  // in this order
+extern const std::array<const char*, 11> page_scripts;  // in this order
 // python/peclet/drawing.py. With `FIGURE = ...` and `main(FIGURE)` behind it, it draws that figure.
 extern const char* const drawing_script;
-
-struct ReportOptions {
-  std::filesystem::path campaign;  // file or folder
-  std::filesystem::path directory;
-  std::filesystem::path output;  // "": standard output
-  bool quiet = false;            // does not say where it is
-};
 
 // What the page may do, as a Content-Security-Policy: run its own script; a live one also ask its own server.
 std::string page_policy(bool live);

@@ -1,6 +1,4 @@
 // The points of the page, with the numbers of each in columns that all share.
-#include "runner/page/page_points.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,6 +17,19 @@
 #include "runner/store/number_store.h"
 
 namespace peclet::runner {
+
+Json to_json(const Drawable& one) {
+  return {{"path", one.path},
+          {"name", one.name},
+          {"element", one.element},
+          {"symbol", one.symbol},
+          {"unit", one.unit}};
+}
+
+std::string bare(const std::string& observable) {
+  return observable.starts_with('/') ? observable.substr(1) : observable;
+}
+
 namespace {
 
 bool is_profile(const Quantity& quantity) {
@@ -225,13 +236,20 @@ std::vector<Drawable> drawables_of(const Quantity& quantity) {
   return found;
 }
 
-// The first seed with a result that has completed.
-FirstResult first_result(Database& database, const PointRecord& point) {
+// The first result that has completed; an empty object where none has.
+Json first_result(Database& database, const PointRecord& point) {
   const std::vector<int> completed = database.completed(point.id, most_realisations);
-  if (completed.empty()) return {nullptr, Json::array()};
-  const std::optional<Json> result = database.result(point.id, completed.front());
-  if (!result) return {nullptr, Json::array()};
-  return {result->value("derived", Json()), result->value("warnings", Json::array())};
+  if (completed.empty()) return Json::object();
+  return database.result(point.id, completed.front()).value_or(Json::object());
+}
+
+// Seeds that have ended, their values and the looks, in a few words.
+std::string key_of(const PointSummary& point, const TargetRecord& target) {
+  const StateCounts& counts = point.counts;
+  return fmt::format("{} {} {} {} {:a} {} {:a} {:a} {} {}", target.id, counts.done, counts.failed,
+                     counts.quarantined, counts.cpu_seconds, point.so_far.count, point.so_far.mean,
+                     point.so_far.standard_error, point.looks.size(),
+                     point.looks.empty() ? 0 : point.looks.back().seeds);
 }
 
 class PointPage {
@@ -246,71 +264,69 @@ class PointPage {
   KnownPoint read() {
     const Target& target = target_.target;
     StopRule rule(target, target_.minimum, target_.maximum);
-    const std::vector<std::optional<Outcome>> outcomes = database_.outcomes(point_.point.id);
-    const Values found = values_of(outcomes, end());
-    KnownPoint known;
-    known.key = key_of(point_, target_);
-    known.first = first_result(database_, point_.point);
-    known.json = {{"groups", known.first.groups},
-                  {"looks", looks_json(point_.looks, target)},
-                  {"running_mean", running_mean(found, rule)},
-                  {"scatter", scatter(found)}};
-    add_estimates(known);
-    return known;
+    const Values found = values_of(database_.outcomes(point_.point.id), end());
+    const Json first = first_result(database_, point_.point);
+    known_.key = key_of(point_, target_);
+    known_.warnings = first.value("warnings", Json::array());
+    known_.json = {{"groups", first.value("derived", Json())},
+                   {"looks", looks_json(point_.looks, target)},
+                   {"running_mean", running_mean(found, rule)},
+                   {"scatter", scatter(found)},
+                   {"uncontrolled", Json::object()},
+                   {"good_enough", Json::object()}};
+    add_estimates();
+    if (look_) add_deciding();
+    return std::move(known_);
   }
 
  private:
   // Seeds of the look; before the first one, all that have ended.
   int end() const { return look_ ? look_->seeds : std::numeric_limits<int>::max(); }
 
-  void add_estimates(KnownPoint& known) {
-    const double level = target_.level();
+  void add_estimates() {
     QuantityEstimates sums;
     book_.for_each(point_.point.id, end(), [&](const NumberStore::Entry& seed) {
       sums.add(seed.layout, seed.numbers, seed.has_jammed);
     });
-    Json uncontrolled = Json::object(), allowed = Json::object();
+    const auto of = [&](const Estimate& one) { return numbers(one, half_width(one, target_.level())); };
     for (const QuantityEstimate& found : sums.estimates()) {
       const std::vector<Drawable> drawables = drawables_of(found.quantity);
       for (std::size_t k = 0; k < drawables.size(); ++k) {
-        known.estimates.push_back(numbers(found.estimates[k], half_width(found.estimates[k], level)));
-        known.drawables.push_back(drawables[k]);
-        if (found.uncontrolled.empty()) continue;
-        uncontrolled[drawables[k].path] =
-            numbers(found.uncontrolled[k], half_width(found.uncontrolled[k], level));
+        known_.estimates.push_back(of(found.estimates[k]));
+        known_.drawables.push_back(drawables[k]);
+        if (!found.uncontrolled.empty()) {
+          known_.json["uncontrolled"][drawables[k].path] = of(found.uncontrolled[k]);
+        }
       }
     }
-    if (look_) add_deciding(known, uncontrolled, allowed);
-    known.json["uncontrolled"] = std::move(uncontrolled);
-    known.json["good_enough"] = std::move(allowed);
   }
 
   // What the look says of the target's observables goes before: its intervals are those that decide.
-  void add_deciding(KnownPoint& known, Json& uncontrolled, Json& allowed) {
+  void add_deciding() {
     const Target& target = target_.target;
     for (const ObservableLook& one : each_of(*look_, target)) {
-      const std::size_t place = place_of(known, one.observable);
-      known.estimates[place] = numbers(one.estimate, one.half_width);
+      const std::size_t place = place_of(one.observable);
+      known_.estimates[place] = numbers(one.estimate, one.half_width);
       if (one.observable == target.observable && has_control(*look_)) {
-        uncontrolled[known.drawables[place].path] = numbers(look_->estimate, look_->half_width);
+        known_.json["uncontrolled"][known_.drawables[place].path] =
+            numbers(look_->estimate, look_->half_width);
       }
     }
     for (const Criterion& criterion : target.criteria()) {
-      allowed[known.drawables[place_of(known, criterion.observable)].path] =
-          good_enough(criterion, *look_, target);
+      known_.json["good_enough"][bare(criterion.observable)] = good_enough(criterion, *look_, target);
     }
   }
 
   // An observable that is named as a quantity or an element; one that the results do not describe is one
   // without unit.
-  static std::size_t place_of(KnownPoint& known, const std::string& observable) {
-    const std::string path = observable.starts_with('/') ? observable.substr(1) : observable;
-    for (std::size_t place = 0; place < known.drawables.size(); ++place) {
-      if (known.drawables[place].path == path) return place;
+  std::size_t place_of(const std::string& observable) {
+    const std::string path = bare(observable);
+    for (std::size_t place = 0; place < known_.drawables.size(); ++place) {
+      if (known_.drawables[place].path == path) return place;
     }
-    known.drawables.push_back({path, path, "", "", ""});
-    known.estimates.emplace_back(nullptr);
-    return known.drawables.size() - 1;
+    known_.drawables.push_back({path, path, "", "", ""});
+    known_.estimates.emplace_back(nullptr);
+    return known_.drawables.size() - 1;
   }
 
   Database& database_;
@@ -318,24 +334,8 @@ class PointPage {
   const TargetRecord& target_;
   const PointSummary& point_;
   std::optional<Look> look_;
+  KnownPoint known_;
 };
-
-}  // namespace
-
-std::string key_of(const PointSummary& point, const TargetRecord& target) {
-  const StateCounts& counts = point.counts;
-  return fmt::format("{} {} {} {} {:a} {} {:a} {:a} {} {}", target.id, counts.done, counts.failed,
-                     counts.quarantined, counts.cpu_seconds, point.so_far.count, point.so_far.mean,
-                     point.so_far.standard_error, point.looks.size(),
-                     point.looks.empty() ? 0 : point.looks.back().seeds);
-}
-
-KnownPoint read_point(Database& database, NumberStore& book, const TargetRecord& target,
-                      const PointSummary& point) {
-  return PointPage(database, book, target, point).read();
-}
-
-namespace {
 
 // Columns by path and unit, in the order in which they are first met.
 class Columns {
@@ -361,7 +361,7 @@ Json estimates_json(const KnownPoint& known, Columns& columns) {
   return estimates;
 }
 
-Json point_json(const PointSummary& point, const std::optional<int>& looked_at) {
+Json point_json(const PointSummary& point) {
   const StateCounts& counts = point.counts;
   return {{"label", point.point.label},
           {"hash", point.point.hash},
@@ -371,7 +371,7 @@ Json point_json(const PointSummary& point, const std::optional<int>& looked_at) 
           {"marks", reservations(point)},
           {"decided", point.decided},
           {"seeds",
-           {{"looked_at", looked_at ? Json(*looked_at) : Json(nullptr)},
+           {{"looked_at", point.looks.empty() ? Json(nullptr) : Json(point.looks.back().seeds)},
             {"wanted", point.wanted},
             {"wanted_ended", point.wanted_ended},
             {"ended", counts.terminal()},
@@ -384,10 +384,6 @@ Json point_json(const PointSummary& point, const std::optional<int>& looked_at) 
           {"cpu_seconds", counts.cpu_seconds}};
 }
 
-std::optional<int> seeds_looked_at(const PointSummary& point) {
-  return point.looks.empty() ? std::nullopt : std::optional(point.looks.back().seeds);
-}
-
 }  // namespace
 
 PagePoints page_points(Database& database, const CampaignStatus& status, KnownPoints& known) {
@@ -397,9 +393,9 @@ PagePoints page_points(Database& database, const CampaignStatus& status, KnownPo
   for (const PointSummary& point : status.points) {
     KnownPoint& of_point = known[point.point.id];
     if (of_point.key != key_of(point, status.campaign.target)) {
-      of_point = read_point(database, book, status.campaign.target, point);
+      of_point = PointPage(database, book, status.campaign.target, point).read();
     }
-    Json json = point_json(point, seeds_looked_at(point));
+    Json json = point_json(point);
     json.update(of_point.json);
     json["estimates"] = estimates_json(of_point, columns);
     page.points.push_back(std::move(json));

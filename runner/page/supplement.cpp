@@ -1,8 +1,11 @@
 #include "runner/page/supplement.h"
 
 #include <fmt/format.h>
+#include <zlib.h>
 
 #include <algorithm>
+#include <limits>
+#include <stdexcept>
 
 #include "contract/errors.h"
 #include "contract/provenance.h"
@@ -15,56 +18,50 @@
 #include "runner/reports/status.h"
 
 namespace peclet::runner {
+namespace {
 
-std::string supplement_readme(const CampaignStatus& status) {
+std::string readme(const CampaignStatus& status) {
   const CampaignRecord& campaign = status.campaign;
   const std::string file = shell_word(campaign.name + ".json");
   const std::string confidence = percent(campaign.target.target.confidence);
-  std::string text = fmt::format(
-      "# {0}\n\n"
-      "A campaign of peclet {1}: averages over independent realisations, each with its {2} interval.\n\n"
-      "```\n{3}```\n\n",
-      campaign.name, version(), confidence, status_table(status));
-  text += fmt::format(
-      "| file | what it is |\n"
-      "|---|---|\n"
-      "| `{0}.json` | the campaign: scene, sweep, target |\n"
-      "| `results.csv` | a row for each point: the estimate that decides, and the mean of every scalar |\n"
-      "| `numbers.csv` | a row for each point, quantity and element, with names, symbols and units: profiles "
-      "and "
-      "distributions, too |\n"
-      "| `results.json` | all of it, and every realisation |\n"
-      "| `report.html` | a page for a browser: any quantity over any swept parameter, how each mean came "
-      "about "
-      "|\n"
-      "| `figure.py` | the target over the sweep, drawn by matplotlib: `python3 figure.py figure.pdf` |\n"
-      "| `provenance.json` | engines, versions, times |\n"
-      "| `SHA256SUMS` | of each of these files: `sha256sum --check SHA256SUMS` |\n\n",
-      campaign.name);
-  text += fmt::format(
-      "## Which number\n\n"
-      "`mean` and `half_width` in `results.csv` are those by which the campaign stopped, with the control "
-      "variate "
-      "where there is one.\n"
-      "The table above, the page, the figure and `points/*/look` in `results.json` have the same two "
-      "numbers. Means "
-      "in `numbers.csv` and\n"
-      "`points/*/quantities` are of the same seeds, and their half-widths of the same level.\n\n"
-      "## Make it again\n\n"
-      "```\n"
-      "peclet run {0}\n"
-      "peclet export {0} --canonical | cmp - results.json\n"
-      "peclet export {0} --csv --canonical | cmp - results.csv\n"
-      "peclet plot {0} --output figure.py\n"
-      "```\n\n"
-      "The engines of `provenance.json` give the same bytes. Those of another version, compiler or "
-      "instruction set "
-      "may differ from the\nlast digit on, and agree within the errors.\n",
-      file);
-  return text;
-}
+  return fmt::format(R"(# {0}
 
-namespace {
+A campaign of peclet {1}: averages over independent realisations, each with its {2} interval.
+
+```
+{3}```
+
+| file | what it is |
+|---|---|
+| `{0}.json` | the campaign: scene, sweep, target |
+| `results.csv` | a row for each point: the estimate that decides, and the mean of every scalar |
+| `numbers.csv` | a row for each point, quantity and element, with names, symbols and units: profiles and distributions, too |
+| `results.json` | all of it, and every realisation |
+| `report.html` | a page for a browser: any quantity over any swept parameter, how each mean came about |
+| `figure.py` | the target over the sweep, drawn by matplotlib: `python3 figure.py figure.pdf` |
+| `provenance.json` | engines, versions, times |
+| `SHA256SUMS` | of each of these files: `sha256sum --check SHA256SUMS` |
+
+## Which number
+
+`mean` and `half_width` in `results.csv` are those by which the campaign stopped, with the control variate where there is one.
+The table above, the page, the figure and `points/*/look` in `results.json` have the same two numbers. Means in `numbers.csv` and
+`points/*/quantities` are of the same seeds, and their half-widths of the same level.
+
+## Make it again
+
+```
+peclet run {4}
+peclet export {4} --canonical | cmp - results.json
+peclet export {4} --csv --canonical | cmp - results.csv
+peclet plot {4} --output figure.py
+```
+
+The engines of `provenance.json` give the same bytes. Those of another version, compiler or instruction set may differ from the
+last digit on, and agree within the errors.
+)",
+                     campaign.name, version(), confidence, status_table(status), file);
+}
 
 // When a seed last ended; before the first one, when the campaign was last taken up.
 std::string last_change(Database& database, const CampaignRecord& campaign) {
@@ -104,27 +101,19 @@ Json figure_of(Database& database) try { return figure_data(database, {}); } cat
   throw InputError("", "--bundle", error.value(), error.allowed());
 }
 
-}  // namespace
-
-void check_supplement_name(const std::filesystem::path& output) {
-  const std::string name = output.filename().string();
-  if (name.ends_with(".tar.gz") || name.ends_with(".tgz")) return;
-  throw InputError("", "--bundle", output.string(), "must end in .tar.gz or .tgz");
-}
-
-std::vector<ArchivedFile> supplement_files(Database& database, std::optional<std::int64_t> owner) {
+std::vector<ArchivedFile> files_of(Database& database, std::optional<std::int64_t> owner) {
   const CampaignStatus status = read_status(database);
   const CampaignRecord& campaign = status.campaign;
   const auto has_number = [](const PointSummary& point) { return point.so_far.count > 0; };
   if (std::none_of(status.points.begin(), status.points.end(), has_number)) {
     throw InputError(
         "", "--bundle", campaign.name,
-        fmt::format("has no number of {} yet, so that there is nothing to give to readers; `peclet "
-                    "explain` says why",
-                    campaign.target.target.observable));
+        fmt::format(
+            "has no number of {} yet, so that there is nothing to give to readers; `peclet explain` says why",
+            campaign.target.target.observable));
   }
   const std::string script = figure_script(figure_of(database));
-  std::vector<ArchivedFile> files{{"README.md", supplement_readme(status)},
+  std::vector<ArchivedFile> files{{"README.md", readme(status)},
                                   {campaign.name + ".json", campaign.document.dump(2) + '\n'},
                                   {"results.csv", export_csv(database, true)},
                                   {"numbers.csv", export_long_csv(database)},
@@ -136,10 +125,112 @@ std::vector<ArchivedFile> supplement_files(Database& database, std::optional<std
   return files;
 }
 
+}  // namespace
+
+void check_supplement_name(const std::filesystem::path& output) {
+  const std::string name = output.filename().string();
+  if (name.ends_with(".tar.gz") || name.ends_with(".tgz")) return;
+  throw InputError("", "--bundle", output.string(), "must end in .tar.gz or .tgz");
+}
+
 std::string supplement(Database& database, std::optional<std::int64_t> owner) {
-  const std::vector<ArchivedFile> files = supplement_files(database, owner);
+  const std::vector<ArchivedFile> files = files_of(database, owner);
   const CampaignRecord campaign = database.campaign();
   return gzip(tar(campaign.name, files, seconds_of_utc(last_change(database, campaign))));
+}
+
+// Archives.
+
+namespace {
+
+constexpr std::size_t block = 512;
+
+// A header of ustar: fields at fixed places, numbers in octal digits.
+std::string header(const std::string& folder, const ArchivedFile& file, std::int64_t time) {
+  std::string bytes(block, '\0');
+  const auto put = [&](std::size_t at, std::size_t room, const std::string& text) {
+    if (text.size() > room) throw std::length_error(text + ": too long for an archive");
+    bytes.replace(at, text.size(), text);
+  };
+  // As many digits as there is room for, and a zero byte.
+  const auto put_octal = [&](std::size_t at, std::size_t room, std::uint64_t number) {
+    const std::string digits = fmt::format("{:0{}o}", number, room - 1);
+    if (digits.size() >= room)
+      throw std::length_error("a file of more than 8 GiB is too long for an archive");
+    put(at, room, digits);
+  };
+  put(0, 100, file.name);
+  put_octal(100, 8, file.executable ? 0755 : 0644);
+  put_octal(108, 8, 0);  // user and group are left to whoever unpacks
+  put_octal(116, 8, 0);
+  put_octal(124, 12, file.bytes.size());
+  put_octal(136, 12, static_cast<std::uint64_t>(std::max<std::int64_t>(0, time)));
+  put(148, 8, "        ");  // the sum counts its own place as blanks
+  put(156, 1, "0");         // a regular file
+  put(257, 5, "ustar");
+  put(263, 2, "00");
+  put(345, 155, folder);  // stands before the name, with a slash
+  std::uint64_t sum = 0;
+  for (const char c : bytes) sum += static_cast<unsigned char>(c);
+  put(148, 8, fmt::format("{:06o}", sum) + std::string("\0 ", 2));
+  return bytes;
+}
+
+class Deflation {
+ public:
+  Deflation() {
+    constexpr int gzip_format = 16;
+    if (deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, MAX_WBITS + gzip_format, MAX_MEM_LEVEL,
+                     Z_DEFAULT_STRATEGY) != Z_OK) {
+      throw std::runtime_error("zlib cannot begin");
+    }
+  }
+  ~Deflation() { deflateEnd(&stream); }
+  Deflation(const Deflation&) = delete;
+  Deflation& operator=(const Deflation&) = delete;
+
+  z_stream stream{};
+};
+
+}  // namespace
+
+std::string tar(const std::string& folder, const std::vector<ArchivedFile>& files, std::int64_t time) {
+  std::string archive;
+  for (const ArchivedFile& file : files) {
+    archive += header(folder, file, time) + file.bytes;
+    archive.resize((archive.size() + block - 1) / block * block, '\0');
+  }
+  // Two empty blocks are the end; tar writes twenty blocks at a time.
+  constexpr std::size_t record = 20 * block;
+  archive.resize((archive.size() + 2 * block + record - 1) / record * record, '\0');
+  return archive;
+}
+
+std::string gzip(std::string_view bytes) {
+  Deflation deflation;
+  z_stream& stream = deflation.stream;
+  gz_header about{};
+  about.os = 3;  // Unix, wherever zlib was built
+  if (deflateSetHeader(&stream, &about) != Z_OK) throw std::runtime_error("zlib takes no header");
+  std::string packed;
+  std::string chunk(1U << 16U, '\0');
+  constexpr std::size_t most = std::numeric_limits<uInt>::max() / 2;
+  int state = Z_OK;
+  while (state != Z_STREAM_END) {
+    const std::string_view part = bytes.substr(0, most);
+    // zlib does not write there, but asks for a pointer that could.
+    stream.next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(part.data()));
+    stream.avail_in = static_cast<uInt>(part.size());
+    bytes.remove_prefix(part.size());
+    do {
+      stream.next_out = reinterpret_cast<Bytef*>(chunk.data());
+      stream.avail_out = static_cast<uInt>(chunk.size());
+      state = deflate(&stream, bytes.empty() ? Z_FINISH : Z_NO_FLUSH);
+      if (state == Z_STREAM_ERROR) throw std::runtime_error("zlib cannot go on");
+      packed.append(chunk, 0, chunk.size() - stream.avail_out);
+    } while (stream.avail_out == 0);
+  }
+  return packed;
 }
 
 }  // namespace peclet::runner

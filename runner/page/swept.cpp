@@ -8,8 +8,41 @@
 
 #include "contract/errors.h"
 #include "contract/text.h"
+#include "runner/store/vocabulary.h"
 
 namespace peclet::runner {
+namespace {
+
+// "pressure", "stress/total/xy".
+std::string name_of(const Drawable& one) {
+  return one.element.empty() ? one.path : one.name + '/' + one.element;
+}
+
+// Names of all quantities; of a list, which may be long, its name and its first element.
+std::string names_of(const std::vector<Drawable>& drawables) {
+  std::vector<std::string> names;
+  for (const Drawable& one : drawables) {
+    const bool is_first = one.path == one.name + "/0" || one.path == one.name + "/0/0";
+    if (one.element.empty() || is_first) names.push_back(name_of(one) + (is_first ? " ..." : ""));
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+}  // namespace
+
+std::size_t chosen_column(const std::vector<Drawable>& drawables, const std::string& name) {
+  if (drawables.empty()) throw InputError("", "--quantity", name, "nothing has been measured yet");
+  std::vector<std::string> names;
+  for (std::size_t column = 0; column < drawables.size(); ++column) {
+    names.push_back(name_of(drawables[column]));
+    if (drawables[column].path == name || names.back() == name) return column;
+  }
+  const std::string meant = suggestion(name, names);
+  throw InputError(
+      "", "--quantity", name,
+      "must be a number that is measured" + (meant.empty() ? ": " + names_of(drawables) : meant));
+}
+
 namespace {
 
 std::string last_step(const std::string& pointer) { return pointer.substr(pointer.rfind('/') + 1); }
@@ -70,15 +103,18 @@ bool in_step(const Swept& other, const Swept& axis) {
 
 }  // namespace
 
-std::vector<Swept> swept_parameters(const Json& parameters, const Json& points) {
-  std::vector<Swept> swept;
-  for (const Json& parameter : parameters) swept.push_back(column(parameter, points));
-  if (swept.empty()) swept.push_back(points_themselves(points));
-  return swept;
+MeasuredSweep read_sweep(Database& database) {
+  MeasuredSweep sweep;
+  sweep.status = read_status(database);
+  KnownPoints known;
+  sweep.page = page_points(database, sweep.status, known);
+  sweep.parameters = page_parameters(sweep.status, kept_vocabulary(database));
+  for (const Json& parameter : sweep.parameters) sweep.swept.push_back(column(parameter, sweep.page.points));
+  if (sweep.swept.empty()) sweep.swept.push_back(points_themselves(sweep.page.points));
+  return sweep;
 }
 
-const Swept& chosen_axis(const std::vector<Swept>& swept, const std::string& name,
-                         const std::string& option) {
+const Swept& chosen_axis(const std::vector<Swept>& swept, const std::string& name) {
   if (name.empty()) {
     const auto rank = [](const Swept& one) {
       return one.distinct() < 2 ? 0 : (one.numeric ? 1'000'000 : 0) + one.distinct();
@@ -94,10 +130,10 @@ const Swept& chosen_axis(const std::vector<Swept>& swept, const std::string& nam
     if (is_called(one, name)) found.push_back(&one);
   }
   if (found.size() == 1) return *found.front();
-  if (names.empty()) throw InputError("", option, name, "must not be given: the campaign sweeps nothing");
+  if (names.empty()) throw InputError("", "--over", name, "must not be given: the campaign sweeps nothing");
   const std::string allowed = fmt::format("must be what one thing is called that is swept: {}{}",
                                           fmt::join(names, ", "), suggestion('/' + name, names));
-  throw InputError("", option, name, allowed);
+  throw InputError("", "--over", name, allowed);
 }
 
 std::vector<const Swept*> curves_by(const std::vector<Swept>& swept, const Swept& axis) {

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "contract/json.h"
+#include "runner/page/page_data.h"
+
 namespace peclet::runner {
 
 // One parameter: its value at each point, as a number or as a word.
@@ -19,12 +21,24 @@ struct Swept {
   std::size_t distinct() const { return values.size(); }
 };
 
-// Of page_parameters() and the points of page_points(); the points by their labels where nothing is swept.
-std::vector<Swept> swept_parameters(const Json& parameters, const Json& points);
+// The points of a campaign with what was measured there, over what is swept.
+struct MeasuredSweep {
+  CampaignStatus status;
+  PagePoints page;           // in step with the points of `status`
+  Json parameters;           // page_parameters()
+  std::vector<Swept> swept;  // in step with these; the points by their labels where nothing is swept
+};
+
+// Throws IntegrityError.
+MeasuredSweep read_sweep(Database& database);
+
+// Returns the place of the number that is called so, by its path or by quantity and element. Throws
+// InputError at --quantity, naming those that are measured.
+std::size_t chosen_column(const std::vector<Drawable>& drawables, const std::string& name);
 
 // The one called `name`, a pointer or a last step that no other has. Without a name the one with most values,
-// numbers before words. Throws InputError at `option`.
-const Swept& chosen_axis(const std::vector<Swept>& swept, const std::string& name, const std::string& option);
+// numbers before words. Throws InputError at --over.
+const Swept& chosen_axis(const std::vector<Swept>& swept, const std::string& name);
 
 // Those that tell curves apart: which vary, and whose value does not follow from that on the axis.
 std::vector<const Swept*> curves_by(const std::vector<Swept>& swept, const Swept& axis);

@@ -1,5 +1,3 @@
-#include "runner/reports/curve.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include <vector>
 
 #include "runner/campaign/number_text.h"
+#include "runner/reports/status.h"
 
 namespace peclet::runner {
 namespace {
@@ -75,14 +74,6 @@ const char* sign(double mean, const Scale& scale) {
   return bars[static_cast<std::size_t>(std::lround(7 * scale.height(mean)))];
 }
 
-std::string drawn(const Points& curve, const Scale& scale, std::size_t columns_each) {
-  std::string line;
-  for (const auto& [x, mean] : curve) {
-    for (std::size_t i = 0; i < columns_each; ++i) line += sign(mean, scale);
-  }
-  return line;
-}
-
 // "5.39 to 8.52", of the first and the last mean.
 std::string ends(const Points& curve) {
   std::vector<double> means;
@@ -125,7 +116,10 @@ std::string curve_text(const CampaignStatus& status, std::size_t width) {
     longest = std::max(longest, name + (name > 0 ? 2 : 0) + each * values + 2 + numbers.size());
     const std::string gap(each * (values - curve.size()) + 2, ' ');
     if (name > 0) text += fmt::format("{:<{}}  ", beside, name);
-    text += drawn(curve, scale, each) + gap + numbers + '\n';
+    for (const auto& [x, mean] : curve) {
+      for (std::size_t i = 0; i < each; ++i) text += sign(mean, scale);
+    }
+    text += gap + numbers + '\n';
   }
   return longest <= width ? text : "";
 }

@@ -5,13 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "runner/campaign/number_text.h"
 #include "runner/campaign/text_table.h"
 #include "runner/owner/retry_plan.h"
-#include "runner/reports/explain_estimate.h"
-#include "runner/reports/prediction_text.h"
 #include "runner/reports/status.h"
 #include "runner/statistics/cohorts.h"
 #include "runner/statistics/forecast.h"
@@ -57,24 +54,21 @@ std::string width_text(const Known& known) {
 // "2 %"; of several "relative_viscosity 2 %, pressure 0.1".
 std::string widths_text(const std::vector<Known>& all) {
   if (all.size() == 1) return width_text(all.front());
-  std::string text;
-  for (const Known& known : all) {
-    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", known.look.observable, width_text(known));
-  }
-  return text;
+  std::vector<std::string> widths;
+  for (const Known& known : all) widths.push_back(known.look.observable + ' ' + width_text(known));
+  return fmt::format("{}", fmt::join(widths, ", "));
 }
 
-// "5 %"; of several "5 % for relative_viscosity, 0.2 for pressure".
-template <typename Which>
-std::string tolerances_text(const std::vector<Known>& all, Which is_meant) {
+// "5 %"; of several "5 % for relative_viscosity, 0.2 for pressure": those on whose observable the look said
+// `verdict`, or all of them.
+std::string tolerances_text(const std::vector<Known>& all, std::optional<Verdict> verdict = {}) {
   if (all.size() == 1) return to_string(all.front().criterion.tolerance);
-  std::string text;
+  std::vector<std::string> tolerances;
   for (const Known& known : all) {
-    if (!is_meant(known)) continue;
-    text += fmt::format("{}{} for {}", text.empty() ? "" : ", ", to_string(known.criterion.tolerance),
-                        known.look.observable);
+    if (verdict && known.look.verdict != verdict) continue;
+    tolerances.push_back(to_string(known.criterion.tolerance) + " for " + known.look.observable);
   }
-  return text;
+  return fmt::format("{}", fmt::join(tolerances, ", "));
 }
 
 // Seeds that the tolerances would take, as half-widths fall with 1 / sqrt(n).
@@ -123,8 +117,7 @@ std::string missing_interval_text(const PointSummary& point) {
   const Look& look = point.looks.back();
   if (!look.repeated.empty()) {
     return fmt::format(
-        "seed{} {} ended in the same state as an earlier one, so that these values are not "
-        "independent",
+        "seed{} {} ended in the same state as an earlier one, so that these values are not independent",
         look.repeated.size() == 1 ? "" : "s", fmt::join(look.repeated, ", "));
   }
   return fmt::format("all values of {} are equal, so that they have no spread to judge by",
@@ -148,8 +141,7 @@ std::string measure_text(const std::vector<Known>& all) {
 std::string luck_text(const Look& look) {
   if (!look.near_maximum) return "";
   return "; perhaps by luck: with a spread as large as these values leave open it would need more seeds than "
-         "are "
-         "allowed, and intervals of such points hold the mean less often";
+         "are allowed, and intervals of such points hold the mean less often";
 }
 
 std::string earlier_look_text(const PointSummary& point) {
@@ -171,23 +163,24 @@ std::string reason(const PointSummary& point, const Target& target) {
   }
   const Look& look = point.looks.back();
   const std::vector<Known> all = known_of(look, target);
-  const auto is_any = [](const Known&) { return true; };
-  const auto is_as_the_look = [&](const Known& known) { return known.look.verdict == look.verdict; };
+  const auto lost_to = [&](const Known& known) { return look.seeds - known.look.estimate.count; };
+  const auto name_of = [&](const Known& known) {
+    return all.size() == 1 ? "" : " to " + known.look.observable;
+  };
   switch (look.verdict) {
     case Verdict::converged:
     case Verdict::converged_with_losses:
       return fmt::format("{} seeds give {}, within the tolerance of {}{}{}", look.seeds, widths_text(all),
-                         tolerances_text(all, is_any), luck_text(look), earlier_look_text(point));
+                         tolerances_text(all), luck_text(look), earlier_look_text(point));
     case Verdict::capped:
       if (const std::string missing = missing_interval_text(point); !missing.empty())
         return fmt::format("all {} seeds that are allowed have ended, and {}", look.seeds, missing);
       return fmt::format("all {} seeds that are allowed give {}, not within the tolerance of {}{}",
-                         look.seeds, widths_text(all), tolerances_text(all, is_as_the_look),
-                         measure_text(all));
+                         look.seeds, widths_text(all), tolerances_text(all, look.verdict), measure_text(all));
     case Verdict::failed: {
-      const auto failed = std::find_if(all.begin(), all.end(), is_as_the_look);
-      return fmt::format("{} of {} seeds are lost{}", look.seeds - failed->look.estimate.count, look.seeds,
-                         all.size() == 1 ? "" : " to " + failed->look.observable);
+      const auto failed = std::find_if(
+          all.begin(), all.end(), [&](const Known& known) { return known.look.verdict == look.verdict; });
+      return fmt::format("{} of {} seeds are lost{}", lost_to(*failed), look.seeds, name_of(*failed));
     }
     case Verdict::complete:
       return fmt::format("all {} seeds have ended", look.seeds);
@@ -195,9 +188,8 @@ std::string reason(const PointSummary& point, const Target& target) {
       const auto fewest = std::min_element(all.begin(), all.end(), [](const Known& one, const Known& other) {
         return one.look.estimate.count < other.look.estimate.count;
       });
-      return fmt::format("all {} seeds have ended, and {} of them are lost{}", look.seeds,
-                         look.seeds - fewest->look.estimate.count,
-                         all.size() == 1 ? "" : " to " + fewest->look.observable);
+      return fmt::format("all {} seeds have ended, and {} of them are lost{}", look.seeds, lost_to(*fewest),
+                         name_of(*fewest));
     }
     case Verdict::more:
       break;
@@ -309,15 +301,6 @@ std::string observables_table(const std::vector<Look>& looks, const Target& targ
   return table.text("  ");
 }
 
-Json losses_json(Database& database, std::int64_t point) {
-  Json losses = Json::object();
-  for (const RealisationRecord& record : database.realisations(point)) {
-    const bool lost = record.state == SeedState::failed || record.state == SeedState::quarantined;
-    if (lost) losses[record.cause].push_back(record.seed);
-  }
-  return losses;
-}
-
 Json blamed_attempts_json(Database& database, std::int64_t point) {
   Json blamed = Json::array();
   for (const AttemptRecord& attempt : database.attempts(point)) {
@@ -331,43 +314,29 @@ Json blamed_attempts_json(Database& database, std::int64_t point) {
 }
 
 // What the realisations of a point have left.
-struct Files {
+Json files_json(Database& database, const CampaignDirectory& directory, std::int64_t point) {
   int kept = 0, thrown_away = 0;
   std::uint64_t bytes = 0;  // of those that are kept
-  std::string folder;
-};
-
-Files files_of(Database& database, const CampaignDirectory& directory, std::int64_t point) {
-  Files files;
+  Json folder;
   for (const FileRecord& record : files_of_point(database.connection(), point)) {
-    ++(record.kept ? files.kept : files.thrown_away);
+    ++(record.kept ? kept : thrown_away);
     if (!record.kept) continue;
-    files.bytes += record.file.bytes;
-    files.folder = record.place(directory).parent_path().parent_path().string();
+    bytes += record.file.bytes;
+    folder = record.place(directory).parent_path().parent_path().string();
   }
-  return files;
+  return {{"kept", kept}, {"bytes", bytes}, {"thrown_away", thrown_away}, {"folder", folder}};
 }
 
-std::string files_text(Database& database, const CampaignDirectory& directory, std::int64_t point) {
-  const Files files = files_of(database, directory, point);
-  std::string text;
-  if (files.kept > 0) {
-    text = fmt::format("  files: {} ({:.1f} MB) in {}", files.kept, 1e-6 * static_cast<double>(files.bytes),
-                       files.folder);
+std::string files_text(const Json& files) {
+  std::vector<std::string> parts;
+  if (files["kept"] > 0) {
+    parts.push_back(fmt::format("{} ({:.1f} MB) in {}", files["kept"].get<int>(),
+                                1e-6 * files["bytes"].get<double>(), files["folder"].get<std::string>()));
   }
-  if (files.thrown_away > 0) {
-    text +=
-        fmt::format("{}{} thrown away (/keep_files)", text.empty() ? "  files: " : "; ", files.thrown_away);
+  if (files["thrown_away"] > 0) {
+    parts.push_back(fmt::format("{} thrown away (/keep_files)", files["thrown_away"].get<int>()));
   }
-  return text.empty() ? "" : text + '\n';
-}
-
-Json files_json(Database& database, const CampaignDirectory& directory, std::int64_t point) {
-  const Files files = files_of(database, directory, point);
-  return {{"kept", files.kept},
-          {"bytes", files.bytes},
-          {"thrown_away", files.thrown_away},
-          {"folder", files.folder.empty() ? Json(nullptr) : Json(files.folder)}};
+  return parts.empty() ? "" : fmt::format("  files: {}\n", fmt::join(parts, "; "));
 }
 
 }  // namespace
@@ -386,7 +355,7 @@ Json explain_json(Database& database, const CampaignDirectory& directory, const 
          {"reason", reason(summary, campaign.target.target)},
          {"next", next_step(summary, campaign.target, directory)},
          {"looks", looks},
-         {"losses", losses_json(database, summary.point.id)},
+         {"losses", lost_seeds(database, summary.point.id)},
          {"loss_reasons", summary.loss_reasons},
          {"files", files_json(database, directory, summary.point.id)},
          {"blamed_attempts", blamed_attempts_json(database, summary.point.id)}});
@@ -407,7 +376,7 @@ std::string explain(Database& database, const CampaignDirectory& directory, cons
     text += estimate_text(database, summary, target);
     text += losses_text(database, summary);
     text += attempts_text(database, summary.point.id);
-    text += files_text(database, directory, summary.point.id);
+    text += files_text(files_json(database, directory, summary.point.id));
     for (const KeptApart& kept : summary.kept_apart)
       text += fmt::format("  kept apart: {} results of engine {}\n", kept.results, kept.engine);
     text += fmt::format("  next: {}\n", next_step(summary, target, directory));

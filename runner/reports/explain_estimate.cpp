@@ -1,5 +1,3 @@
-#include "runner/reports/explain_estimate.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -11,6 +9,7 @@
 
 #include "runner/campaign/number_text.h"
 #include "runner/engines/engine_process.h"
+#include "runner/reports/explain.h"
 #include "runner/statistics/statistics.h"
 #include "runner/statistics/window_advice.h"
 
@@ -28,17 +27,9 @@ std::vector<Outcome> completed(Database& database, const PointSummary& point) {
   return found;
 }
 
-std::vector<double> controlled(const std::vector<Outcome>& outcomes) {
-  std::vector<double> values;
-  values.reserve(outcomes.size());
-  for (const Outcome& outcome : outcomes) values.push_back(outcome.value + outcome.control);
-  return values;
-}
-
 std::string interval_text(const Look& look, const std::vector<Outcome>& outcomes,
                           const TargetRecord& target) {
   const double level = target.level();
-  const std::vector<double> values = controlled(outcomes);
   if (!std::isfinite(look.controlled_half_width)) return "";
   if (look.controlled.values == Estimate::Values::share) {
     const Interval interval = share_interval(look.controlled.count, look.controlled.mean, level);
@@ -46,6 +37,8 @@ std::string interval_text(const Look& look, const std::vector<Outcome>& outcomes
         "  interval: {} .. {} of the share (Clopper and Pearson); the half-width is its larger side\n",
         rough(interval.low), rough(interval.high));
   }
+  std::vector<double> values;
+  for (const Outcome& outcome : outcomes) values.push_back(outcome.controlled());
   std::string text;
   if (const std::optional<Interval> interval = bootstrap_t(values, level)) {
     text = fmt::format("  interval of {:.3g} %: Student {} .. {}, bootstrap-t {} .. {}; skewness {}\n",
@@ -54,12 +47,10 @@ std::string interval_text(const Look& look, const std::vector<Outcome>& outcomes
                        rough(interval->high), rough(look.skewness));
   }
   if (is_skewed(look, target.target.confidence)) {
-    text +=
+    text += fmt::format(
         "  skewed: some values are far from the rest on one side, and Student's interval holds the mean less "
-        "often\n"
-        "    than it says; trust the bootstrap interval more, and ask for ";
-    text +=
-        target.target.has_tolerance() ? "a smaller tolerance or a larger minimum\n" : "more realisations\n";
+        "often\n    than it says; trust the bootstrap interval more, and ask for {}\n",
+        target.target.has_tolerance() ? "a smaller tolerance or a larger minimum" : "more realisations");
   }
   return text;
 }
@@ -142,8 +133,7 @@ std::string window_text(Database& database, const PointSummary& point, const std
   return fmt::format(
       "  window: {}; its halves correlate by {:.2f} ({:.2f} .. {:.2f}), equilibration is {:.0f} % of a "
       "realisation;\n"
-      "    for the same error half the window takes {:.2f} times the processor time, twice the window "
-      "{}\n",
+      "    for the same error half the window takes {:.2f} times the processor time, twice the window {}\n",
       conclusion, advice->correlation, advice->low, advice->high,
       100 * cost.equilibration / (cost.equilibration + cost.production), advice->half_as_long, longer);
 }
@@ -177,15 +167,19 @@ std::string line(const AttemptRecord& attempt) {
 
 }  // namespace
 
-std::string losses_text(Database& database, const PointSummary& point) {
-  constexpr std::size_t most_seeds = 10;
+std::map<std::string, std::vector<int>> lost_seeds(Database& database, std::int64_t point) {
   std::map<std::string, std::vector<int>> seeds;
-  for (const RealisationRecord& record : database.realisations(point.point.id)) {
+  for (const RealisationRecord& record : database.realisations(point)) {
     const bool is_lost = record.state == SeedState::failed || record.state == SeedState::quarantined;
     if (is_lost) seeds[record.cause].push_back(record.seed);
   }
+  return seeds;
+}
+
+std::string losses_text(Database& database, const PointSummary& point) {
+  constexpr std::size_t most_seeds = 10;
   std::string text;
-  for (auto& [cause, of_cause] : seeds) {
+  for (auto [cause, of_cause] : lost_seeds(database, point.point.id)) {
     const std::size_t count = of_cause.size();
     if (count > most_seeds) of_cause.resize(most_seeds);
     text += fmt::format("  lost: {} {} (seed{} {}{})\n", count, cause, count == 1 ? "" : "s",

@@ -3,23 +3,32 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
 #include "contract/errors.h"
 #include "runner/campaign/quoting.h"
+#include "runner/campaign/text_table.h"
 #include "runner/owner/retry_plan.h"
-#include "runner/reports/point_estimates.h"
+#include "runner/reports/status.h"
 #include "runner/statistics/cohorts.h"
 #include "runner/statistics/quantity_estimates.h"
 #include "runner/store/database_summary.h"
+#include "runner/store/number_store.h"
 #include "runner/store/result_files.h"
 
 namespace peclet::runner {
 namespace {
+
+// Returns the point of that name; all points where it is empty.
+std::vector<PointRecord> named_points(Database& database, const std::string& name) {
+  std::vector<PointRecord> points = database.points();
+  if (name.empty()) return points;
+  return {points[find_point(points, name)]};
+}
 
 // Seeds that the last look counts.
 int seeds_of_last_look(Database& database, const PointRecord& point) {
@@ -40,10 +49,8 @@ std::string line_of(const PointRecord& point, int seed, int looked_at, const Jso
 
 void for_each_result_line(Database& database, const std::string& name, std::optional<int> seed,
                           const std::function<void(const std::string& line)>& take) {
-  std::vector<PointRecord> points = database.points();
-  if (!name.empty()) points = {points[find_point(points, name)]};
   bool any = false;
-  for (const PointRecord& point : points) {
+  for (const PointRecord& point : named_points(database, name)) {
     const int looked_at = seeds_of_last_look(database, point);
     if (seed) {
       const std::optional<Json> result = database.result(point.id, *seed);
@@ -60,6 +67,42 @@ void for_each_result_line(Database& database, const std::string& name, std::opti
     throw InputError("", "--seed", std::to_string(*seed),
                      fmt::format("must be a seed that has a result{}", name.empty() ? "" : " at " + name));
   }
+}
+
+namespace {
+
+// The path is null where the file was thrown away.
+Json file_json(const FileRecord& record, const CampaignDirectory& directory) {
+  return {{"name", record.file.name},
+          {"bytes", record.file.bytes},
+          {"sha256", record.file.sha256},
+          {"path", record.kept ? Json(record.place(directory).string()) : Json(nullptr)}};
+}
+
+}  // namespace
+
+std::string list_files(Database& database, const CampaignDirectory& directory, const FileChoice& options) {
+  TextTable table;
+  table.add_column("point", TextTable::Align::left);
+  table.add_column("seed");
+  table.add_column("name", TextTable::Align::left);
+  table.add_column("bytes");
+  table.add_column("path", TextTable::Align::left);
+  Json all = Json::array();
+  std::string paths;
+  for (const PointRecord& point : named_points(database, options.point)) {
+    for (const FileRecord& record : files_of_point(database.connection(), point.id)) {
+      const std::string path = record.place(directory).string();
+      if (record.kept) paths += path + '\n';
+      all.push_back(file_json(record, directory));
+      all.back().update({{"point", point.label}, {"hash", point.hash}, {"seed", record.seed}});
+      table.add_row({point.label, fmt::format("{}", record.seed), record.file.name,
+                     fmt::format("{}", record.file.bytes), record.kept ? path : "thrown away"});
+    }
+  }
+  if (options.json) return all.dump(2) + '\n';
+  if (options.paths) return paths;
+  return all.empty() ? "no realisation has left a file\n" : table.text();
 }
 
 namespace {
@@ -97,15 +140,6 @@ Json attempt_json(const AttemptRecord& attempt) {
           {"message", attempt.message}};
 }
 
-// Where it is below the campaign's folder; null where it was thrown away.
-Json file_json(const FileRecord& record) {
-  const Json place = record.kept ? Json(record.place(CampaignDirectory("")).string()) : Json(nullptr);
-  return {{"name", record.file.name},
-          {"bytes", record.file.bytes},
-          {"sha256", record.file.sha256},
-          {"path", place}};
-}
-
 // The seeds of one point as they go into the document.
 class PointExport {
  public:
@@ -119,8 +153,9 @@ class PointExport {
       for (const AttemptRecord& attempt : database.attempts(point.id)) {
         attempts_[attempt.seed].push_back(attempt_json(attempt));
       }
+      const CampaignDirectory below("");  // paths are those below the campaign's folder
       for (const FileRecord& record : files_of_point(database.connection(), point.id)) {
-        files_[record.seed].push_back(file_json(record));
+        files_[record.seed].push_back(file_json(record, below));
       }
     }
     read_results();
@@ -143,9 +178,7 @@ class PointExport {
     if (!canonical_) {
       json["suspect"] = point_.suspect;
       json["cancelled"] = point_.cancelled;
-      json["kept_apart"] = Json::array();
-      for (const KeptApart& kept : database_.kept_apart(point_.hash))
-        json["kept_apart"].push_back({{"engine", kept.engine}, {"results", kept.results}});
+      json["kept_apart"] = to_json(database_.kept_apart(point_.hash));
       json["surplus"] = surplus_;
     }
     return json;
@@ -245,29 +278,92 @@ std::string export_json(Database& database, bool canonical) {
 
 namespace {
 
-std::vector<std::string> look_fields(const std::optional<Look>& look) {
-  if (!look) return std::vector<std::string>(10);
-  return {look->verdict == Verdict::more ? "" : to_string(look->verdict),
-          fmt::format("{}", look->seeds),
-          fmt::format("{}", look->lost),
-          fmt::format("{}", look->estimate.count),
-          csv_number(look->controlled.mean),
-          csv_number(look->controlled.standard_error),
-          csv_number(look->controlled_half_width),
-          csv_number(look->estimate.mean),
-          csv_number(look->estimate.standard_error),
-          csv_number(look->half_width)};
+using Fields = std::vector<std::string>;
+
+void append(Fields& fields, const Fields& more) { fields.insert(fields.end(), more.begin(), more.end()); }
+
+Fields mean_fields(const Estimate& estimate) {
+  return {csv_number(estimate.mean), csv_number(estimate.standard_error)};
 }
 
-std::vector<std::string> full_fields(const PointSummary& point) {
-  return {fmt::format("{}", point.so_far.count),   csv_number(point.so_far.mean),
-          csv_number(point.so_far.standard_error), fmt::format("{}", point.surplus()),
-          csv_number(point.counts.cpu_seconds),    point.point.suspect ? "1" : "0",
-          point.endings.has_jammed() ? "1" : "0"};
+// Count, mean and standard error.
+Fields estimate_fields(const Estimate& estimate) {
+  Fields fields{fmt::format("{}", estimate.count)};
+  append(fields, mean_fields(estimate));
+  return fields;
 }
 
-void append(std::vector<std::string>& fields, const std::vector<std::string>& more) {
-  fields.insert(fields.end(), more.begin(), more.end());
+std::string value_field(const Json& value) {
+  if (value.is_null()) return "";
+  return value.is_string() ? csv_text(value.get<std::string>()) : canonical_json(value);
+}
+
+// The columns that say which point a row is about: label, hash, and one for each pointer that the sweep has
+// set at any point.
+class SettingColumns {
+ public:
+  explicit SettingColumns(const std::vector<PointRecord>& points) {
+    for (const PointRecord& point : points) {
+      for (const auto& [pointer, value] : point.settings.items()) pointers_.insert(pointer);
+    }
+  }
+
+  Fields titles() const {
+    Fields titles{"label", "hash"};
+    titles.insert(titles.end(), pointers_.begin(), pointers_.end());
+    return titles;
+  }
+  Fields fields(const PointRecord& point) const {
+    Fields fields{csv_text(point.label), point.hash};
+    for (const std::string& pointer : pointers_) {
+      fields.push_back(value_field(point.settings.value(pointer, Json())));
+    }
+    return fields;
+  }
+
+ private:
+  std::set<std::string> pointers_;
+};
+
+// Returns the estimates of every quantity over the seeds of the look; nothing before the first one.
+std::vector<QuantityEstimate> point_estimates(Database& database, const PointRecord& point,
+                                              const std::optional<Look>& look) {
+  QuantityEstimates estimates;
+  if (look) {
+    database.for_each_result(point.id, look->seeds, [&](int, const Json& result) { estimates.add(result); });
+  }
+  return estimates.estimates();
+}
+
+// Returns those of scalars alone, for which no result is read.
+std::vector<QuantityEstimate> scalar_estimates(NumberStore& numbers, const PointRecord& point,
+                                               const std::optional<Look>& look) {
+  QuantityEstimates estimates(QuantityEstimates::Wanted::scalars);
+  if (look) {
+    numbers.for_each(point.id, look->seeds, [&](const NumberStore::Entry& seed) {
+      estimates.add(seed.layout, seed.numbers, seed.has_jammed);
+    });
+  }
+  return estimates.estimates();
+}
+
+Fields look_fields(const std::optional<Look>& look) {
+  if (!look) return Fields(10);
+  Fields fields{look->verdict == Verdict::more ? "" : to_string(look->verdict),
+                fmt::format("{}", look->seeds), fmt::format("{}", look->lost),
+                fmt::format("{}", look->estimate.count)};
+  append(fields, mean_fields(look->controlled));
+  fields.push_back(csv_number(look->controlled_half_width));
+  append(fields, mean_fields(look->estimate));
+  fields.push_back(csv_number(look->half_width));
+  return fields;
+}
+
+Fields full_fields(const PointSummary& point) {
+  Fields fields = estimate_fields(point.so_far);
+  append(fields, {fmt::format("{}", point.surplus()), csv_number(point.counts.cpu_seconds),
+                  point.point.suspect ? "1" : "0", point.endings.has_jammed() ? "1" : "0"});
+  return fields;
 }
 
 // Three columns for each scalar quantity of any point; one that has another unit elsewhere has others there.
@@ -281,39 +377,34 @@ class ScalarColumns {
     }
   }
   // `others` are the titles of the columns before these.
-  std::vector<std::string> titles(const std::vector<std::string>& others) const {
-    std::vector<std::string> titles;
+  Fields titles(const Fields& others) const {
+    Fields titles;
     for (const auto& [quantity, rows] : columns_) {
       const std::string title = title_of(quantity.first, quantity.second, others);
       append(titles, {title, title + " standard_error", title + " count"});
     }
     return titles;
   }
-  std::vector<std::string> fields(std::size_t row) const {
-    std::vector<std::string> fields;
+  Fields fields(std::size_t row) const {
+    Fields fields;
     for (const auto& [quantity, rows] : columns_) {
       const auto found = rows.find(row);
-      if (found == rows.end()) {
-        append(fields, {"", "", ""});
-      } else {
-        const Estimate& estimate = found->second;
-        append(fields, {csv_number(estimate.mean), csv_number(estimate.standard_error),
-                        fmt::format("{}", estimate.count)});
-      }
+      const bool is_known = found != rows.end();
+      append(fields, is_known ? mean_fields(found->second) : Fields(2));
+      fields.push_back(is_known ? fmt::format("{}", found->second.count) : "");
     }
     return fields;
   }
 
  private:
-  static std::string title_of(const std::string& name, const std::string& unit,
-                              const std::vector<std::string>& others) {
+  static std::string title_of(const std::string& name, const std::string& unit, const Fields& others) {
     const bool is_taken = std::find(others.begin(), others.end(), name) != others.end();
     const std::string unambiguous = is_taken ? "quantity " + name : name;
     return csv_text(unit == "1" ? unambiguous : fmt::format("{} [{}]", unambiguous, unit));
   }
 
-  std::map<std::pair<std::string, std::string>, std::map<std::size_t, Estimate>>
-      columns_;  // by name and unit
+  // By name and unit.
+  std::map<std::pair<std::string, std::string>, std::map<std::size_t, Estimate>> columns_;
 };
 
 }  // namespace
@@ -324,20 +415,18 @@ std::string export_csv(Database& database, bool canonical) {
   std::vector<PointSummary> summaries;
   if (!canonical) summaries = summarise_points(database, target);
   const SettingColumns settings(points);
-  std::vector<std::string> titles{"label", "hash"};
-  append(titles, settings.titles());
+  Fields titles = settings.titles();
   append(titles, {"verdict", "seeds", "lost", "count", "mean", "standard_error", "half_width",
                   "uncontrolled_mean", "uncontrolled_standard_error", "uncontrolled_half_width"});
   if (!canonical) {
     append(titles, {"so_far_count", "so_far_mean", "so_far_standard_error", "surplus", "cpu_seconds",
                     "suspect", "jammed"});
   }
-  std::vector<std::vector<std::string>> rows;
+  std::vector<Fields> rows;
   ScalarColumns scalars;
   NumberStore numbers(database.connection());
   for (const PointRecord& point : points) {
-    std::vector<std::string> fields{csv_text(point.label), point.hash};
-    append(fields, settings.fields(point));
+    Fields fields = settings.fields(point);
     const std::optional<Look> look = checked_look(database, point, target);
     append(fields, look_fields(look));
     if (!canonical) append(fields, full_fields(summaries[rows.size()]));
@@ -357,16 +446,10 @@ std::string export_csv(Database& database, bool canonical) {
 
 namespace {
 
-using Fields = std::vector<std::string>;
-
 struct Point {
   Fields which;  // label, hash, settings
   std::vector<QuantityEstimate> estimates;
 };
-
-std::string value_field(const Json& value) {
-  return value.is_string() ? csv_text(value.get<std::string>()) : canonical_json(value);
-}
 
 // Name, unit and value of each axis at an element, the last axis running fastest; empty beyond the last axis.
 Fields place_fields(const Quantity& quantity, std::size_t element, std::size_t most_axes) {
@@ -383,23 +466,11 @@ Fields place_fields(const Quantity& quantity, std::size_t element, std::size_t m
 
 Fields number_fields(const QuantityEstimate& found, std::size_t element, double confidence) {
   const Estimate& estimate = found.estimates[element];
-  Fields fields{fmt::format("{}", estimate.count), csv_number(estimate.mean),
-                csv_number(estimate.standard_error), csv_number(half_width(estimate, confidence))};
-  if (found.uncontrolled.empty()) {
-    fields.insert(fields.end(), {"", ""});
-  } else {
-    fields.push_back(csv_number(found.uncontrolled[element].mean));
-    fields.push_back(csv_number(found.uncontrolled[element].standard_error));
-  }
+  Fields fields = estimate_fields(estimate);
+  fields.push_back(csv_number(half_width(estimate, confidence)));
+  const bool is_controlled = !found.uncontrolled.empty();
+  append(fields, is_controlled ? mean_fields(found.uncontrolled[element]) : Fields(2));
   return fields;
-}
-
-std::string row(const Fields& which, const Fields& quantity, const Fields& place, const Fields& numbers) {
-  Fields fields = which;
-  for (const Fields* more : {&quantity, &place, &numbers}) {
-    fields.insert(fields.end(), more->begin(), more->end());
-  }
-  return csv_line(fields);
 }
 
 }  // namespace
@@ -411,34 +482,31 @@ std::string export_long_csv(Database& database) {
   std::vector<Point> points;
   std::size_t most_axes = 1;
   for (const PointRecord& record : records) {
-    Point point{{csv_text(record.label), record.hash}, {}};
-    const Fields set = settings.fields(record);
-    point.which.insert(point.which.end(), set.begin(), set.end());
-    point.estimates = point_estimates(database, record, checked_look(database, record, target));
-    for (const QuantityEstimate& found : point.estimates) {
+    points.push_back(
+        {settings.fields(record), point_estimates(database, record, checked_look(database, record, target))});
+    for (const QuantityEstimate& found : points.back().estimates) {
       most_axes = std::max(most_axes, found.quantity.axes.size());
     }
-    points.push_back(std::move(point));
   }
-  Fields titles{"label", "hash"}, axes;
-  const Fields set = settings.titles();
-  titles.insert(titles.end(), set.begin(), set.end());
+  Fields titles = settings.titles();
+  append(titles, {"quantity", "symbol", "unit", "estimator"});
   for (std::size_t axis = 1; axis <= most_axes; ++axis) {
-    for (const char* const what : {"axis_{}", "axis_{}_unit", "axis_{}_value"}) {
-      axes.push_back(fmt::format(fmt::runtime(what), axis));
-    }
+    const std::string name = fmt::format("axis_{}", axis);
+    append(titles, {name, name + "_unit", name + "_value"});
   }
-  std::string text = row(
-      titles, {"quantity", "symbol", "unit", "estimator"}, axes,
-      {"count", "mean", "standard_error", "half_width", "uncontrolled_mean", "uncontrolled_standard_error"});
+  append(titles, {"count", "mean", "standard_error", "half_width", "uncontrolled_mean",
+                  "uncontrolled_standard_error"});
+  std::string text = csv_line(titles);
   for (const Point& point : points) {
     for (const QuantityEstimate& found : point.estimates) {
       const Quantity& quantity = found.quantity;
-      const Fields what{csv_text(quantity.name), csv_text(quantity.symbol), csv_text(quantity.unit),
-                        estimator_of(quantity)};
       for (std::size_t k = 0; k < found.estimates.size(); ++k) {
-        text += row(point.which, what, place_fields(quantity, k, most_axes),
-                    number_fields(found, k, target.level()));
+        Fields fields = point.which;
+        append(fields, {csv_text(quantity.name), csv_text(quantity.symbol), csv_text(quantity.unit),
+                        estimator_of(quantity)});
+        append(fields, place_fields(quantity, k, most_axes));
+        append(fields, number_fields(found, k, target.level()));
+        text += csv_line(fields);
       }
     }
   }

@@ -5,42 +5,34 @@
 // Two runs with other numbers of workers, killed or not, give the same bytes. The full form adds the rest.
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
-#include <vector>
 
+#include "runner/store/campaign_directory.h"
 #include "runner/store/database.h"
 
 namespace peclet::runner {
 
 // The verb `peclet results`: every stored result as the engine wrote it, one JSON object a line, for programs
 // that cannot inflate what the database holds.
-struct ResultsOptions {
-  std::filesystem::path campaign;  // file or folder
-  std::filesystem::path directory;
-  std::string point;  // label or beginning of the hash; all points unless given
-  std::optional<int> seed;
-};
-
+//
 // Gives `take` the lines in the order of points and seeds, one at a time, without their newlines. Each is an
 // object of `label`, `hash`, `settings`, `seed`, `deciding` (whether the last look counts the seed) and
 // `result`. Throws InputError for a point that is not there, or when there is no result of `seed`.
 void for_each_result_line(Database& database, const std::string& point, std::optional<int> seed,
                           const std::function<void(const std::string& line)>& take);
 
-enum class ExportFormat { json, csv, long_csv };
-
-struct ExportOptions {
-  std::filesystem::path campaign;  // file or folder
-  std::filesystem::path directory;
-  ExportFormat format = ExportFormat::json;
-  bool canonical = false;
-  std::filesystem::path output;  // "": standard output
-  std::filesystem::path bundle;  // "": no archive of everything
-  bool quiet = false;            // does not say where it is
+// The verb `peclet files`: what realisations have left beside their results.
+struct FileChoice {
+  std::string point;  // as find_point() names it; "" for all
+  bool paths = false, json = false;
 };
+
+// A table; with `paths` the paths of the files that are kept, a line each; with `json` an array of point,
+// hash, seed, name, bytes, sha256 and path, which is null of a file that was thrown away. Throws InputError
+// for a point that there is not.
+std::string list_files(Database& database, const CampaignDirectory& directory, const FileChoice& options);
 
 // Documents as schema/README.md describes them. Throw IntegrityError when stored looks are not what the
 // stored results say.

@@ -178,10 +178,6 @@ std::vector<std::string> predicted_cells(const PointPlan& point) {
           with_range(prediction.seeds, seconds_per_hour / point.cost.cpu_seconds), remark};
 }
 
-std::vector<std::string> bare_cells(const Plan& plan, const PointPlan& point) {
-  return {rough(hours(point, plan.minimum)), rough(hours(point, plan.maximum))};
-}
-
 std::string table_text(const Plan& plan, bool predicted) {
   std::vector<std::string> labels;
   double steps = 0;
@@ -205,18 +201,21 @@ std::string table_text(const Plan& plan, bool predicted) {
     const PointPlan& point = plan.points[i];
     std::vector<std::string> row = columns.cells(i);
     row.insert(row.end(), {rough(point.particle_steps), cost_text(point.cost)});
-    add_row(std::move(row), predicted ? predicted_cells(point) : bare_cells(plan, point));
+    add_row(std::move(row),
+            predicted ? predicted_cells(point)
+                      : std::vector{rough(hours(point, plan.minimum)), rough(hours(point, plan.maximum))});
   }
   std::vector<std::string> all(columns.count());
   all.front() = "all";
   all.insert(all.end(), {rough(steps), ""});
-  if (predicted) {
-    const Totals& totals = plan.totals;
-    const bool known = totals.points > 0;
-    add_row(std::move(all), {known ? with_range(totals.seeds, 1) : "-",
-                             known ? with_range(totals.cpu_seconds, seconds_per_hour) : "-", ""});
-  } else {
+  const Totals& totals = plan.totals;
+  if (!predicted) {
     add_row(std::move(all), {rough(total_hours(plan, plan.minimum)), rough(total_hours(plan, plan.maximum))});
+  } else if (totals.points == 0) {
+    add_row(std::move(all), {"-", "-", ""});
+  } else {
+    add_row(std::move(all),
+            {with_range(totals.seeds, 1), with_range(totals.cpu_seconds, seconds_per_hour), ""});
   }
   return table.text();
 }
@@ -230,8 +229,7 @@ std::string legend(const Plan& plan, bool predicted) {
   if (!plan.guessed_from.empty()) {
     text = fmt::format(
         "~: a guess, from the first two seconds of one realisation of {} and the particle-steps of the "
-        "others; "
-        "--pilot measures\n",
+        "others; --pilot measures\n",
         plan.guessed_from);
   }
   for (const std::string& trial : plan.broke_off) text += fmt::format("the trial of {}\n", trial);
@@ -282,23 +280,18 @@ std::string rest_text(const Plan& plan) {
          text;
 }
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 template <typename Number>
 Json range_json(const Expected<Number>& value, double unit) {
-  return {{"expected", number(value.likely / unit)},
-          {"lower", number(value.lower / unit)},
-          {"upper", number(value.upper / unit)}};
+  return {{"expected", number_json(value.likely / unit)},
+          {"lower", number_json(value.lower / unit)},
+          {"upper", number_json(value.upper / unit)}};
 }
 
 Json prediction_json(const PointPlan& point) {
   if (!point.is_predicted()) return nullptr;
   const Prediction& prediction = point.prediction;
   return {{"pilot", prediction.pilot},
-          {"seeds",
-           {{"expected", prediction.seeds.likely},
-            {"lower", prediction.seeds.lower},
-            {"upper", prediction.seeds.upper}}},
+          {"seeds", range_json(prediction.seeds)},
           {"cpu_hours", range_json(prediction.seeds, seconds_per_hour / point.cost.cpu_seconds)},
           {"capped_probability", prediction.capped}};
 }
@@ -335,21 +328,21 @@ Json plan_json(const Plan& plan) {
     points.push_back({{"label", point.label},
                       {"particle_steps", point.particle_steps},
                       {"measured_seeds", point.cost.count},
-                      {"cpu_seconds_per_seed", number(point.cost.cpu_seconds)},
-                      {"cpu_hours_minimum", number(hours(point, plan.minimum))},
-                      {"cpu_hours_maximum", number(hours(point, plan.maximum))},
+                      {"cpu_seconds_per_seed", number_json(point.cost.cpu_seconds)},
+                      {"cpu_hours_minimum", number_json(hours(point, plan.minimum))},
+                      {"cpu_hours_maximum", number_json(hours(point, plan.maximum))},
                       {"verdict", point.decided ? Json(to_string(point.decided->verdict)) : Json(nullptr)},
                       {"seeds_ended", point.ended},
                       {"prediction", prediction_json(point)},
-                      {"flow_over_rest", number(point.flow_over_rest.value_or(std::nan("")))},
+                      {"flow_over_rest", number_json(point.flow_over_rest.value_or(std::nan("")))},
                       {"obstacle", obstacle.empty() ? Json(nullptr) : Json(obstacle)}});
   }
   return {{"schema_version", 1},
           {"campaign", plan.campaign},
           {"realisations", {{"minimum", plan.minimum}, {"maximum", plan.maximum}}},
           {"points", points},
-          {"cpu_hours_minimum", number(total_hours(plan, plan.minimum))},
-          {"cpu_hours_maximum", number(total_hours(plan, plan.maximum))},
+          {"cpu_hours_minimum", number_json(total_hours(plan, plan.minimum))},
+          {"cpu_hours_maximum", number_json(total_hours(plan, plan.maximum))},
           {"trials_broken_off", plan.broke_off},
           {"guessed_from", plan.guessed_from.empty() ? Json(nullptr) : Json(plan.guessed_from)},
           {"prediction", totals_json(plan)}};

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <ctime>
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>

@@ -8,8 +8,6 @@
 
 #include "contract/errors.h"
 #include "runner/campaign/number_text.h"
-#include "runner/campaign/text_table.h"
-#include "runner/reports/prediction_text.h"
 #include "runner/statistics/cohorts.h"
 
 namespace peclet::runner {
@@ -34,9 +32,6 @@ Json bundles_json(const std::vector<HandedOver>& bundles) {
 Json point_json(const PointSummary& point) {
   Json workers = Json::array();
   for (const LeaseRecord& lease : point.leases) workers.push_back(lease_json(lease));
-  Json kept_apart = Json::array();
-  for (const KeptApart& kept : point.kept_apart)
-    kept_apart.push_back({{"engine", kept.engine}, {"results", kept.results}});
   const StateCounts& counts = point.counts;
   return {{"label", point.point.label},
           {"hash", point.point.hash},
@@ -45,7 +40,7 @@ Json point_json(const PointSummary& point) {
           {"suspect", point.point.suspect},
           {"cancelled", point.point.cancelled},
           {"priority", point.point.priority},
-          {"kept_apart", kept_apart},
+          {"kept_apart", to_json(point.kept_apart)},
           {"seeds",
            {{"wanted", point.wanted},
             {"wanted_ended", point.wanted_ended},
@@ -69,8 +64,15 @@ Json point_json(const PointSummary& point) {
 
 }  // namespace
 
-CampaignStatus read_status(Database& database) {
+Json to_json(const std::vector<KeptApart>& results) {
+  Json list = Json::array();
+  for (const KeptApart& kept : results) list.push_back({{"engine", kept.engine}, {"results", kept.results}});
+  return list;
+}
+
+CampaignStatus read_status(Database& database, std::optional<std::int64_t> owner) {
   CampaignStatus status;
+  status.owner = owner;
   status.campaign = database.campaign();
   status.points = summarise_points(database, status.campaign.target);
   status.forecasts = forecasts_of(database, status.points);
@@ -81,6 +83,23 @@ CampaignStatus read_status(Database& database) {
                               std::max(1, database.last_workers()));
   }
   return status;
+}
+
+CampaignTotals totals_of(const CampaignStatus& status) {
+  CampaignTotals totals;
+  for (const PointSummary& point : status.points) {
+    totals.decided += point.decided ? 1 : 0;
+    totals.workers += static_cast<int>(point.leases.size());
+    totals.ended += point.counts.terminal();
+    totals.running += point.counts.running;
+    totals.lost += point.lost();
+    totals.surplus += point.surplus();
+    totals.cpu_seconds += point.counts.cpu_seconds;
+    ++totals.standings[standing_word(point)];
+    for (const auto& [cause, count] : point.losses) totals.losses[cause] += count;
+  }
+  for (const HandedOver& bundle : status.handed_over) totals.handed_over += bundle.seeds;
+  return totals;
 }
 
 int standing(const CampaignStatus& status) {
@@ -258,8 +277,8 @@ std::string earlier_looks_text(const CampaignStatus& status) {
   for (const PointSummary& point : status.points) {
     if (point.earlier_look == 0) continue;
     text += fmt::format(
-        "{}: the look at {} seeds decides, the first within the present target; all {} that "
-        "have ended are in \"so far\"\n",
+        "{}: the look at {} seeds decides, the first within the present target; all {} that have ended are "
+        "in \"so far\"\n",
         point.point.label, point.looks.back().seeds, point.counts.terminal());
   }
   return text;
@@ -267,26 +286,25 @@ std::string earlier_looks_text(const CampaignStatus& status) {
 
 // "3 capped, 2 open"
 std::string listed(const std::map<std::string, int>& counts) {
-  std::string text;
-  for (const auto& [name, count] : counts)
-    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, name);
-  return text;
+  std::vector<std::string> parts;
+  for (const auto& [name, count] : counts) parts.push_back(fmt::format("{} {}", count, name));
+  return fmt::format("{}", fmt::join(parts, ", "));
 }
 
 // "; 40 handed over (jobs 12, 17)"
 std::string handed_over_text(const CampaignStatus& status) {
   constexpr std::size_t most_jobs = 4;
   int seeds = 0;
-  std::string jobs;
-  for (std::size_t i = 0; i < status.handed_over.size(); ++i) {
-    const HandedOver& bundle = status.handed_over[i];
+  std::vector<std::string> jobs;
+  for (const HandedOver& bundle : status.handed_over) {
     seeds += bundle.seeds;
-    if (i < most_jobs) jobs += (i > 0 ? ", " : "") + (bundle.job.empty() ? "not confirmed" : bundle.job);
+    jobs.push_back(bundle.job.empty() ? "not confirmed" : bundle.job);
   }
   if (seeds == 0) return "";
-  const std::size_t more = status.handed_over.size() - std::min(most_jobs, status.handed_over.size());
-  if (more > 0) jobs += fmt::format(" and {} more", more);
-  return fmt::format("; {} handed over (job{} {})", seeds, status.handed_over.size() == 1 ? "" : "s", jobs);
+  const std::size_t all = jobs.size(), shown = std::min(most_jobs, all);
+  jobs.resize(shown);
+  return fmt::format("; {} handed over (job{} {}{})", seeds, all == 1 ? "" : "s", fmt::join(jobs, ", "),
+                     all > shown ? fmt::format(" and {} more", all - shown) : "");
 }
 
 std::string kept_apart_text(const CampaignStatus& status) {
@@ -301,26 +319,16 @@ std::string kept_apart_text(const CampaignStatus& status) {
 }
 
 std::string seed_totals(const CampaignStatus& status) {
-  int ended = 0, running = 0, surplus = 0, lost = 0;
-  double cpu_seconds = 0;
-  std::map<std::string, int> losses;
-  for (const PointSummary& point : status.points) {
-    ended += point.counts.terminal();
-    running += point.counts.running;
-    surplus += point.surplus();
-    lost += point.lost();
-    cpu_seconds += point.counts.cpu_seconds;
-    for (const auto& [cause, count] : point.losses) losses[cause] += count;
-  }
-  std::string text = fmt::format("{} seeds ended", ended);
-  if (lost > 0) text += fmt::format(", {} of them lost ({})", lost, listed(losses));
-  if (surplus > 0) text += fmt::format(", {} surplus", surplus);
-  if (running > 0) {
-    text +=
-        fmt::format("; {} {}", running, status.owner ? "running" : "were running when the run was killed");
+  const CampaignTotals totals = totals_of(status);
+  std::string text = fmt::format("{} seeds ended", totals.ended);
+  if (totals.lost > 0) text += fmt::format(", {} of them lost ({})", totals.lost, listed(totals.losses));
+  if (totals.surplus > 0) text += fmt::format(", {} surplus", totals.surplus);
+  if (totals.running > 0) {
+    text += fmt::format("; {} {}", totals.running,
+                        status.owner ? "running" : "were running when the run was killed");
   }
   text += handed_over_text(status);
-  return text + fmt::format("; processor time {}\n", duration_text(cpu_seconds));
+  return text + fmt::format("; processor time {}\n", duration_text(totals.cpu_seconds));
 }
 
 // Why seeds were lost: one line for each cause at each point.
@@ -341,9 +349,7 @@ std::string losses_text(const CampaignStatus& status) {
 }  // namespace
 
 std::string point_totals(const CampaignStatus& status) {
-  std::map<std::string, int> verdicts;
-  for (const PointSummary& point : status.points) ++verdicts[standing_word(point)];
-  return fmt::format("{}: {}", counted(status.points.size(), "point"), listed(verdicts));
+  return fmt::format("{}: {}", counted(status.points.size(), "point"), listed(totals_of(status).standings));
 }
 
 std::string status_table(const CampaignStatus& status, std::size_t width) {
@@ -381,12 +387,6 @@ std::string status_table(const CampaignStatus& status, std::size_t width) {
          legend(status, table.left_out(width), width) + '\n' + folded(totals, width);
 }
 
-std::string status_table(Database& database, std::int64_t owner) {
-  CampaignStatus status = read_status(database);
-  status.owner = owner;
-  return status_table(status);
-}
-
 std::string workers_text(const CampaignStatus& status, std::size_t width) {
   constexpr std::size_t most_lines = 16;
   std::string to_go = status.to_go ? to_string(*status.to_go) : "";
@@ -417,6 +417,84 @@ std::string workers_text(const CampaignStatus& status, std::size_t width) {
   if (workers > 0) text += table.text_within(width);
   if (workers > most_lines) text += fmt::format("and {} more\n", workers - most_lines);
   return text;
+}
+
+// How good the predictions of `peclet plan --pilot` were.
+
+namespace {
+
+// Seeds that an open point still needs, if it needs as many as expected; its next look in any case.
+int seeds_to_come(const PointSummary& point) {
+  return std::max(point.wanted, point.prediction->seeds.likely) - point.wanted_ended;
+}
+
+}  // namespace
+
+std::string predictions_text(const std::vector<PointSummary>& points) {
+  int decided = 0, within = 0, seeds = 0, expected_seeds = 0, open = 0, to_come = 0;
+  double seconds = 0, expected_seconds = 0, seconds_to_come = 0;
+  for (const PointSummary& point : points) {
+    if (!point.prediction) continue;
+    if (point.decided) {
+      ++decided;
+      within += point.prediction->holds(point.wanted) ? 1 : 0;
+      seeds += point.wanted;
+      expected_seeds += point.prediction->seeds.likely;
+      seconds += point.wanted_cpu_seconds;
+      expected_seconds += point.prediction->likely_cpu_seconds();
+    } else {
+      ++open;
+      to_come += seeds_to_come(point);
+      seconds_to_come += seeds_to_come(point) * point.prediction->cpu_seconds;
+    }
+  }
+  std::string text;
+  if (decided > 0) {
+    text = fmt::format(
+        "predictions: {} of {} within {} range; {} seeds ({} expected), processor time {} ({} expected)\n",
+        within, decided, decided == 1 ? "its" : "their", seeds, expected_seeds, duration_text(seconds),
+        duration_text(expected_seconds));
+  }
+  if (open > 0) {
+    text += fmt::format("predicted for {} open: {} seeds and {} of processor time to come\n", open, to_come,
+                        duration_text(seconds_to_come));
+  }
+  return text;
+}
+
+std::string prediction_text(const PointSummary& point) {
+  if (!point.prediction) return "";
+  const StoredPrediction& made = *point.prediction;
+  const std::string expected = fmt::format("  predicted from {} seeds: {} ({} .. {}), processor time {}",
+                                           made.pilot, made.seeds.likely, made.seeds.lower, made.seeds.upper,
+                                           duration_text(made.likely_cpu_seconds()));
+  if (!point.decided) {
+    return expected + fmt::format("; {} and {} to come\n", seeds_to_come(point),
+                                  duration_text(seeds_to_come(point) * made.cpu_seconds));
+  }
+  return expected + fmt::format("; it took {}, {} that range, and {}\n", point.wanted,
+                                made.holds(point.wanted) ? "within" : "outside",
+                                duration_text(point.wanted_cpu_seconds));
+}
+
+Json prediction_json(const PointSummary& point) {
+  if (!point.prediction) return nullptr;
+  const StoredPrediction& made = *point.prediction;
+  Json json{{"made_at", made.made_at},
+            {"pilot", made.pilot},
+            {"seeds", range_json(made.seeds)},
+            {"cpu_seconds", made.likely_cpu_seconds()},
+            {"within_range", nullptr},
+            {"taken", nullptr},
+            {"to_come", nullptr}};
+  if (point.decided) {
+    json["within_range"] = made.holds(point.wanted);
+    json["taken"] = {{"seeds", point.wanted}, {"cpu_seconds", point.wanted_cpu_seconds}};
+  } else {
+    json["to_come"] = {{"seeds", seeds_to_come(point)},
+                       {"cpu_seconds", seeds_to_come(point) * made.cpu_seconds}};
+  }
+  return json;
 }
 
 }  // namespace peclet::runner

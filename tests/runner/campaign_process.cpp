@@ -12,8 +12,8 @@
 #include <thread>
 
 #include "contract/durable_file.h"
-#include "runner/command_line/plan_campaign.h"
 #include "runner/command_line/print.h"
+#include "runner/command_line/run.h"
 
 namespace peclet::runner {
 namespace {

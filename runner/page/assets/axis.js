@@ -44,19 +44,17 @@ class Axis {
 
   ticks() {
     if (this.categories) return this.categories.map((text, value) => ({ value, text }));
-    return (this.log ? this.logarithmicTicks() : this.linearTicks()).map((value) => ({
-      value,
-      text: Format.plain(value),
-    }));
+    const values = this.log ? this.logarithmicTicks() : this.linearTicks();
+    return values.map((value) => ({ value, text: Format.plain(value) }));
   }
 
   // 1, 2 or 5 times a power of ten apart.
-  linearTicks() {
-    for (let unit = 10 ** (Math.floor(Math.log10(this.high - this.low)) - 1); ; unit *= 10) {
+  linearTicks(low = this.low, high = this.high) {
+    for (let unit = 10 ** (Math.floor(Math.log10(high - low)) - 1); ; unit *= 10) {
       for (const multiple of [1, 2, 5]) {
         const step = multiple * unit,
-          first = Math.ceil(this.low / step),
-          last = Math.floor(this.high / step);
+          first = Math.ceil(low / step),
+          last = Math.floor(high / step);
         if (last - first >= this.mostTicks) continue;
         return Array.from({ length: last - first + 1 }, (_, i) => Number(((first + i) * step).toPrecision(12)));
       }
@@ -82,18 +80,9 @@ class Axis {
       const ticks = this.powers(1, multiples);
       if (ticks.length >= 3 && ticks.length <= this.mostTicks) return ticks;
     }
-    if (this.high - this.low < 1) {
-      // less than a factor of ten: as on a linear axis
-      const linear = new Axis({
-        low: 10 ** this.low,
-        high: 10 ** this.high,
-        begin: 0,
-        end: 1,
-        margin: 0,
-        mostTicks: this.mostTicks,
-      });
-      return linear.linearTicks().filter((value) => value > 0);
-    }
+    // Less than a factor of ten: as on a linear axis.
+    if (this.high - this.low < 1)
+      return this.linearTicks(10 ** this.low, 10 ** this.high).filter((value) => value > 0);
     for (let stride = 1; ; ++stride) {
       const ticks = this.powers(stride, [1]);
       if (ticks.length <= this.mostTicks) return ticks;

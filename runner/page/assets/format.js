@@ -79,6 +79,11 @@ const Format = {
     return typeof value === 'string' ? value : JSON.stringify(value);
   },
 
+  // Plain text as parts of Format.symbol().
+  parts(text) {
+    return [{ text, level: 0 }];
+  },
+
   // A symbol as engines write it, such as η_r or σ_xy^{contact normal}, as parts [{text, level}]: what follows _ is lowered
   // (-1), what follows ^ raised (1), letters and digits or all between braces. An `element` is lowered behind the name.
   symbol(text, element = '') {
@@ -90,10 +95,8 @@ const Format = {
         );
     return named
       .split(/([_^](?:[\p{L}\p{N}]+|\{[^}]*\}))/u)
-      .map((part, i) =>
-        i % 2
-          ? { text: part.slice(1).replace(/[{}]/g, ''), level: part[0] === '_' ? -1 : 1 }
-          : { text: part, level: 0 },
+      .flatMap((part, i) =>
+        i % 2 ? { text: part.slice(1).replace(/[{}]/g, ''), level: part[0] === '_' ? -1 : 1 } : Format.parts(part),
       )
       .filter((part) => part.text);
   },
@@ -105,6 +108,16 @@ const Format = {
   // A pure number has none.
   unit(unit) {
     return unit === '1' ? '' : unit;
+  },
+
+  // {words, symbol: parts, unit} of what has no symbol.
+  about(words, unit = '') {
+    return { words, symbol: [], unit };
+  },
+
+  // The symbol of what is described so, or else its words.
+  short(about) {
+    return about.symbol.length ? about.symbol : about.words;
   },
 
   // {words, symbol: parts, unit} of a key of the scene. One that the engine has no words for is called by its last step,
@@ -123,12 +136,9 @@ const Format = {
 
   // {words, symbol, unit} of what is measured.
   quantity(quantity) {
-    const { element, name, symbol, unit } = quantity;
-    return {
-      words: Format.words(name) + (element ? `, ${element}` : ''),
-      symbol: symbol ? Format.symbol(symbol, element) : [],
-      unit: Format.unit(unit),
-    };
+    const { element, name, symbol, unit } = quantity,
+      words = Format.words(name) + (element ? `, ${element}` : '');
+    return { words, symbol: symbol ? Format.symbol(symbol, element) : [], unit: Format.unit(unit) };
   },
 
   // For a list to choose from, which shows plain text only.
@@ -139,9 +149,8 @@ const Format = {
 
   // "relative viscosity ηr [unit]" as parts.
   title(about) {
-    const parts = [{ text: about.words, level: 0 }];
-    if (about.symbol.length) parts.push({ text: ' ', level: 0 }, ...about.symbol);
-    if (about.unit) parts.push({ text: ' [', level: 0 }, ...Format.symbol(about.unit), { text: ']', level: 0 });
-    return parts;
+    const symbol = about.symbol.length ? [...Format.parts(' '), ...about.symbol] : [],
+      unit = about.unit ? [...Format.parts(' ['), ...Format.symbol(about.unit), ...Format.parts(']')] : [];
+    return [...Format.parts(about.words), ...symbol, ...unit];
   },
 };

@@ -13,7 +13,7 @@ class Live {
 
   start() {
     this.say();
-    if (this.campaign.data) this.campaign.pick(this.campaign.data.points.findIndex((one) => one.hash === this.campaign.chosen));
+    if (this.campaign.data) this.campaign.pick(this.campaign.place());
     setTimeout(() => this.ask(), Live.every);
   }
 
@@ -82,8 +82,7 @@ class Live {
       if (!response.ok) return;
       const details = await response.json();
       this.known.set(hash, { ...this.known.get(hash), details });
-      const { campaign } = this;
-      if (campaign.chosen === hash) campaign.pick(campaign.data.points.findIndex((one) => one.hash === hash));
+      if (this.campaign.chosen === hash) this.campaign.pick(this.campaign.place());
     } catch (error) {
       this.lost = this.lost || new Date();
       this.say();

@@ -1,8 +1,6 @@
 // The page: its parts, which stay, and the campaign, which may become another one while somebody looks.
 class Campaign {
-  constructor() {
-    this.chosen = null; // hash of the point
-  }
+  chosen = null; // hash of the point
 
   part(id) {
     return document.getElementById(id);
@@ -26,9 +24,12 @@ class Campaign {
     Page.renew(this.part('results'), resultsShown(data), (host) => {
       this.table = resultsTable(data, sweep, host, pick);
     });
-    this.pick(Math.max(0, data.points.findIndex((point) => point.hash === this.chosen)));
+    this.pick(Math.max(0, this.place()));
     Page.renew(this.part('doubts'), doubtsShown(data), (host) => writeDoubts(data, host));
-    this.writeWork(data);
+    if (data.work.attempts.length) {
+      this.work = this.work || new WorkView(this.part('work'));
+      this.work.show(data);
+    }
     Page.renew(this.part('cost'), costShown(data), (host) => writeCost(data, host, pick));
     Page.renew(this.part('origin'), originShown(data), (host) => writeOrigin(data, sweep, host));
     const now = anchor.isConnected ? anchor : document.activeElement;
@@ -47,6 +48,11 @@ class Campaign {
     return seen || document.body;
   }
 
+  // The place of the chosen point; -1 where there is none.
+  place() {
+    return this.data.points.findIndex((point) => point.hash === this.chosen);
+  }
+
   pick(index) {
     const point = this.data.points[index];
     if (!point) return;
@@ -54,12 +60,6 @@ class Campaign {
     this.point.show(this.data, index);
     this.sweep.chart.choose(index);
     this.table.choose(index);
-  }
-
-  writeWork(data) {
-    if (!data.work.attempts.length) return;
-    if (!this.work) this.work = new WorkView(this.part('work'));
-    this.work.show(data);
   }
 }
 

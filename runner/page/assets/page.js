@@ -1,45 +1,38 @@
 // The page: its data and its parts.
 const Page = {
+  element(name, properties = {}, ...children) {
+    const made = Object.assign(document.createElement(name), properties);
+    made.append(...children);
+    return made;
+  },
   // Text, or parts of Format.symbol(), into an element.
   fill(element, content) {
-    for (const part of Array.isArray(content) ? content : [{ text: content, level: 0 }]) {
-      const inner = part.level ? document.createElement(part.level > 0 ? 'sup' : 'sub') : null;
-      if (inner) inner.textContent = part.text;
-      element.append(inner || part.text);
-    }
+    for (const { text, level } of Array.isArray(content) ? content : Format.parts(content))
+      element.append(level ? Page.element(level > 0 ? 'sup' : 'sub', {}, text) : text);
     return element;
   },
   heading(level, text) {
-    return Page.fill(document.createElement(level), text);
+    return Page.element(level, {}, text);
   },
-  paragraph(text, style = '') {
-    const made = Page.fill(document.createElement('p'), text);
-    if (style) made.className = style;
-    return made;
+  paragraph(content, className = '') {
+    return Page.fill(Page.element('p', className ? { className } : {}), content);
   },
-  details(title, open = false) {
-    const details = document.createElement('details');
-    details.open = open;
-    details.append(Page.fill(document.createElement('summary'), title));
-    return details;
+  details(title) {
+    return Page.element('details', {}, Page.element('summary', {}, title));
   },
   labelled(text, control) {
-    const label = document.createElement('label');
-    label.append(text, control);
-    return label;
+    return Page.element('label', {}, text, control);
   },
   // options: [[value, text, group]], in the order of their groups.
   select(options, onChange) {
-    const select = document.createElement('select');
+    const select = Page.element('select');
     Page.refill(select, options);
     select.addEventListener('change', onChange);
     return select;
   },
   list(items) {
-    const list = document.createElement('dl');
-    for (const [term, meaning] of items)
-      list.append(Page.fill(document.createElement('dt'), term), Page.fill(document.createElement('dd'), meaning));
-    return list;
+    const row = ([term, meaning]) => [Page.fill(Page.element('dt'), term), Page.fill(Page.element('dd'), meaning)];
+    return Page.element('dl', {}, ...items.flatMap(row));
   },
   // Other entries of a list; what was chosen stays chosen, and a list that is open stays as it is if nothing is new.
   refill(select, options) {
@@ -51,8 +44,7 @@ const Page = {
     let place = select;
     for (const [value, text, group] of options) {
       if (group && place.label !== group) {
-        place = document.createElement('optgroup');
-        place.label = group;
+        place = Page.element('optgroup', { label: group });
         select.append(place);
       }
       place.append(new Option(text, value));

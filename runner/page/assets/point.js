@@ -4,34 +4,24 @@ class PointView {
   // `onPick(index)`: a point was chosen here.
   constructor(host, onPick) {
     this.select = Page.select([], () => onPick(Number(this.select.value)));
-    this.facts = document.createElement('div');
-    this.charts = ['mean', 'width', 'scatter'].map(() => new Chart(document.createElement('figure')));
+    this.charts = ['mean', 'width', 'scatter'].map(() => new Chart());
     this.details = new DetailsView();
-    this.losses = document.createElement('div');
-    this.numbers = document.createElement('div');
-    const pair = document.createElement('div');
-    pair.className = 'pair';
-    pair.append(...this.charts.map((chart) => chart.host));
-    const controls = document.createElement('div');
-    controls.className = 'controls';
-    controls.append(Page.labelled('Point', this.select));
+    [this.facts, this.losses, this.numbers] = [1, 2, 3].map(() => Page.element('div'));
     host.append(
       Page.heading('h2', 'One point'),
-      controls,
+      Page.element('div', { className: 'controls' }, Page.labelled('Point', this.select)),
       this.facts,
-      pair,
+      Page.element('div', { className: 'pair' }, ...this.charts.map((chart) => chart.host)),
       this.details.host,
       this.losses,
       this.numbers,
     );
   }
 
-  seedsAxis(log) {
-    return { about: { words: 'seeds', symbol: Format.symbol('n'), unit: '' }, log };
-  }
-
-  static isLong(seeds) {
-    return seeds[seeds.length - 1] >= 20 * seeds[0];
+  // Logarithmic where there are many.
+  static seedsAxis(seeds) {
+    const about = { words: 'seeds', symbol: Format.symbol('n'), unit: '' };
+    return { about, log: seeds[seeds.length - 1] >= 20 * seeds[0] };
   }
 
   title(point, what) {
@@ -43,80 +33,58 @@ class PointView {
     return point.looks[point.looks.length - 1] || null;
   }
 
-  lookMarks(point, value, half) {
-    return point.looks
-      .map((look, i) => ({
+  static lookMarks({ looks }, value, half) {
+    const isDecided = (look) => /^(converged|complete)/.test(look.verdict) && look === looks[looks.length - 1];
+    const text = (look) => `${Format.withError(look.mean, look.half_width)}, ${look.verdict}`;
+    return looks
+      .map((look) => ({
         series: 1,
         x: look.seeds,
         y: value(look),
         half: half(look),
         point: 0,
         small: true,
-        kind: /^(converged|complete)/.test(look.verdict) && i === point.looks.length - 1 ? 'decided' : 'undecided',
-        text: [
-          `look at ${Format.counted(look.seeds, 'seed')}`,
-          Format.withError(look.mean, look.half_width),
-          look.verdict,
-        ].join(', '),
+        kind: isDecided(look) ? 'decided' : 'undecided',
+        text: `look at ${Format.counted(look.seeds, 'seed')}, ${text(look)}`,
       }))
       .filter((mark) => Format.isNumber(mark.y));
   }
 
-  lookRows(point) {
-    return [
-      ...point.running_mean.seeds.map((seeds, i) => [
-        'running',
-        seeds,
-        point.running_mean.mean[i],
-        point.running_mean.half_width[i],
-        null,
-        null,
-      ]),
-      ...point.looks.map((look) => ['look', look.seeds, look.mean, look.half_width, look.good_enough, look.verdict]),
-    ];
+  static lookTable({ looks, running_mean: { seeds, mean, half_width: half } }) {
+    return {
+      columns: ['kind', 'seeds', 'mean', 'half_width', 'good_enough', 'verdict'],
+      rows: [
+        ...seeds.map((count, i) => ['running', count, mean[i], half[i], null, null]),
+        ...looks.map((look) => ['look', look.seeds, look.mean, look.half_width, look.good_enough, look.verdict]),
+      ],
+    };
   }
 
   convergence(point) {
-    const { seeds, mean, half_width: half } = point.running_mean,
+    const { seeds, half_width: half } = point.running_mean,
       last = PointView.last(point),
-      levels = [];
-    const usable = seeds.map((_, i) => i).filter((i) => Format.isNumber(mean[i]));
+      good = last && Format.isNumber(last.good_enough) ? last.good_enough : null;
     // The intervals of the first few seeds are enormous.
-    const few = 8;
-    const settled = usable.filter(
-      (i) => Format.isNumber(half[i]) && (seeds[i] >= few || seeds[seeds.length - 1] <= few),
-    );
-    if (last && Format.isNumber(last.good_enough)) {
-      for (const sign of [-1, 1])
-        levels.push({ value: last.mean + sign * last.good_enough, across: true, series: 2 });
-    }
-    const table = {
-      columns: ['kind', 'seeds', 'mean', 'half_width', 'good_enough', 'verdict'],
-      rows: this.lookRows(point),
-    };
-    const legend = point.looks.length ? [{ series: 1, name: [{ text: 'looks', level: 0 }] }] : [];
+    const few = 8,
+      isSettled = (i) => seeds[i] >= few || seeds[seeds.length - 1] <= few;
+    const { lines, bands } = DetailsView.curve(seeds, point.running_mean, isSettled),
+      widths = seeds.map((count, i) => [count, half[i]]).filter(([, width], i) => Format.isNumber(width) && isSettled(i));
+    const levels = good === null ? [] : [last.mean - good, last.mean + good];
+    const level = (value) => ({ value, across: true, series: 2 });
+    const x = PointView.seedsAxis(seeds),
+      table = PointView.lookTable(point),
+      legend = point.looks.length ? [{ series: 1, name: Format.parts('looks') }] : [];
+    const width = (look) => look.half_width,
+      means = PointView.lookMarks(point, (look) => look.mean, width);
     return [
       {
         name: this.title(point, 'running mean'),
-        x: this.seedsAxis(PointView.isLong(seeds)),
+        x,
         y: { about: this.about, log: false },
         table,
         legend,
-        panels: [
-          {
-            marks: this.lookMarks(
-              point,
-              (look) => look.mean,
-              (look) => look.half_width,
-            ),
-            levels,
-            lines: [{ series: 0, style: 'line', places: usable.map((i) => [seeds[i], mean[i]]) }],
-            bands: settled.length
-              ? [{ series: 0, places: settled.map((i) => [seeds[i], mean[i] - half[i], mean[i] + half[i]]) }]
-              : [],
-          },
-        ],
-        hasBand: settled.length > 0,
+        panels: [{ marks: means, levels: levels.map(level), lines, bands }],
+        hasBand: bands.length > 0,
         bandName: 'its interval',
         height: 260,
         caption: `Running mean over the first n seeds, its interval, and the looks at which it was judged.${
@@ -125,23 +93,15 @@ class PointView {
       },
       {
         name: this.title(point, 'half-width'),
-        x: this.seedsAxis(PointView.isLong(seeds)),
+        x,
         table,
         legend,
-        y: {
-          about: { words: 'half-width', symbol: [], unit: this.about.unit },
-          log: isLogarithmic(half.filter(Format.isNumber)),
-        },
+        y: { about: Format.about('half-width', this.about.unit), log: isLogarithmic(half.filter(Format.isNumber)) },
         panels: [
           {
-            marks: this.lookMarks(
-              point,
-              (look) => look.half_width,
-              () => null,
-            ),
-            levels:
-              last && Format.isNumber(last.good_enough) ? [{ value: last.good_enough, across: true, series: 2 }] : [],
-            lines: [{ series: 0, style: 'line', places: settled.map((i) => [seeds[i], half[i]]) }],
+            marks: PointView.lookMarks(point, width, () => null),
+            levels: good === null ? [] : [level(good)],
+            lines: [{ series: 0, style: 'line', places: widths }],
           },
         ],
         height: 260,
@@ -151,51 +111,35 @@ class PointView {
   }
 
   scatter(point) {
-    const { scatter } = point,
+    const { scatter, running_mean: running } = point,
       last = PointView.last(point),
-      levels = [];
-    const mean = last ? last.mean : point.running_mean.mean[point.running_mean.mean.length - 1];
-    const figure = { name: this.title(point, 'seeds'), height: 260, panels: [{ marks: [], levels }] },
-      [panel] = figure.panels;
+      mean = last ? last.mean : running.mean[running.mean.length - 1];
+    const level = (across) => (Format.isNumber(mean) ? [{ value: mean, across, series: 1 }] : []),
+      axis = (about) => ({ about, log: false });
+    const figure = (panel, x, y, table, caption) => ({
+      name: this.title(point, 'seeds'),
+      height: 260,
+      panels: [panel],
+      x: axis(x),
+      y: axis(y),
+      table,
+      caption,
+    });
     if (scatter.counts) {
-      const width = (scatter.high - scatter.low) / scatter.counts.length || 1;
-      if (Format.isNumber(mean)) levels.push({ value: mean, across: false, series: 1 });
-      panel.columns = scatter.counts.map((height, i) => ({
-        from: scatter.low + i * width,
-        to: scatter.low + (i + 1) * width,
-        low: 0,
-        high: height,
-        series: 0,
-      }));
-      return {
-        ...figure,
-        x: { about: this.about, log: false },
-        y: { about: { words: 'seeds', symbol: [], unit: '' }, log: false },
-        table: {
-          columns: ['from', 'to', 'seeds'],
-          rows: panel.columns.map((column) => [column.from, column.to, column.high]),
-        },
-        caption: 'How many seeds gave which value. Dashed: their mean.',
-      };
+      const width = (scatter.high - scatter.low) / scatter.counts.length || 1,
+        edge = (i) => scatter.low + i * width;
+      const columns = scatter.counts.map((high, i) => ({ from: edge(i), to: edge(i + 1), low: 0, high, series: 0 })),
+        table = { columns: ['from', 'to', 'seeds'], rows: columns.map(({ from, to, high }) => [from, to, high]) },
+        panel = { marks: [], levels: level(false), columns };
+      return figure(panel, this.about, Format.about('seeds'), table, 'How many seeds gave which value. Dashed: their mean.');
     }
-    if (Format.isNumber(mean)) levels.push({ value: mean, across: true, series: 1 });
-    panel.marks = scatter.values.map((y, i) => ({
-      series: 0,
-      x: scatter.seeds[i] - 1,
-      y,
-      half: null,
-      kind: 'decided',
-      small: true,
-      point: 0,
-      text: `seed ${scatter.seeds[i] - 1}: ${Format.plain(y)}`,
-    }));
-    return {
-      ...figure,
-      x: { about: { words: 'seed', symbol: [], unit: '' }, log: false },
-      y: { about: this.about, log: false },
-      table: { columns: ['seed', 'value'], rows: scatter.values.map((y, i) => [scatter.seeds[i] - 1, y]) },
-      caption: 'The value of each seed. Dashed: their mean.',
-    };
+    const rows = scatter.values.map((y, i) => [scatter.seeds[i] - 1, y]),
+      text = (seed, y) => `seed ${seed}: ${Format.plain(y)}`,
+      like = { half: null, kind: 'decided', small: true, point: 0 };
+    const marks = rows.map(([x, y]) => ({ series: 0, x, y, ...like, text: text(x, y) })),
+      table = { columns: ['seed', 'value'], rows },
+      panel = { marks, levels: level(true) };
+    return figure(panel, Format.about('seed'), this.about, table, 'The value of each seed. Dashed: their mean.');
   }
 
   // In sentences.
@@ -205,11 +149,12 @@ class PointView {
       estimate = this.column < 0 ? null : point.estimates[this.column],
       said = [];
     if (last) {
-      const relative = this.data.target.relative_tolerance !== undefined && !this.data.target.relative_to;
-      const share = relative && last.mean && Format.isNumber(last.half_width) ? ` (${Format.percent(last.half_width / Math.abs(last.mean))})` : '';
-      const look = Format.counted(last.seeds, 'seed');
+      const relative = this.data.target.relative_tolerance !== undefined && !this.data.target.relative_to,
+        hasShare = relative && last.mean && Format.isNumber(last.half_width),
+        share = hasShare ? ` (${Format.percent(last.half_width / Math.abs(last.mean))})` : '',
+        look = Format.counted(last.seeds, 'seed');
       said.push(`${Format.withError(last.mean, last.half_width)}${share}: ${point.verdict}, at the look at ${look}.`);
-      const plain = point.uncontrolled[this.data.target.observable.replace(/^\//, '')];
+      const plain = point.uncontrolled[this.path];
       if (plain && plain[0] !== last.mean) {
         const text = 'Without the control variate, a quantity of known mean zero that takes away scatter';
         said.push(`${text}: ${Format.withError(plain[0], plain[2])}.`);
@@ -225,47 +170,30 @@ class PointView {
     if (hasJammed) said.push(`It has jammed: ${jammed} of ${Format.counted(ended, 'seed')}.`);
     if (!point.decided) said.push(`${seeds.wanted_ended} of the ${seeds.wanted} seeds of the next look have ended.`);
     const each = seeds.ended ? `, ${Format.duration(point.cpu_seconds / seeds.ended)} each` : '';
+    const surplus = seeds.surplus ? `; ${seeds.surplus} of them surplus, which do not count` : '';
     said.push(
-      `Processor time ${Format.duration(point.cpu_seconds)} for ${Format.counted(seeds.ended, 'seed')}${each}${
-        seeds.surplus ? `; ${seeds.surplus} of them surplus, which do not count` : ''
-      }.`,
+      `Processor time ${Format.duration(point.cpu_seconds)} for ${Format.counted(seeds.ended, 'seed')}${each}${surplus}.`,
     );
     return said.join(' ');
   }
 
   show(data, index) {
-    const point = data.points[index],
-      path = data.target.observable.replace(/^\//, '');
-    this.data = data;
-    this.column = data.quantities.findIndex((quantity) => quantity.path === path);
-    this.about =
-      this.column < 0
-        ? { words: Format.words(path), symbol: [], unit: '' }
-        : Format.quantity(data.quantities[this.column]);
-    Page.refill(
-      this.select,
-      data.points.map((one, i) => [String(i), one.label]),
-    );
+    const point = data.points[index];
+    Object.assign(this, { data }, Sweep.aim(data));
+    const labels = data.points.map((one, i) => [String(i), one.label]);
+    Page.refill(this.select, labels);
     this.select.value = String(index);
     const groups = Object.entries(point.groups || {}).filter(([, value]) => Format.isNumber(value));
     this.facts.replaceChildren(Page.paragraph(this.sentences(point)));
-    if (groups.length)
-      this.facts.append(Page.paragraph(PointView.groups(groups, data.derived), 'faint'));
+    if (groups.length) this.facts.append(Page.paragraph(PointView.groups(groups, data.derived), 'faint'));
     const empty = point.decided ? 'Nothing to draw: no seed has a value.' : '';
     const figures = [...this.convergence(point), this.scatter(point)].map((figure) => ({ ...figure, empty }));
     this.charts.forEach((chart, i) => chart.show(figures[i]));
     this.details.show(data, point, this.about);
     this.losses.replaceChildren();
-    const causes = Object.entries(point.losses);
-    if (causes.length) {
-      this.losses.append(
-        Page.paragraph(
-          `Lost seeds, which the mean leaves out: ${causes
-            .map(([cause, count]) => `${count} ${Format.words(cause)}`)
-            .join(', ')}.`,
-        ),
-      );
-    }
+    const causes = Object.entries(point.losses).map(([cause, count]) => `${count} ${Format.words(cause)}`);
+    if (causes.length)
+      this.losses.append(Page.paragraph(`Lost seeds, which the mean leaves out: ${causes.join(', ')}.`));
     const shown = [point.hash, data.quantities, point.estimates, point.uncontrolled];
     Page.renew(this.numbers, shown, () => this.showNumbers(point));
   }
@@ -273,55 +201,41 @@ class PointView {
   // "Péclet number Pe 10 · Stokes number St 0.01" as parts.
   static groups(groups, known) {
     return groups.flatMap(([name, value], i) => [
-      { text: i ? ' · ' : '', level: 0 },
+      ...Format.parts(i ? ' · ' : ''),
       ...Format.title({ ...Format.group(name, known), unit: '' }),
-      { text: ` ${Format.rough(value)}`, level: 0 },
+      ...Format.parts(` ${Format.rough(value)}`),
     ]);
   }
 
   // Everything that was measured at the point.
   showNumbers(point) {
-    const { quantities } = this.data,
-      rows = [];
-    quantities.forEach((quantity, i) => {
-      if (point.estimates[i] && Format.isNumber(point.estimates[i][0]))
-        rows.push({
-          about: Format.quantity(quantity),
-          quantity,
-          numbers: point.estimates[i],
-          plain: point.uncontrolled[quantity.path],
-        });
-    });
+    const rows = this.data.quantities
+      .map((quantity, i) => ({
+        about: Format.quantity(quantity),
+        quantity,
+        numbers: point.estimates[i] || [null],
+        plain: point.uncontrolled[quantity.path],
+      }))
+      .filter((row) => Format.isNumber(row.numbers[0]));
+    const symbol = (row) => Format.plainText(row.about.symbol),
+      mean = (row) => Format.withError(row.numbers[0], row.numbers[2]);
+    const plain = {
+      title: 'without control variate',
+      minor: true,
+      value: (row) => (row.plain ? row.plain[0] : null),
+      shown: (row) => (row.plain ? Format.withError(row.plain[0], row.plain[2]) : ''),
+    };
     const details = Page.details(`All that was measured at this point (${rows.length} numbers)`);
     this.numbers.append(details);
     new SortedTable(
       details,
       [
-        { title: 'quantity', text: true, wrap: true, cell: (row) => row.about.words, sort: (row) => row.about.words },
-        {
-          title: 'symbol',
-          text: true,
-          minor: true,
-          cell: (row) => row.about.symbol,
-          sort: (row) => Format.plainText(row.about.symbol),
-        },
-        {
-          title: 'mean ± half-width',
-          cell: (row) => Format.withError(row.numbers[0], row.numbers[2]),
-          sort: (row) => row.numbers[0],
-        },
-        { title: 'unit', text: true, cell: (row) => Format.symbol(row.about.unit), sort: (row) => row.about.unit },
-        ...(rows.some((row) => row.plain)
-          ? [
-              {
-                title: 'without control variate',
-                minor: true,
-                cell: (row) => (row.plain ? Format.withError(row.plain[0], row.plain[2]) : ''),
-                sort: (row) => (row.plain ? row.plain[0] : null),
-              },
-            ]
-          : []),
-        { title: 'seeds', cell: (row) => String(row.numbers[3]), sort: (row) => row.numbers[3] },
+        { title: 'quantity', text: true, wrap: true, value: (row) => row.about.words },
+        { title: 'symbol', text: true, minor: true, value: symbol, shown: (row) => row.about.symbol },
+        { title: 'mean ± half-width', value: (row) => row.numbers[0], shown: mean },
+        { title: 'unit', text: true, value: (row) => row.about.unit, shown: (row) => Format.symbol(row.about.unit) },
+        ...(rows.some((row) => row.plain) ? [plain] : []),
+        { title: 'seeds', value: (row) => row.numbers[3] },
       ],
       rows,
       {
@@ -332,5 +246,96 @@ class PointView {
         },
       },
     );
+  }
+}
+
+// What results hold of a point and no table does: the course of the target within the window, profiles, distributions.
+class DetailsView {
+  constructor() {
+    this.host = Page.element('div', { className: 'pair' });
+    this.charts = [];
+  }
+
+  // A live page asks for them; until they come there are none.
+  show(data, point, about) {
+    const details = point.details || Live.details(point);
+    const figures = details
+      ? [...DetailsView.blocks(data, point, about, details), ...DetailsView.profiles(data, point, details)]
+      : [];
+    while (this.charts.length > figures.length) this.charts.pop().host.remove();
+    figures.forEach((figure, i) => {
+      if (!this.charts[i]) {
+        this.charts.push(new Chart());
+        this.host.append(this.charts[i].host);
+      }
+      this.charts[i].show(figure);
+    });
+  }
+
+  static seeds({ seeds, of }) {
+    return seeds < of ? `the first ${seeds} of ${of} seeds` : Format.counted(seeds, 'seed');
+  }
+
+  // A line with its interval where that is settled; it leads past what does not exist.
+  static curve(xs, { mean, half_width: half }, isSettled = () => true) {
+    const known = xs.map((_, i) => i).filter((i) => Format.isNumber(mean[i])),
+      banded = known.filter((i) => Format.isNumber(half[i]) && isSettled(i)),
+      band = banded.map((i) => [xs[i], mean[i] - half[i], mean[i] + half[i]]);
+    return {
+      marks: [],
+      lines: [{ series: 0, style: 'line', places: known.map((i) => [xs[i], mean[i]]) }],
+      bands: banded.length ? [{ series: 0, places: band }] : [],
+    };
+  }
+
+  static blocks(data, point, about, details) {
+    if (!details.blocks) return [];
+    const { mean, half_width: half } = details.blocks,
+      parts = mean.length,
+      xs = mean.map((_, i) => (100 * (i + 0.5)) / parts);
+    const known = mean.filter(Format.isNumber),
+      whole = known.reduce((sum, value) => sum + value, 0) / known.length;
+    const verdict = point.marks.includes('transient')
+      ? 'Transient: the beginning differs from the end, so that the window begins before the equilibration is over.'
+      : point.marks.includes('no-transient-test')
+        ? 'There was no test for a transient.'
+        : point.looks.length
+          ? 'No transient was found at the last look.'
+          : 'No look has tested it for a transient yet.';
+    return [
+      {
+        name: `${data.campaign} ${point.label} window`,
+        height: 260,
+        x: { about: Format.about('part of the measured window', '%'), log: false },
+        y: { about, log: false },
+        panels: [{ ...DetailsView.curve(xs, details.blocks), levels: [{ value: whole, across: true, series: 1 }] }],
+        table: { columns: ['window_percent', 'mean', 'half_width'], rows: xs.map((x, i) => [x, mean[i], half[i]]) },
+        hasBand: half.some(Format.isNumber),
+        bandName: 'its interval',
+        caption: `Course within the window, mean of ${DetailsView.seeds(details)} in each of ${parts} parts. ${verdict}`,
+      },
+    ];
+  }
+
+  static profiles(data, point, details) {
+    return details.profiles.map((profile) => {
+      const { axis } = profile,
+        about = Format.quantity({ ...profile, element: '' }),
+        log = isLogarithmic(axis.values);
+      return {
+        name: `${data.campaign} ${point.label} ${profile.name}`,
+        height: 260,
+        x: { about: Format.about(Format.words(axis.name), Format.unit(axis.unit)), log },
+        y: { about, log: false },
+        panels: [DetailsView.curve(axis.values, profile)],
+        table: {
+          columns: [axis.name, 'mean', 'standard_error', 'half_width'],
+          rows: axis.values.map((x, i) => [x, profile.mean[i], profile.standard_error[i], profile.half_width[i]]),
+        },
+        hasBand: profile.half_width.some(Format.isNumber),
+        bandName: 'its interval',
+        caption: `${about.words}: mean of ${DetailsView.seeds(details)}.`,
+      };
+    });
   }
 }

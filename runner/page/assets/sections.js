@@ -1,38 +1,184 @@
 // What each section shows, so that it is made anew only when that has changed.
 const doubtsShown = (data) => [data.points.map((point) => [point.label, point.losses, point.loss_reasons]), data.meanings, data.warnings],
   costShown = (data) => [data.progress.seeds, data.points.map(({ label, seeds, cpu_seconds }) => [label, seeds.ended, seeds.surplus, cpu_seconds])],
+  resultsShown = (data) => [data.target, data.parameters, data.quantities, data.points.map(resultShown)],
+  resultShown = ({ label, standing, marks, seeds, losses, endings, cpu_seconds }) =>
+    [label, standing, marks, seeds.wanted, seeds.wanted_ended, seeds.looked_at, losses, endings, cpu_seconds],
   originShown = (data) => [data.scene, data.parameters, data.provenance, data.commands, data.document, data.points.map((point) => point.groups)];
+
+function resultsTable(data, sweep, host, onPick) {
+  const { target } = data,
+    { path, column, about } = Sweep.aim(data),
+    isShare = target.relative_tolerance !== undefined && !target.relative_to;
+  const isKnown = (point) => column >= 0 && Sweep.isKnown(point, point.estimates[column]);
+  const numbers = (point) => (isKnown(point) ? point.estimates[column] : [null, null, null, 0]);
+  const plain = (point) => point.uncontrolled[path] || numbers(point);  // the same without a control variate
+  const rows = data.points.map((point, i) => ({ point, i }));
+  const measure = (row) => {
+    const [mean, , half] = numbers(row.point);
+    return !Format.isNumber(half) ? null : isShare ? half / Math.abs(mean) : half;
+  };
+  const lost = (row) => Object.values(row.point.losses).reduce((sum, count) => sum + count, 0);
+  const mean = (row) => {
+    const [value, , half] = numbers(row.point);
+    if (row.point.endings.has_jammed && !isKnown(row.point)) return 'jammed';
+    return Format.withError(value, half) + (row.point.decided || !Format.isNumber(value) ? '' : ' *');
+  };
+  const columns = [
+    ...sweep.parameters.map(({ about: parameter, numeric, cells }) => ({
+      title: Format.short(parameter),
+      text: !numeric,
+      value: (row) => cells[row.i],
+      shown: (row) => (numeric ? Format.plain(cells[row.i]) : String(cells[row.i])),
+    })),
+    {
+      title: 'seeds',
+      minor: true,
+      value: (row) => row.point.seeds.wanted,
+      shown: (row) => `${row.point.seeds.wanted_ended}/${row.point.seeds.wanted}`,
+    },
+    { title: Format.short(about), value: (row) => numbers(row.point)[0], shown: mean },
+    {
+      title: isShare ? 'relative' : 'half-width',
+      minor: true,
+      value: measure,
+      shown: (row) => (isShare ? Format.percent(measure(row)) : Format.rough(measure(row))),
+    },
+    { title: 'lost', minor: true, value: lost },
+    { title: 'verdict', text: true, value: (row) => row.point.standing },
+  ];
+  if (data.points.some((point) => point.marks.length))
+    columns.push({ title: 'marks', text: true, wrap: true, value: (row) => row.point.marks.join(', ') });
+  const open = data.points.some((point) => !point.decided);
+  return new SortedTable(host, columns, rows, {
+    onPick: (row) => onPick(row.i),
+    name: `${data.campaign} results`,
+    caption:
+      'Seeds: those that have ended, of those that the deciding look takes (of an open point, the next look). ' +
+      `${about.words}: the mean, with the control variate where there is one, ± the half-width of its ` +
+      `${Format.rough(100 * target.confidence)} % interval.${open ? ' *: provisional.' : ''}`,
+    csv: {
+      columns: ['label', 'hash', ...data.parameters.map((one) => one.pointer), 'verdict', 'seeds', 'count', 'mean',
+        'standard_error', 'half_width', 'uncontrolled_mean', 'uncontrolled_half_width', 'lost', 'cpu_seconds'],
+      rows: rows.map((row) => [
+        row.point.label,
+        row.point.hash,
+        ...data.parameters.map((one) => row.point.settings[one.pointer]),
+        row.point.standing,
+        row.point.seeds.looked_at,
+        numbers(row.point)[3],
+        ...numbers(row.point).slice(0, 3),
+        plain(row.point)[0],
+        plain(row.point)[2],
+        lost(row),
+        row.point.cpu_seconds,
+      ]),
+    },
+  });
+}
+
+// Who works on what: the workers now, and the attempts that ended last as a chart over time.
+class WorkView {
+  constructor(host) {
+    this.now = Page.element('div');
+    this.chart = new Chart();
+    host.append(Page.heading('h2', 'Who works on what'), this.now, this.chart.host);
+  }
+
+  show(data) {
+    Page.renew(this.now, data.work.now, (host) => {
+      if (data.work.now.length) WorkView.table(data, host);
+    });
+    this.chart.show(WorkView.figure(data));
+  }
+
+  static table(data, host) {
+    const done = (row) => (row.steps > 0 ? row.step / row.steps : null);
+    new SortedTable(
+      host,
+      [
+        { title: 'worker', value: (row) => row.worker },
+        { title: 'point', text: true, wrap: true, value: (row) => data.points[row.point].label },
+        { title: 'seed', value: (row) => row.seed },
+        { title: 'phase', text: true, minor: true, value: (row) => row.phase },
+        { title: 'done', value: done, shown: (row) => (Format.isNumber(done(row)) ? `${Math.round(100 * done(row))} %` : '–') },
+        { title: 'strain', minor: true, value: (row) => row.strain, shown: (row) => Format.rough(row.strain) },
+      ],
+      data.work.now,
+      { name: 'workers' },
+    );
+  }
+
+  static outcomes = [
+    { name: 'result', series: 0 },
+    { name: 'running', series: 4 },
+    { name: 'no result', series: 1 },
+  ];
+
+  // Times are those of the owner's clock, to a second.
+  static figure(data) {
+    const seconds = (text) => Date.parse(text) / 1000,
+      { attempts } = data.work;
+    const hosts = new Set(attempts.map((one) => one.host)),
+      who = (one) => (hosts.size > 1 ? `${one.host.slice(0, 6)}:${one.worker}` : String(one.worker));
+    const workers = [...new Set(attempts.map(who))].sort((a, b) => a.localeCompare(b, 'en', { numeric: true }));
+    const begin = attempts.reduce((least, one) => Math.min(least, seconds(one.began)), Infinity),
+      length = attempts.reduce((most, one) => Math.max(most, seconds(one.ended)), begin) - begin;
+    const [unit, size] = length < 180 ? ['s', 1] : length < 3 * 3600 ? ['min', 60] : ['h', 3600];
+    const kindOf = (one) => WorkView.outcomes.find(({ name }) => name === one.outcome) || WorkView.outcomes[2];
+    const columns = attempts.map((one) => {
+      const row = workers.indexOf(who(one)),
+        took = seconds(one.ended) - seconds(one.began);
+      return {
+        from: (seconds(one.began) - begin) / size,
+        to: (seconds(one.ended) - begin) / size,
+        low: row - 0.35,
+        high: row + 0.35,
+        series: kindOf(one).series,
+        text: `${data.points[one.point].label} seed ${one.seed}, ${one.outcome}, ${Format.duration(took)}`,
+      };
+    });
+    const used = new Set(attempts.map(kindOf));
+    return {
+      name: `${data.campaign} workers`,
+      height: Math.max(150, 70 + 22 * Math.min(workers.length, 24)),
+      x: { about: Format.about('time', unit), log: false },
+      y: { about: Format.about('worker'), log: false, categories: workers },
+      panels: [{ marks: [], columns }],
+      legend: WorkView.outcomes
+        .filter((one) => used.has(one))
+        .map(({ name, series }) => ({ series, kind: 'column', name: Format.parts(name) })),
+      table: {
+        columns: ['worker', 'host', 'label', 'seed', 'began', 'ended', 'outcome'],
+        rows: attempts.map((one) => [one.worker, one.host, data.points[one.point].label, one.seed, one.began, one.ended, one.outcome]),
+      },
+      caption: `The last ${Format.counted(attempts.length, 'attempt')}, from ${attempts[0].began.replace('T', ' ').replace('Z', ' UTC')} on.`,
+    };
+  }
+}
 
 // What may be doubted: lost seeds by cause, what each mark means, what engines warn of.
 function writeDoubts(data, host) {
-  const lost = data.points.flatMap((point) =>
-    Object.entries(point.losses).map(([cause, count]) => ({ point: point.label, cause, count, reason: point.loss_reasons[cause] || '' })),
-  );
+  const losses = ({ label, losses: causes, loss_reasons: reasons }) =>
+    Object.entries(causes).map(([cause, count]) => ({ point: label, cause, count, reason: reasons[cause] || '' }));
+  const lost = data.points.flatMap(losses);
   const meanings = Object.entries(data.meanings);
   if (!lost.length && !meanings.length && !data.warnings.length) return;
   host.append(Page.heading('h2', 'What to know before using the numbers'));
   if (meanings.length) host.append(Page.list(meanings));
   if (lost.length) {
-    host.append(
-      Page.heading('h3', 'Lost seeds'),
-      Page.paragraph('Seeds that ended without a value. Means leave them out.', 'faint'),
-    );
+    const about = 'Seeds that ended without a value. Means leave them out.';
+    host.append(Page.heading('h3', 'Lost seeds'), Page.paragraph(about, 'faint'));
     new SortedTable(
       host,
       [
-        { title: 'point', text: true, wrap: true, cell: (row) => row.point, sort: (row) => row.point },
-        { title: 'cause', text: true, cell: (row) => row.cause, sort: (row) => row.cause },
-        { title: 'seeds', cell: (row) => String(row.count), sort: (row) => row.count },
-        { title: 'why', text: true, wrap: true, cell: (row) => row.reason, sort: (row) => row.reason },
+        { title: 'point', text: true, wrap: true, value: (row) => row.point },
+        { title: 'cause', text: true, value: (row) => row.cause },
+        { title: 'seeds', value: (row) => row.count },
+        { title: 'why', text: true, wrap: true, value: (row) => row.reason },
       ],
       lost,
-      {
-        name: `${data.campaign} lost`,
-        csv: {
-          columns: ['label', 'cause', 'seeds', 'why'],
-          rows: lost.map((row) => [row.point, row.cause, row.count, row.reason]),
-        },
-      },
+      { name: `${data.campaign} lost`, csv: { columns: ['label', 'cause', 'seeds', 'why'], rows: lost.map(Object.values) } },
     );
   }
   if (data.warnings.length) {
@@ -40,14 +186,8 @@ function writeDoubts(data, host) {
     new SortedTable(
       host,
       [
-        { title: 'point', text: true, wrap: true, cell: (row) => row.point, sort: (row) => row.point },
-        {
-          title: 'warning',
-          text: true,
-          wrap: true,
-          cell: (row) => `${row.code}: ${row.message}`,
-          sort: (row) => row.code,
-        },
+        { title: 'point', text: true, wrap: true, value: (row) => row.point },
+        { title: 'warning', text: true, wrap: true, value: (row) => row.code, shown: (row) => `${row.code}: ${row.message}` },
       ],
       data.warnings,
       { name: 'warnings' },
@@ -57,11 +197,8 @@ function writeDoubts(data, host) {
 
 function writeCost(data, host, onPick) {
   host.append(Page.heading('h2', 'Cost'));
-  const { progress } = data,
-    { seeds } = progress;
-  const said = [
-    `${Format.counted(seeds.ended, 'seed')} ended in ${Format.duration(progress.cpu_seconds)} of processor time`,
-  ];
+  const { seeds, cpu_seconds: time } = data.progress,
+    said = [`${Format.counted(seeds.ended, 'seed')} ended in ${Format.duration(time)} of processor time`];
   if (seeds.lost) said.push(`${seeds.lost} of them without a value`);
   if (seeds.surplus) said.push(`${seeds.surplus} beyond what decided their point`);
   host.append(Page.paragraph(`${said.join(', ')}.`));
@@ -72,20 +209,15 @@ function writeCost(data, host, onPick) {
   new SortedTable(
     details,
     [
-      { title: 'point', text: true, wrap: true, cell: (row) => row.point.label, sort: (row) => row.point.label },
-      { title: 'seeds', cell: (row) => String(row.point.seeds.ended), sort: (row) => row.point.seeds.ended },
-      {
-        title: 'surplus',
-        minor: true,
-        cell: (row) => String(row.point.seeds.surplus),
-        sort: (row) => row.point.seeds.surplus,
-      },
+      { title: 'point', text: true, wrap: true, value: (row) => row.point.label },
+      { title: 'seeds', value: (row) => row.point.seeds.ended },
+      { title: 'surplus', minor: true, value: (row) => row.point.seeds.surplus },
       {
         title: 'processor time',
-        cell: (row) => Format.duration(row.point.cpu_seconds),
-        sort: (row) => row.point.cpu_seconds,
+        value: (row) => row.point.cpu_seconds,
+        shown: (row) => Format.duration(row.point.cpu_seconds),
       },
-      { title: 'a seed', cell: (row) => Format.duration(each(row)), sort: each },
+      { title: 'a seed', value: each, shown: (row) => Format.duration(each(row)) },
     ],
     rows,
     {
@@ -135,7 +267,7 @@ function sceneSummary(data, sweep) {
     named.add(key.pointer.slice(1));
   }
   const groups = data.points.map((point) => point.groups).filter(Boolean);
-  for (const name of groups.length ? Object.keys(groups[0]) : []) {
+  for (const name of Object.keys(groups[0] || {})) {
     const values = groups.map((group) => group[name]).filter(Format.isNumber);
     if (values.length && !named.has(name)) items.push([Format.title(Format.group(name, data.derived)), range(values)]);
   }
@@ -156,19 +288,12 @@ function writeOrigin(data, sweep, host) {
           title: 'key',
           text: true,
           wrap: true,
-          cell: (row) => row.pointer.slice(1).split('/').map(Format.words).join(': '),
-          sort: (row) => row.pointer,
+          value: (row) => row.pointer,
+          shown: (row) => row.pointer.slice(1).split('/').map(Format.words).join(': '),
         },
-        { title: 'value', wrap: true, cell: (row) => Format.value(row.value), sort: (row) => row.value },
-        { title: 'unit', text: true, cell: (row) => Format.symbol(row.about.unit), sort: (row) => row.about.unit },
-        {
-          title: 'meaning',
-          text: true,
-          wrap: true,
-          minor: true,
-          cell: (row) => row.meaning,
-          sort: (row) => row.meaning,
-        },
+        { title: 'value', wrap: true, value: (row) => row.value, shown: (row) => Format.value(row.value) },
+        { title: 'unit', text: true, value: (row) => row.about.unit, shown: (row) => Format.symbol(row.about.unit) },
+        { title: 'meaning', text: true, wrap: true, minor: true, value: (row) => row.meaning },
       ],
       shared,
       { name: 'scene' },
@@ -176,11 +301,9 @@ function writeOrigin(data, sweep, host) {
   }
   const provenance = Page.details('Engine, machines and checksums');
   provenance.append(Page.list(data.provenance));
-  const again = Page.details('To make it again'),
-    commands = document.createElement('pre');
-  commands.textContent = data.commands;
+  const again = Page.details('To make it again');
   again.append(
-    commands,
+    Page.element('pre', {}, data.commands),
     Page.paragraph(
       'The same engine gives the same bytes with any number of workers: the last line tells whether ' +
         'the numbers are the same. Another build gives other bytes, and means that agree within their errors.',
@@ -188,11 +311,8 @@ function writeOrigin(data, sweep, host) {
     ),
   );
   const campaign = Page.details('The campaign, as it was last run'),
-    text = document.createElement('pre');
-  text.textContent = JSON.stringify(data.document, null, 2);
-  campaign.append(
-    text,
-    Saving.links(Saving.link('JSON', `${data.campaign}.json`, 'application/json', text.textContent)),
-  );
+    text = JSON.stringify(data.document, null, 2),
+    file = Saving.link('JSON', `${data.campaign}.json`, 'application/json', text);
+  campaign.append(Page.element('pre', {}, text), Saving.links(file));
   host.append(scene, provenance, again, campaign);
 }

@@ -1,8 +1,10 @@
 // Elements, marks and text of charts. Text only ever enters as text, so nothing in a name is obeyed.
 const Svg = {
+  // Numbers among the attributes are rounded to a tenth.
   element(name, attributes = {}, ...children) {
     const made = document.createElementNS('http://www.w3.org/2000/svg', name);
-    for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
+    for (const [key, value] of Object.entries(attributes))
+      made.setAttribute(key, typeof value === 'number' ? Svg.number(value) : value);
     made.append(...children);
     return made;
   },
@@ -12,20 +14,22 @@ const Svg = {
   },
 
   line(style, x1, y1, x2, y2) {
-    const n = Svg.number;
-    return Svg.element('line', { class: style, x1: n(x1), y1: n(y1), x2: n(x2), y2: n(y2) });
+    return Svg.element('line', { class: style, x1, y1, x2, y2 });
+  },
+
+  through(places) {
+    return places.map(([x, y], i) => `${i ? 'L' : 'M'}${Svg.number(x)} ${Svg.number(y)}`).join('');
   },
 
   path(style, places, closed = false) {
-    const d = places.map(([x, y], i) => `${i ? 'L' : 'M'}${Svg.number(x)} ${Svg.number(y)}`).join('');
-    return Svg.element('path', { class: style, d: d + (closed ? 'Z' : '') });
+    return Svg.element('path', { class: style, d: Svg.through(places) + (closed ? 'Z' : '') });
   },
 
   // Parts of Format.symbol() one after another; lowered and raised ones are smaller.
   text(parts, attributes) {
     const made = Svg.element('text', attributes);
     let shift = 0;
-    for (const part of typeof parts === 'string' ? [{ text: parts, level: 0 }] : parts) {
+    for (const part of typeof parts === 'string' ? Format.parts(parts) : parts) {
       const wanted = part.level > 0 ? -5 : part.level < 0 ? 4 : 0;
       const span = Svg.element('tspan', part.level ? { 'font-size': 10 } : {}, part.text);
       if (wanted !== shift) span.setAttribute('dy', wanted - shift);
@@ -37,76 +41,34 @@ const Svg = {
 
   // What text of 13 px is expected to take; fonts differ.
   width(parts) {
-    return (typeof parts === 'string' ? [{ text: parts, level: 0 }] : parts).reduce(
-      (sum, part) => sum + part.text.length * (part.level ? 5.4 : 7),
-      0,
-    );
+    if (typeof parts === 'string') return Svg.width(Format.parts(parts));
+    return parts.reduce((sum, part) => sum + part.text.length * (part.level ? 5.4 : 7), 0);
   },
 
   // Corners around the middle, for a radius of 1; null: a circle. As many as are not confused with each other.
   shapes: [
     null,
-    [
-      [-0.9, -0.9],
-      [0.9, -0.9],
-      [0.9, 0.9],
-      [-0.9, 0.9],
-    ],
-    [
-      [0, -1.3],
-      [1.3, 0],
-      [0, 1.3],
-      [-1.3, 0],
-    ],
-    [
-      [0, -1.2],
-      [1.2, 1],
-      [-1.2, 1],
-    ],
-    [
-      [0, 1.2],
-      [1.2, -1],
-      [-1.2, -1],
-    ],
-    [
-      [-0.4, -1.2],
-      [0.4, -1.2],
-      [0.4, -0.4],
-      [1.2, -0.4],
-      [1.2, 0.4],
-      [0.4, 0.4],
-      [0.4, 1.2],
-      [-0.4, 1.2],
-      [-0.4, 0.4],
-      [-1.2, 0.4],
-      [-1.2, -0.4],
-      [-0.4, -0.4],
-    ],
-    [
-      [-1.2, 0],
-      [-0.6, -1.05],
-      [0.6, -1.05],
-      [1.2, 0],
-      [0.6, 1.05],
-      [-0.6, 1.05],
-    ],
+    [[-0.9, -0.9], [0.9, -0.9], [0.9, 0.9], [-0.9, 0.9]],
+    [[0, -1.3], [1.3, 0], [0, 1.3], [-1.3, 0]],
+    [[0, -1.2], [1.2, 1], [-1.2, 1]],
+    [[0, 1.2], [1.2, -1], [-1.2, -1]],
+    [[-0.4, -1.2], [0.4, -1.2], [0.4, -0.4], [1.2, -0.4], [1.2, 0.4], [0.4, 0.4],
+     [0.4, 1.2], [-0.4, 1.2], [-0.4, 0.4], [-1.2, 0.4], [-1.2, -0.4], [-0.4, -0.4]],
+    [[-1.2, 0], [-0.6, -1.05], [0.6, -1.05], [1.2, 0], [0.6, 1.05], [-0.6, 1.05]],
   ],
   colours: 8,
 
   mark(series, x, y, kind, radius = 4.5) {
     if (kind === 'jammed') {
-      const d = [1, -1].map((turn) => `M${Svg.number(x - 5)} ${Svg.number(y - 5 * turn)}L${Svg.number(x + 5)} ${Svg.number(y + 5 * turn)}`);
+      const stroke = (turn) => [[x - 5, y - 5 * turn], [x + 5, y + 5 * turn]],
+        d = [1, -1].map((turn) => Svg.through(stroke(turn)));
       return Svg.element('path', { class: `jammed s${series % Svg.colours}`, d: d.join('') });
     }
-    const style = `mark s${series % Svg.colours} ${kind === 'decided' ? 'solid' : 'hollow'}`;
-    const shape = Svg.shapes[series % Svg.shapes.length],
-      n = Svg.number;
-    if (!shape) return Svg.element('circle', { class: style, cx: n(x), cy: n(y), r: radius });
-    return Svg.path(
-      style,
-      shape.map(([dx, dy]) => [x + radius * dx, y + radius * dy]),
-      true,
-    );
+    const style = `mark s${series % Svg.colours} ${kind === 'decided' ? 'solid' : 'hollow'}`,
+      shape = Svg.shapes[series % Svg.shapes.length];
+    if (!shape) return Svg.element('circle', { class: style, cx: x, cy: y, r: radius });
+    const corners = shape.map(([dx, dy]) => [x + radius * dx, y + radius * dy]);
+    return Svg.path(style, corners, true);
   },
 
   // A file of its own, in the colours of a light page and without variables, which drawing programs do not know.
@@ -127,13 +89,10 @@ const Svg = {
       }
     }
     copy.setAttribute('xmlns', 'http://www.w3.org/2000/svg');
-    const box = copy.getAttribute('viewBox').split(' ');
-    copy.setAttribute('width', box[2]);
-    copy.setAttribute('height', box[3]);
-    copy.prepend(
-      Svg.element('style', {}, style),
-      Svg.element('rect', { width: box[2], height: box[3], fill: colours.get('--page') }),
-    );
+    const [, , width, height] = copy.getAttribute('viewBox').split(' ');
+    copy.setAttribute('width', width);
+    copy.setAttribute('height', height);
+    copy.prepend(Svg.element('style', {}, style), Svg.element('rect', { width, height, fill: colours.get('--page') }));
     return new XMLSerializer().serializeToString(copy) + '\n';
   },
 };
@@ -154,10 +113,8 @@ const Saving = {
 
   // Text as a JSON string of ASCII, which Python reads as the same string.
   ascii(value) {
-    return JSON.stringify(value).replace(
-      /[^\x20-\x7e]/g,
-      (c) => `\\u${c.charCodeAt(0).toString(16).padStart(4, '0')}`,
-    );
+    const escape = (c) => `\\u${c.charCodeAt(0).toString(16).padStart(4, '0')}`;
+    return JSON.stringify(value).replace(/[^\x20-\x7e]/g, escape);
   },
 
   // The script that draws the figure again; its data stand in it as one string.
@@ -167,26 +124,17 @@ const Saving = {
   },
 
   fileName(text) {
-    return (
-      text
-        .replace(/[^A-Za-z0-9._-]+/g, '-')
-        .replace(/^[-.]+|-+$/g, '')
-        .slice(0, 80) || 'peclet'
-    );
+    const plain = text.replace(/[^A-Za-z0-9._-]+/g, '-').replace(/^[-.]+|-+$/g, '');
+    return plain.slice(0, 80) || 'peclet';
   },
 
   link(text, name, type, content) {
-    const link = document.createElement('a');
-    link.textContent = text;
-    link.download = Saving.fileName(name.replace(/\.\w+$/, '')) + /\.\w+$/.exec(name)[0];
-    link.href = `data:${type};charset=utf-8,${encodeURIComponent(content)}`;
-    return link;
+    const download = Saving.fileName(name.replace(/\.\w+$/, '')) + /\.\w+$/.exec(name)[0],
+      href = `data:${type};charset=utf-8,${encodeURIComponent(content)}`;
+    return Page.element('a', { download, href }, text);
   },
 
   links(...links) {
-    const place = document.createElement('p');
-    place.className = 'saves faint';
-    place.append('Save as: ', ...links);
-    return place;
+    return Page.element('p', { className: 'saves faint' }, 'Save as: ', ...links);
   },
 };

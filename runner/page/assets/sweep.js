@@ -5,20 +5,25 @@ class Sweep {
     this.points = data.points;
     this.parameters = data.parameters.map((parameter) => this.column(parameter));
     if (this.parameters.length === 0) {
-      this.parameters = [
-        {
-          pointer: '',
-          about: { words: 'point', symbol: [], unit: '' },
-          numeric: false,
-          values: this.points.map((point) => point.label),
-          cells: this.points.map((point) => point.label),
-        },
-      ];
+      const labels = this.points.map((point) => point.label);
+      this.parameters = [{ pointer: '', about: Format.about('point'), numeric: false, values: labels, cells: labels }];
     }
     const first = this.parameters
       .filter((one) => one.numeric && one.values.length > 1)
       .reduce((best, one) => (!best || one.values.length > best.values.length ? one : best), null);
     this.usual = first || this.parameters.find((one) => one.values.length > 1) || this.parameters[0];
+  }
+
+  static bare(path) {
+    return path.replace(/^\//, '');
+  }
+
+  // What the campaign aims at: its path, its column among the quantities (-1: not measured yet), what it is.
+  static aim({ target, quantities }) {
+    const path = Sweep.bare(target.observable),
+      column = quantities.findIndex((quantity) => quantity.path === path),
+      about = column < 0 ? Format.about(Format.words(path)) : Format.quantity(quantities[column]);
+    return { path, column, about };
   }
 
   // One parameter: the cell of each point, its values in order, each once. What is no number is text.
@@ -68,8 +73,7 @@ class Sweep {
   // beginning and the same elements, such as stress/...
   choices() {
     const { quantities, target } = this.data,
-      bare = (path) => path.replace(/^\//, '');
-    const targets = [target, ...(target.also || [])].map((one) => bare(one.observable));
+      targets = [target, ...(target.also || [])].map((one) => Sweep.bare(one.observable));
     const groupOf = (quantity) => {
       if (targets.includes(quantity.path)) return 'target';
       if (quantity.name.startsWith('control_variates/')) return 'control variates';
@@ -91,13 +95,8 @@ class Sweep {
     for (const [key, indices] of split) {
       if (indices.length < 2) continue;
       const [name, element, unit] = JSON.parse(key),
-        words = `${Format.words(name)} by term, ${element}`;
-      drawn.push({
-        id: `${name} by term ${element}`,
-        indices,
-        group: 'split by term',
-        about: { words, symbol: [], unit: Format.unit(unit) },
-      });
+        about = Format.about(`${Format.words(name)} by term, ${element}`, Format.unit(unit));
+      drawn.push({ id: `${name} by term ${element}`, indices, group: 'split by term', about });
     }
     const order = ['target', 'measured', 'split by term', 'components', 'control variates'];
     return drawn.sort((a, b) => order.indexOf(a.group) - order.indexOf(b.group));
@@ -121,8 +120,8 @@ class Sweep {
   nameOf(parameter, i) {
     const { about, cells, numeric } = parameter,
       cell = numeric ? Format.plain(cells[i]) : cells[i];
-    const name = about.symbol.length ? about.symbol : [{ text: about.words, level: 0 }];
-    return [...name, { text: ` = ${cell}`, level: 0 }];
+    const name = about.symbol.length ? about.symbol : Format.parts(about.words);
+    return [...name, ...Format.parts(` = ${cell}`)];
   }
 
   // The figure of a choice over `axis`, with a panel for each combination of values of `panelBy`. Scales are those that
@@ -135,9 +134,8 @@ class Sweep {
       kinds = new Set();
     const others = this.others(axis).filter((one) => !panelBy.includes(one)),
       terms = choice.indices.length > 1;
-    const comma = { text: ', ', level: 0 };
-    const joined = (list) => list.reduce((all, parts) => [...all, ...(all.length ? [comma] : []), ...parts], []);
-    const term = (index) => ({ text: Format.words(quantities[index].name.split('/').slice(1).join('/')), level: 0 });
+    const joined = (list) => list.flatMap((parts, i) => [...(i ? Format.parts(', ') : []), ...parts]);
+    const term = (index) => Format.words(quantities[index].name.split('/').slice(1).join('/'));
     let absent = 0;
     this.points.forEach((point, i) => {
       for (const index of choice.indices) {
@@ -150,14 +148,17 @@ class Sweep {
         const [y, error, half, count] = known ? point.estimates[index] : [null, null, null, endings.ended],
           kind = Sweep.kind(point),
           { path } = quantities[index];
+        const number = known ? Format.withError(y, half) : 'no number',
+          state = point.standing + (endings.has_jammed ? `, ${endings.jammed} of ${endings.ended} jammed` : '');
         const order = panelBy.map((one) => one.values.indexOf(one.cells[i])),
           key = JSON.stringify(order);
         if (!panels.has(key)) {
           const title = joined(panelBy.map((one) => this.nameOf(one, i)));
           panels.set(key, { title, order, marks: [] });
         }
-        const name = joined([...(terms ? [[term(index)]] : []), ...others.map((one) => this.nameOf(one, i))]);
-        const id = JSON.stringify(name);
+        const named = others.map((one) => this.nameOf(one, i)),
+          name = joined(terms ? [Format.parts(term(index)), ...named] : named),
+          id = JSON.stringify(name);
         if (!series.has(id)) series.set(id, { series: series.size, name });
         const x = axis.numeric ? axis.cells[i] : axis.values.indexOf(axis.cells[i]);
         panels.get(key).marks.push({
@@ -168,23 +169,11 @@ class Sweep {
           allowed: point.good_enough[path],
           kind,
           point: i,
-          text: `${point.label}${terms ? `, ${term(index).text}` : ''}: ${
-            known ? Format.withError(y, half) : 'no number'
-          } (${Format.counted(count, 'seed')}, ${point.standing}${
-            endings.has_jammed ? `, ${endings.jammed} of ${endings.ended} jammed` : ''
-          })`,
+          text: `${point.label}${terms ? `, ${term(index)}` : ''}: ${number} (${Format.counted(count, 'seed')}, ${state})`,
         });
         kinds.add(kind);
-        rows.push([
-          point.label,
-          ...this.parameters.map((one) => one.cells[i]),
-          path,
-          y,
-          error,
-          half,
-          count,
-          endings.has_jammed ? `${point.standing}, jammed` : point.standing,
-        ]);
+        const standing = endings.has_jammed ? `${point.standing}, jammed` : point.standing;
+        rows.push([point.label, ...this.parameters.map((one) => one.cells[i]), path, y, error, half, count, standing]);
       }
     });
     const inOrder = (a, b) =>
@@ -193,7 +182,7 @@ class Sweep {
     const marks = list.flatMap((panel) => panel.marks);
     const scales = {
       x: axis.numeric && (log.x ?? isLogarithmic(axis.values)),
-      y: !stacked && (log.y ?? isLogarithmic(marks.flatMap(Sweep.ends))),
+      y: !stacked && (log.y ?? isLogarithmic(marks.flatMap(Chart.ends))),
     };
     const total = stacked ? choice.indices.findIndex((index) => quantities[index].name.endsWith('/total')) : -1;
     if (stacked) this.addControl(list, total, series, quantities[choice.indices[total]].path);
@@ -201,9 +190,7 @@ class Sweep {
       if (stacked) Sweep.stack(panel, total, scales.x);
       else Sweep.connect(panel, series.size);
     }
-    const hidden = marks.filter(
-      (mark) => (scales.y && !(mark.y > 0) && mark.kind !== 'jammed') || (scales.x && !(mark.x > 0)),
-    ).length;
+    const hidden = marks.filter((mark) => !Chart.isVisible(mark, scales.x, scales.y)).length;
     const notes = [];
     if (hidden)
       notes.push(`Left out, because a logarithmic axis has no place for them: ${hidden} that are not positive.`);
@@ -222,16 +209,8 @@ class Sweep {
       kinds: [...kinds],
       hasBand: marks.some((mark) => Format.isNumber(mark.allowed)),
       table: {
-        columns: [
-          'label',
-          ...this.parameters.map((one) => one.pointer || 'point'),
-          'quantity',
-          'mean',
-          'standard_error',
-          'half_width',
-          'count',
-          'standing',
-        ],
+        columns: ['label', ...this.parameters.map((one) => one.pointer || 'point'), 'quantity', 'mean', 'standard_error',
+          'half_width', 'count', 'standing'],
         rows,
       },
     };
@@ -246,7 +225,7 @@ class Sweep {
         if (!plain || plain[0] === mark.y) continue;
         const text = `${this.points[mark.point].label}, control variate: ${Format.rough(mark.y - plain[0])}`;
         marks.push({ ...mark, series: place, y: mark.y - plain[0], half: null, text });
-        series.set('control', { series: place, name: [{ text: 'control variate', level: 0 }] });
+        series.set('control', { series: place, name: Format.parts('control variate') });
       }
     }
   }
@@ -295,13 +274,6 @@ class Sweep {
     [panel.lines, panel.bands] = [[], []];
   }
 
-  // What of a mark has to be seen. Bars of numbers that are not decided may still be enormous.
-  static ends(mark) {
-    if (!Format.isNumber(mark.y)) return [];
-    const whole = mark.kind !== 'provisional' && Format.isNumber(mark.half);
-    return whole ? [mark.y - mark.half, mark.y + mark.half] : [mark.y];
-  }
-
   // Lines that guide the eye through each series, and the tolerance as a band around it.
   static connect(panel, series) {
     [panel.lines, panel.bands] = [[], []];
@@ -316,5 +288,94 @@ class Sweep {
         .map((mark) => [mark.x, mark.y - mark.allowed, mark.y + mark.allowed]);
       if (banded.length) panel.bands.push({ series: place, places: banded });
     }
+  }
+}
+
+// The chart over the sweep and what is chosen for it.
+class SweepView {
+  constructor(host, onPick) {
+    [this.quantity, this.axis, this.panels] = ['quantity', 'axis', 'panels'].map((id) => {
+      const select = Page.select([], () => (id === 'panels' ? this.draw() : this.renew()));
+      select.id = id;
+      return select;
+    });
+    [this.logX, this.logY, this.stacked] = ['log-x', 'log-y', 'stacked'].map((id) =>
+      Page.element('input', { type: 'checkbox', id }),
+    );
+    for (const box of [this.logX, this.logY])
+      box.addEventListener('change', () => {
+        this.setByHand = true;
+        this.draw();
+      });
+    this.stacked.checked = true;
+    this.stacked.addEventListener('change', () => this.draw());
+    const switched = (box, text) => Page.element('label', { className: 'switch' }, '', box, text);
+    this.stacking = switched(this.stacked, 'stacked');
+    const scales = Page.element('span', {}, switched(this.logX, 'log x'), switched(this.logY, 'log y'), this.stacking);
+    const controls = Page.element(
+      'div',
+      { className: 'controls' },
+      Page.labelled('Quantity', this.quantity),
+      Page.labelled('Over', this.axis),
+      Page.labelled('Panels', this.panels),
+      scales,
+    );
+    this.chart = new Chart(onPick);
+    host.append(Page.heading('h2', 'Results'), controls, this.chart.host);
+    this.setByHand = false;
+  }
+
+  show(data) {
+    this.data = data;
+    this.sweep = new Sweep(data);
+    this.choices = this.sweep.choices();
+    const { sweep } = this,
+      isFirst = !this.axis.options.length,
+      option = (one, i) => [String(i), Format.option(one.about)];
+    const quantities = this.choices.map((one, i) => [...option(one, i), one.group]);
+    Page.refill(this.quantity, quantities);
+    Page.refill(this.axis, sweep.parameters.map(option));
+    Page.refill(this.panels, [['usual', 'as fits'], ['none', 'none'], ...sweep.parameters.map(option)]);
+    if (isFirst) this.axis.value = String(sweep.parameters.indexOf(sweep.usual));
+    this.draw();
+  }
+
+  // Another quantity or axis: scales are again those that fit.
+  renew() {
+    this.setByHand = false;
+    this.draw();
+  }
+
+  draw() {
+    const { sweep } = this,
+      choice = this.choices[Number(this.quantity.value)],
+      axis = sweep.parameters[Number(this.axis.value)];
+    const chosen = sweep.parameters[Number(this.panels.value)],
+      by =
+        this.panels.value === 'usual'
+          ? sweep.usualPanels(axis, choice ? choice.indices.length : 1)
+          : [chosen].filter((one) => one && one !== axis);
+    if (!choice) {
+      this.chart.show({ panels: [] });
+      return;
+    }
+    const canStack = sweep.isSum(choice) && sweep.isAlone(axis, by),
+      stacked = canStack && this.stacked.checked;
+    this.stacking.hidden = choice.indices.length < 2;
+    this.stacked.disabled = !canStack;
+    const log = this.setByHand ? { x: this.logX.checked, y: this.logY.checked } : {},
+      figure = sweep.figure(choice, axis, by, log, stacked);
+    this.logY.disabled = stacked;
+    this.logX.checked = figure.x.log;
+    this.logY.checked = figure.y.log;
+    this.logX.disabled = !axis.numeric;
+    const bars = `Bars are ${Format.rough(100 * this.data.target.confidence)} % intervals`;
+    figure.caption =
+      (stacked ? `${bars} of the sum; parts below zero hang below it.` : `${bars}; lines only guide the eye.`) +
+      (figure.hasBand ? ' Bands: the tolerance around each mean.' : '') +
+      (figure.kinds.includes('provisional')
+        ? ' Provisional: the point is not decided yet, and its number may still change.'
+        : '');
+    this.chart.show(figure);
   }
 }

@@ -1,99 +1,79 @@
-// A table that sorts by a click on a title. columns: [{title: parts or text, text: whether words, minor: left out where
-// it is narrow, wrap, cell(row), sort(row)}].
+// A table that sorts by a click on a title. columns: [{title: parts or text, value(row), by which it sorts, shown(row), the
+// value unless given, text: whether words, wrap, minor: left out where it is narrow}].
 class SortedTable {
   // By which column a table of that name was sorted last, so that it stays so when it is made anew.
   static sorted = new Map();
 
   // `onPick(row)`: a row was chosen, by its first cell.
   constructor(host, columns, rows, { caption = '', onPick = null, name = 'table', csv = null } = {}) {
-    Object.assign(this, { columns, rows, onPick, chosen: null, by: null, descending: false });
-    const wide = document.createElement('div');
-    wide.className = 'wide';
-    this.table = document.createElement('table');
-    const head = document.createElement('thead'),
-      line = document.createElement('tr');
-    columns.forEach((column, i) => {
-      const th = document.createElement('th'),
-        button = document.createElement('button');
-      th.className = SortedTable.style(column);
-      th.scope = 'col';
-      button.type = 'button';
-      Page.fill(button, column.title);
-      button.addEventListener('click', () => this.sortBy(i));
-      th.append(button);
-      line.append(th);
-    });
-    head.append(line);
-    this.body = document.createElement('tbody');
+    Object.assign(this, { columns, rows, onPick, name, by: null, descending: false });
     this.lines = rows.map((row) => this.line(row));
-    this.body.append(...this.lines);
-    this.table.append(head, this.body);
-    wide.append(this.table);
-    host.append(wide);
+    this.head = Page.element('tr', {}, ...columns.map((column, i) => this.title(column, i)));
+    this.body = Page.element('tbody', {}, ...this.lines);
+    const table = Page.element('table', {}, Page.element('thead', {}, this.head), this.body);
+    host.append(Page.element('div', { className: 'wide' }, table));
     if (caption) host.append(Page.paragraph(caption, 'faint'));
-    this.name = name;
     if (SortedTable.sorted.has(name)) this.sort(...SortedTable.sorted.get(name));
     if (csv) host.append(Saving.links(Saving.link('CSV', `${name}.csv`, 'text/csv', Saving.csv(csv))));
   }
 
-  static style(column) {
-    return [column.text ? 'text' : '', column.wrap ? 'words' : '', column.minor ? 'minor' : '']
-      .filter(Boolean)
-      .join(' ');
+  static cell(name, column) {
+    const styles = { text: column.text, words: column.wrap, minor: column.minor };
+    return Page.element(name, { className: Object.keys(styles).filter((style) => styles[style]).join(' ') });
+  }
+
+  static button(content, onClick = null) {
+    return Page.fill(Page.element('button', { type: 'button', onclick: onClick }), content);
+  }
+
+  title(column, i) {
+    const cell = Object.assign(SortedTable.cell('th', column), { scope: 'col' });
+    cell.append(SortedTable.button(column.title, () => this.sortBy(i)));
+    return cell;
   }
 
   line(row) {
-    const line = document.createElement('tr');
+    const line = Page.element('tr', { onclick: this.onPick && (() => this.onPick(row)) });
     this.columns.forEach((column, i) => {
-      const cell = document.createElement('td');
-      cell.className = SortedTable.style(column);
-      if (i === 0 && this.onPick) {
-        const button = document.createElement('button');
-        button.type = 'button';
-        Page.fill(button, column.cell(row));
-        cell.append(button);
-      } else {
-        Page.fill(cell, column.cell(row));
-      }
+      const cell = SortedTable.cell('td', column),
+        content = column.shown ? column.shown(row) : String(column.value(row));
+      if (i === 0 && this.onPick) cell.append(SortedTable.button(content));
+      else Page.fill(cell, content);
       line.append(cell);
     });
-    if (this.onPick) line.addEventListener('click', () => this.onPick(row));
     return line;
   }
 
   sortBy(i) {
-    this.descending = this.by === i && !this.descending;
-    this.by = i;
-    SortedTable.sorted.set(this.name, [i, this.descending]);
-    this.sort(i, this.descending);
+    SortedTable.sorted.set(this.name, [i, this.by === i && !this.descending]);
+    this.sort(...SortedTable.sorted.get(this.name));
   }
 
   // Numbers before words; what does not exist comes last either way.
   sort(i, descending) {
     Object.assign(this, { by: i, descending });
     if (!this.columns[i]) return;
-    const { sort } = this.columns[i],
-      turn = this.descending ? -1 : 1;
-    const missing = (value) => value === null || value === undefined || Number.isNaN(value);
+    const turn = descending ? -1 : 1,
+      missing = (value) => value === null || value === undefined || Number.isNaN(value);
+    const compared = (a, b) => {
+      if (missing(a) || missing(b)) return missing(a) - missing(b);
+      if (typeof a === 'number' && typeof b === 'number') return turn * (a - b);
+      return turn * String(a).localeCompare(String(b), 'en', { numeric: true });
+    };
     const order = this.rows
-      .map((row, place) => ({ place, value: sort(row) }))
-      .sort((a, b) => {
-        if (missing(a.value) || missing(b.value)) return missing(a.value) - missing(b.value) || a.place - b.place;
-        if (typeof a.value === 'number' && typeof b.value === 'number')
-          return turn * (a.value - b.value) || a.place - b.place;
-        return turn * String(a.value).localeCompare(String(b.value), 'en', { numeric: true }) || a.place - b.place;
-      });
+      .map((row, place) => ({ place, value: this.columns[i].value(row) }))
+      .sort((a, b) => compared(a.value, b.value) || a.place - b.place);
     this.body.replaceChildren(...order.map(({ place }) => this.lines[place]));
-    [...this.table.tHead.rows[0].cells].forEach((cell, place) => {
-      if (place === i) cell.setAttribute('aria-sort', this.descending ? 'descending' : 'ascending');
-      else cell.removeAttribute('aria-sort');
-    });
+    SortedTable.mark([...this.head.cells], i, 'aria-sort', descending ? 'descending' : 'ascending');
   }
 
   choose(index) {
-    this.rows.forEach((_, i) => {
-      if (i === index) this.lines[i].setAttribute('aria-selected', 'true');
-      else this.lines[i].removeAttribute('aria-selected');
-    });
+    SortedTable.mark(this.lines, index, 'aria-selected', 'true');
+  }
+
+  // The one at `place` alone has the attribute.
+  static mark(elements, place, name, value) {
+    for (const element of elements) element.removeAttribute(name);
+    if (elements[place]) elements[place].setAttribute(name, value);
   }
 }

@@ -7,7 +7,7 @@
 
 #include "contract/durable_file.h"
 #include "contract/errors.h"
-#include "runner/command_line/set.h"
+#include "runner/command_line/ask_owner.h"
 #include "runner/command_line/validate.h"
 #include "runner/page/page_data.h"
 #include "runner/reports/explain.h"

@@ -8,7 +8,7 @@
 #include "contract/durable_file.h"
 #include "contract/errors.h"
 #include "contract/sha256.h"
-#include "runner/command_line/set.h"
+#include "runner/command_line/ask_owner.h"
 #include "runner/maintenance/backup.h"
 #include "runner/maintenance/doctor.h"
 #include "runner/maintenance/restore.h"

@@ -9,7 +9,6 @@
 #include "contract/errors.h"
 #include "contract/sha256.h"
 #include "runner/command_line/ask_owner.h"
-#include "runner/command_line/set.h"
 #include "runner/reports/export.h"
 #include "runner/reports/status.h"
 #include "runner/store/locks.h"

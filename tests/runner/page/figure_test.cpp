@@ -9,7 +9,6 @@
 #include <fstream>
 
 #include "contract/errors.h"
-#include "runner/page/picture.h"
 #include "tests/runner/stored_campaign.h"
 
 namespace peclet::runner {

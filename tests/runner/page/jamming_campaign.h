@@ -47,8 +47,8 @@ class JammingCampaign {
   }
 
   StoredCampaign& stored() { return stored_; }
-  JammingCurves curves(const CurveChoice& choice = {}) { return read_curves(stored_.database(), choice); }
-  std::vector<JammingPoint> points() { return curves().curves.at(0).points; }
+  Json curves(const CurveChoice& choice = {}) { return read_curves(stored_.database(), choice); }
+  Json points() { return curves()["curves"].at(0)["points"]; }
 
  private:
   Campaign campaign_;

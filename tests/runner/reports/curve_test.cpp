@@ -1,8 +1,7 @@
-#include "runner/reports/curve.h"
-
 #include <gtest/gtest.h>
 
 #include "runner/campaign/text_table.h"
+#include "runner/reports/status.h"
 
 namespace peclet::runner {
 namespace {

@@ -72,7 +72,7 @@ TEST(Explain, OfSeveralTargetsEachIsToldWithItsTolerance) {
       << text;
   EXPECT_TRUE(says(text, "20.0 ± 2.6")) << text;
   EXPECT_TRUE(says(text, "the results have no blocks of pressure:")) << text;
-  const std::string table = status_table(campaign.database(), 0);
+  const std::string table = status_table(read_status(campaign.database(), 0));
   EXPECT_TRUE(says(table, "relative_viscosity to 5 %, pressure to 1 at 95 % confidence")) << table;
   EXPECT_TRUE(says(table, "pressure 2.6 x")) << table;
   const Json look = explain_json(campaign.database(), campaign.directory(), "")["points"][0]["looks"][0];

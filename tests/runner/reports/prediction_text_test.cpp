@@ -1,7 +1,7 @@
 // How good predictions were, in words.
-#include "runner/reports/prediction_text.h"
-
 #include <gtest/gtest.h>
+
+#include "runner/reports/status.h"
 
 namespace peclet::runner {
 namespace {

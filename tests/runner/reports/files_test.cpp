@@ -1,8 +1,7 @@
-#include "runner/command_line/files.h"
-
 #include <gtest/gtest.h>
 
 #include "contract/errors.h"
+#include "runner/reports/export.h"
 #include "runner/store/result_files.h"
 #include "tests/runner/stored_campaign.h"
 
@@ -19,7 +18,7 @@ class FilesOfACampaign : public testing::Test {
     store_file(connection, 2, 3, {"final.xyz", 1234, std::string(64, 'a')}, true);
     store_file(connection, 2, 3, {"log.txt", 5, std::string(64, 'b')}, false);
   }
-  std::string list(const FilesOptions& options) {
+  std::string list(const FileChoice& options) {
     return list_files(campaign_.database(), campaign_.directory(), options);
   }
   // files/HASH-POINT/SEED/NAME
@@ -36,7 +35,7 @@ TEST_F(FilesOfACampaign, AreListedByPointAndSeed) {
   const std::string table = list({});
   EXPECT_NE(table.find("point=1     3  final.xyz   1234  " + path()), std::string::npos) << table;
   EXPECT_NE(table.find("point=1     3  log.txt        5  thrown away"), std::string::npos) << table;
-  FilesOptions of_another;
+  FileChoice of_another;
   of_another.point = "point=0";
   EXPECT_EQ(list(of_another), "no realisation has left a file\n");
   of_another.point = "point=7";
@@ -44,7 +43,7 @@ TEST_F(FilesOfACampaign, AreListedByPointAndSeed) {
 }
 
 TEST_F(FilesOfACampaign, AreToldToPrograms) {
-  FilesOptions options;
+  FileChoice options;
   options.paths = true;
   EXPECT_EQ(list(options), path() + '\n');
   options.json = true;
