@@ -81,11 +81,6 @@ Tolerance tolerance_of(const Json& target, const std::string& file, const std::s
     tolerance.floor = target.value(floor_key, 0.0);
     return tolerance;
   }
-  for (const char* const key : {measure_key, floor_key}) {
-    if (!target.contains(key)) continue;
-    throw InputError(file, pointer + '/' + key, shortened(target[key]),
-                     fmt::format("must not be given beside {}", absolute_key));
-  }
   if (has_number(target, absolute_key)) return Tolerance::absolute(target[absolute_key].get<double>());
   throw InputError(file, pointer, shortened(target),
                    fmt::format("must have {} or {}", relative_key, absolute_key));
