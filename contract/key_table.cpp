@@ -455,11 +455,11 @@ const Key* alternative_to(const KeyTable& table, const Key& key) {
 void add_members(const KeyTable& table, const std::string& pointer, Json& schema);
 
 Json schema_of(const KeyTable& table, const Key& key) {
-  const KindText& text = text_of(key.kind);
+  const KindText& kind = text_of(key.kind);
   const std::string& pattern = key.same_as.empty() ? key.pointer : key.same_as;
   Json schema = Json::object();
-  if (text.type != nullptr) schema["type"] = text.type;
-  if (text.pattern != nullptr) schema["pattern"] = text.pattern;
+  if (kind.type != nullptr) schema["type"] = kind.type;
+  if (kind.pattern != nullptr) schema["pattern"] = kind.pattern;
   if (key.kind == KeyKind::choice) schema["enum"] = key.choices;
   if (key.kind == KeyKind::automatic) schema["const"] = "auto";
   if (key.kind == KeyKind::empty) schema["const"] = "";
@@ -467,8 +467,8 @@ Json schema_of(const KeyTable& table, const Key& key) {
   if (const Key* element = key.kind == KeyKind::array ? table.find(pattern + "/*") : nullptr)
     schema["items"] = schema_of(table, *element);
   add_range(key, schema);
-  if (key.others == std::vector{KeyKind::null} && text.type != nullptr) {
-    schema["type"] = {text.type, "null"};
+  if (key.others == std::vector{KeyKind::null} && kind.type != nullptr) {
+    schema["type"] = {kind.type, "null"};
   } else if (!key.others.empty()) {
     Json all = Json::array({schema});
     for (const KeyKind other : key.others)

@@ -12,7 +12,7 @@
 namespace peclet::engine {
 namespace {
 
-// Rows of all blocks, and of the choices of "/observables/*".
+// Returns the rows of all blocks and of "/observables/*".
 std::string observable_keys() {
   std::string meaning = "stress: the tensor, split by term, which is always there.", names = "stress", blocks;
   for (const ObservableKind& kind : observable_kinds()) {

@@ -46,7 +46,7 @@ std::vector<SizeClass> size_classes(const SizeDistribution& distribution);
 // Each pair of sizes has constants of its own.
 inline constexpr std::size_t most_species = 256;
 
-// Rows of the elements of /particles/species; those of a mixture's lists are the same.
+// Rows of the elements of /particles/species, which those of a mixture's lists share.
 std::string species_keys();
 
 struct SpeciesList {

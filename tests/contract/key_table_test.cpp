@@ -140,11 +140,7 @@ TEST(KeyTable, SchemaSaysTheSameAsTheTable) {
 }
 
 TEST(KeyTable, SchemaSaysWhatPeopleCallAKey) {
-  const KeyTable table("T", {{.pointer = "/friction",
-                              .kind = KeyKind::number,
-                              .meaning = "Sliding.",
-                              .words = "coefficient of friction",
-                              .symbol = "μ"}});
+  const KeyTable table("T", "/friction? | number; named coefficient of friction, μ | Sliding.");
   EXPECT_EQ(table.json_schema("t")["properties"]["friction"], Json::parse(R"({"type": "number", "title":
       "coefficient of friction", "symbol": "μ", "description": "Sliding."})"));
 }
@@ -175,6 +171,7 @@ const KeyTable& words() {
 /hash? | hash or null
 /word? | word
 /name? | name
+/symbol? | name or empty
 /one? | integer = 1
 /three? | array of 3
 /count? | count
@@ -196,6 +193,7 @@ TEST(KeyTable, ValuesOfEachKindAreTakenOrRefused) {
                                             {{"word", longest_of_words}},
                                             {{"name", "P/P0 \u00b5"}},
                                             {{"name", longest_of_names}},
+                                            {{"symbol", ""}},
                                             {{"one", 1}},
                                             {{"three", {1, 2, 3}}},
                                             {{"count", 9007199254740991}},
