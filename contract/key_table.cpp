@@ -15,31 +15,21 @@
 namespace peclet {
 namespace {
 
-std::string_view name_of(const Key& key) {
-  return std::string_view(key.pointer).substr(key.pointer.rfind('/') + 1);
-}
+std::string name_of(const Key& key) { return key.pointer.substr(key.pointer.rfind('/') + 1); }
 
-// A key's name as a segment of a JSON pointer (RFC 6901).
-std::string escaped(std::string_view name) {
-  std::string segment;
-  for (const char c : name) {
-    if (c == '~') {
-      segment += "~0";
-    } else if (c == '/') {
-      segment += "~1";
-    } else {
-      segment += c;
-    }
+// The key of the same object that may be given instead of this one; null when there is none.
+const Key* alternative_to(const KeyTable& table, const Key& key) {
+  for (const Key* other : table.below(key.pointer.substr(0, key.pointer.rfind('/')))) {
+    if (other->instead_of == name_of(key)) return other;
   }
-  return segment;
+  return nullptr;
 }
 
 bool is_whole(const Json& value) {
   if (value.is_number_integer()) return true;
-  constexpr double first_inexact_integer = 9007199254740992.0;  // 2^53
   if (!value.is_number_float()) return false;
   const auto number = value.get<double>();
-  return std::trunc(number) == number && std::abs(number) < first_inexact_integer;
+  return std::trunc(number) == number && std::abs(number) < largest_count;
 }
 
 bool in_range(const Key& key, double number) {
@@ -58,8 +48,6 @@ bool is_of_kind(KeyKind kind, const Key& key, const Json& value) {
   switch (kind) {
     case KeyKind::null:
       return value.is_null();
-    case KeyKind::automatic:
-      return value == "auto";
     case KeyKind::empty:
       return value == "";
     case KeyKind::any:
@@ -93,12 +81,13 @@ bool is_allowed(const Key& key, const Json& value) {
          std::ranges::any_of(key.others, [&](KeyKind kind) { return is_of_kind(kind, key, value); });
 }
 
-// Whether a key may be given in this object. Where the word that decides is missing, that is the fault.
+// Returns whether the key may be given in this object. A missing word that decides counts as one that allows
+// it: its own absence is the fault.
 bool may_be_given(const Key& key, const Json& object) {
   if (key.only_if.empty()) return true;
   const auto other = object.find(key.only_if);
-  if (key.if_words.empty() || other == object.end()) return other != object.end() || !key.if_words.empty();
-  return std::ranges::count(key.if_words, other->get<std::string>()) > 0;
+  if (key.if_words.empty()) return other != object.end();
+  return other == object.end() || std::ranges::count(key.if_words, other->get<std::string>()) > 0;
 }
 
 // A share that was given in per cent, as 5 for 5 %.
@@ -123,8 +112,9 @@ class Validation {
     const std::string& pattern = key.same_as.empty() ? key.pointer : key.same_as;
     if (value.is_object()) {
       check_object(value, pattern, pointer);
-    } else if (value.is_array()) {
-      check_array(value, pattern, pointer);
+    } else if (const Key* element = value.is_array() ? table_.find(pattern + "/*") : nullptr) {
+      for (std::size_t i = 0; i < value.size(); ++i)
+        check_value(value[i], *element, fmt::format("{}/{}", pointer, i));
     } else if (key.kind == KeyKind::integer && value.is_number()) {
       value = static_cast<long long>(value.get<double>());
     }
@@ -139,20 +129,20 @@ class Validation {
       const Key* key = is_plain ? table_.find(pattern + '/' + name) : nullptr;
       if (key == nullptr) key = any_member;
       if (key == nullptr && table_.ignores_unknown()) continue;
-      if (key == nullptr) refuse_unknown(keys, name, pointer + '/' + escaped(name));
-      check_value(value, *key, pointer + '/' + escaped(name));
+      const std::string below = pointer + (Json::json_pointer() / name).to_string();
+      if (key == nullptr) refuse_unknown(keys, name, below);
+      check_value(value, *key, below);
     }
     for (const Key* key : keys) {
       if (object.contains(name_of(*key))) refuse_misplaced(object, *key, pointer);
     }
     for (const Key* key : keys) {
-      const std::string name(name_of(*key));
+      const std::string name = name_of(*key);
       const std::string below = pointer + '/' + name;
-      if (key == any_member || object.contains(name) || !may_be_given(*key, object) ||
-          has_alternative(keys, object, name)) {
+      if (key == any_member || object.contains(name) || !may_be_given(*key, object)) continue;
+      if (const Key* other = alternative_to(table_, *key); other && object.contains(name_of(*other)))
         continue;
-      }
-      if (key->required) throw InputError(file_, below, "missing", allowed_values(*key));
+      if (key->required) throw InputError(file_, below, "missing", wanted(*key, object));
       if (key->default_value.is_null()) continue;
       object[name] = key->default_value;
       check_value(object[name], *key, below);
@@ -160,19 +150,19 @@ class Validation {
   }
 
  private:
-  void check_array(Json& array, const std::string& pattern, const std::string& pointer) const {
-    const Key* element = table_.find(pattern + "/*");
-    if (element == nullptr) return;
-    for (std::size_t i = 0; i < array.size(); ++i) {
-      check_value(array[i], *element, fmt::format("{}/{}", pointer, i));
+  // Returns what a missing key must be, with the keys that an object needs, and why it must be given.
+  std::string wanted(const Key& key, const Json& object) const {
+    std::vector<std::string> members;
+    for (const Key* member : table_.below(key.same_as.empty() ? key.pointer : key.same_as)) {
+      const Key* const other = alternative_to(table_, *member);
+      if (!member->required || !member->only_if.empty()) continue;
+      members.push_back(name_of(*member) + (other ? " or " + name_of(*other) : ""));
     }
-  }
-
-  static bool has_alternative(const std::vector<const Key*>& keys, const Json& object,
-                              const std::string& name) {
-    return std::any_of(keys.begin(), keys.end(), [&](const Key* key) {
-      return key->instead_of == name && object.contains(name_of(*key));
-    });
+    std::string words = allowed_values(key);
+    if (!members.empty()) words += fmt::format(" with {}", fmt::join(members, ", "));
+    if (key.only_if.empty()) return words;
+    const std::string value = key.if_words.empty() ? "given" : object[key.only_if].get<std::string>();
+    return words + fmt::format(", because {} is {}", key.only_if, value);
   }
 
   void refuse_misplaced(const Json& object, const Key& key, const std::string& pointer) const {
@@ -186,7 +176,7 @@ class Validation {
     } else {
       return;
     }
-    const std::string name(name_of(key));
+    const std::string name = name_of(key);
     throw InputError(file_, pointer + '/' + name, shortened(object[name]), allowed);
   }
 
@@ -194,7 +184,7 @@ class Validation {
                                    const std::string& pointer) const {
     std::vector<std::string> names;
     names.reserve(keys.size());
-    for (const Key* key : keys) names.emplace_back(name_of(*key));
+    for (const Key* key : keys) names.push_back(name_of(*key));
     throw InputError(file_, pointer, "unknown key",
                      fmt::format("allowed keys: {}{}", fmt::join(names, ", "), suggestion(name, names)));
   }
@@ -209,8 +199,7 @@ KeyTable::KeyTable(std::string title, std::vector<Key> keys, Unknown unknown)
     : title_(std::move(title)), keys_(std::move(keys)), unknown_(unknown) {}
 
 const Key* KeyTable::find(std::string_view pointer) const {
-  const auto found =
-      std::find_if(keys_.begin(), keys_.end(), [&](const Key& key) { return key.pointer == pointer; });
+  const auto found = std::ranges::find(keys_, pointer, &Key::pointer);
   return found == keys_.end() ? nullptr : &*found;
 }
 
@@ -237,7 +226,7 @@ Json KindTables::validate(Json document, const std::string& file) const {
   // What tells it apart comes first: it decides what else there is.
   const KeyTable kind("", {key_}, Unknown::ignored);
   document = kind.validate(std::move(document), file);
-  const std::string name = document[std::string(name_of(key_))];
+  const std::string name = document[name_of(key_)];
   const auto found = std::ranges::find(key_.choices, name);
   return tables_[static_cast<std::size_t>(found - key_.choices.begin())].validate(std::move(document), file);
 }
@@ -282,9 +271,8 @@ constexpr KindText kind_texts[] = {
      "^[a-z0-9][a-z0-9-]{0,63}$"},
     {KeyKind::name, "name", "a name of 1 to 120 bytes without control characters", "string",
      "^[^\\u0000-\\u001f\\u007f]{1,120}$"},
-    {KeyKind::choice, "one of ", "one of: ", nullptr},
+    {KeyKind::choice, "one of ", nullptr, nullptr},
     {KeyKind::null, "null", "null", "null"},
-    {KeyKind::automatic, "auto", "\"auto\"", nullptr},
     {KeyKind::empty, "empty", "\"\"", nullptr},
     {KeyKind::any, "anything", "anything", nullptr},
 };
@@ -338,11 +326,18 @@ void read_bounds(Key& key, std::string_view text) {
   if (is_open) key.maximum = std::numeric_limits<double>::infinity();
 }
 
+void read_choices(Key& key, std::string_view text) {
+  while (!text.empty()) key.choices.emplace_back(cut(text, ", "));
+}
+
 void read_kind(Key& key, std::string_view text) {
   for (std::size_t at = text.rfind(" or "); at != std::string_view::npos; at = text.rfind(" or ")) {
-    const auto* const other = std::ranges::find(kind_texts, text.substr(at + 4), &KindText::row);
-    if (other == std::end(kind_texts)) break;
-    key.others.push_back(other->kind);
+    std::string_view other = text.substr(at + 4);
+    const bool is_choice = cut_begin(other, text_of(KeyKind::choice).row);
+    const auto* const found = std::ranges::find(kind_texts, other, &KindText::row);
+    if (!is_choice && found == std::end(kind_texts)) break;
+    key.others.push_back(is_choice ? KeyKind::choice : found->kind);
+    if (is_choice) read_choices(key, other);
     text = text.substr(0, at);
   }
   const auto* const found =
@@ -351,7 +346,7 @@ void read_kind(Key& key, std::string_view text) {
   key.kind = found->kind;
   text.remove_prefix(found->row.size());
   if (key.kind == KeyKind::choice) {
-    while (!text.empty()) key.choices.emplace_back(cut(text, ", "));
+    read_choices(key, text);
   } else if (found->row == "count") {
     key.minimum = 0;
     key.maximum = largest_count - 1;
@@ -441,17 +436,6 @@ void add_range(const Key& key, Json& schema) {
   }
 }
 
-std::string last_part(const std::string& pointer) { return pointer.substr(pointer.rfind('/') + 1); }
-
-// The key of the same object that may be given instead of this one; null when there is none.
-const Key* alternative_to(const KeyTable& table, const Key& key) {
-  const std::vector<const Key*> beside = table.below(key.pointer.substr(0, key.pointer.rfind('/')));
-  const auto found = std::find_if(beside.begin(), beside.end(), [&](const Key* other) {
-    return other->instead_of == last_part(key.pointer);
-  });
-  return found == beside.end() ? nullptr : *found;
-}
-
 void add_members(const KeyTable& table, const std::string& pointer, Json& schema);
 
 Json schema_of(const KeyTable& table, const Key& key) {
@@ -461,7 +445,6 @@ Json schema_of(const KeyTable& table, const Key& key) {
   if (kind.type != nullptr) schema["type"] = kind.type;
   if (kind.pattern != nullptr) schema["pattern"] = kind.pattern;
   if (key.kind == KeyKind::choice) schema["enum"] = key.choices;
-  if (key.kind == KeyKind::automatic) schema["const"] = "auto";
   if (key.kind == KeyKind::empty) schema["const"] = "";
   if (key.kind == KeyKind::object) add_members(table, pattern, schema);
   if (const Key* element = key.kind == KeyKind::array ? table.find(pattern + "/*") : nullptr)
@@ -472,7 +455,7 @@ Json schema_of(const KeyTable& table, const Key& key) {
   } else if (!key.others.empty()) {
     Json all = Json::array({schema});
     for (const KeyKind other : key.others)
-      all.push_back(schema_of(table, {.pointer = pattern, .kind = other}));
+      all.push_back(schema_of(table, {.pointer = pattern, .kind = other, .choices = key.choices}));
     schema = {{"anyOf", all}};
   }
   for (const auto& [name, text] : {std::pair{"title", &key.words},
@@ -491,18 +474,19 @@ void add_members(const KeyTable& table, const std::string& pointer, Json& schema
   if (keys.empty()) return;  // holds anything
   if (!table.ignores_unknown()) schema["additionalProperties"] = false;
   for (const Key* key : keys) {
-    const std::string name = last_part(key->pointer);
+    const std::string name = name_of(*key);
     if (name == "*") {
       schema["additionalProperties"] = schema_of(table, *key);
       continue;
     }
     schema["properties"][name] = schema_of(table, *key);
     if (const Key* const other = alternative_to(table, *key)) {
-      schema["oneOf"] = {{{"required", {name}}}, {{"required", {last_part(other->pointer)}}}};
+      schema["oneOf"] = {{{"required", {name}}}, {{"required", {name_of(*other)}}}};
     } else if (!key->only_if.empty()) {
       const Json where = {{"properties", {{key->only_if, {{"enum", key->if_words}}}}}};
       if (key->if_words.empty()) {
-        schema["dependentRequired"][name] = {key->only_if};
+        schema["dependentRequired"][name].push_back(key->only_if);
+        if (key->required) schema["dependentRequired"][key->only_if].push_back(name);
       } else {
         schema["dependentSchemas"][name] = where;
         if (key->required) schema["allOf"].push_back({{"if", where}, {"then", {{"required", {name}}}}});
@@ -561,10 +545,14 @@ KindTables::KindTables(std::string title, const std::string& key, std::string_vi
 
 std::string allowed_values(const Key& key) {
   if (key.kind == KeyKind::any) return "may be anything";
-  std::string words = fmt::format("must be {}{}{}", text_of(key.kind).message, fmt::join(key.choices, ", "),
-                                  bounds_in_words(key));
-  for (const KeyKind other : key.others) words += fmt::format(", or {}", text_of(other).message);
-  return words;
+  const auto words = [&](KeyKind kind) -> std::string {
+    if (kind != KeyKind::choice) return text_of(kind).message;
+    if (key.choices.size() == 1) return '"' + key.choices[0] + '"';
+    return fmt::format("one of: {}", fmt::join(key.choices, ", "));
+  };
+  std::string all = "must be " + words(key.kind) + bounds_in_words(key);
+  for (const KeyKind other : key.others) all += ", or " + words(other);
+  return all;
 }
 
 Json KeyTable::json_schema(const std::string& identifier) const {
@@ -591,7 +579,7 @@ std::string KeyTable::markdown() const {
     std::string fallback = key.required && key.only_if.empty() ? "required" : "";
     if (!key.instead_of.empty()) fallback = fmt::format("instead of `{}`", key.instead_of);
     if (const Key* const other = alternative_to(*this, key)) {
-      fallback += fmt::format(", or `{}`", last_part(other->pointer));
+      fallback += fmt::format(", or `{}`", name_of(*other));
     }
     if (!key.default_value.is_null()) fallback = fmt::format("`{}`", key.default_value.dump());
     std::string allowed = allowed_values(key);

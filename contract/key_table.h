@@ -17,16 +17,16 @@
 //   word (letters a-z, digits and hyphens, at most longest_word of them, no hyphen first)
 //   name (1 to longest_name bytes without control characters)
 //
-// "or null", "or auto", "or empty" (text), or another kind, as in "number or name", may follow, and after
-// semicolons:
+// Another kind without bounds may follow: "or null", "or empty" (text), "or name", "or one of auto".
+// Semicolons begin what else the table says of the key:
 //
 //   in UNIT
 //   named WORDS, SYMBOL   as people call it; a symbol may be missing (schema/README.md, symbols)
 //   default JSON
-//   instead of NAME   of a required key of the same object: exactly one of both is given
+//   instead of NAME   NAME is a required key of the same object: exactly one of both is given
 //   if NAME           only beside that key of the same object
 //   if NAME A, B      only where that key has one of these words
-//   as POINTER        of another row: what is below that is below this
+//   as POINTER        the rows below POINTER are also those below this key
 //
 // Keys without a meaning of their own may share a row: "/at, /until | number".
 //
@@ -57,12 +57,11 @@ enum class KeyKind {
   name,
   choice,
   null,
-  automatic,
   empty,
   any
 };
 constexpr std::size_t longest_word = 64, longest_name = 120;
-// Every double below it is whole or not.
+// Bound of counts: a double represents every integer below it.
 constexpr double largest_count = 9007199254740992.0;  // 2^53
 
 // A row of a table.
@@ -73,22 +72,22 @@ struct Key {
   std::string unit = {};                // "" where the key has none
   std::string words = {}, symbol = {};  // what people call it; "" where its name says it
   bool required = false;
-  std::vector<KeyKind> others = {};  // that are allowed besides
+  std::vector<KeyKind> others = {};  // allowed besides `kind`
   std::string same_as = {}, instead_of = {}, only_if = {};
-  std::vector<std::string> if_words = {};  // of `only_if`; none: any value
+  std::vector<std::string> if_words = {};  // values of `only_if`; none: any value
   Json default_value = nullptr;            // null: no default, the key stays absent
-  // Of the number, or of the number of an array's items.
+  // Bounds of the number, or of the number of an array's items.
   double minimum = -std::numeric_limits<double>::infinity();
   double maximum = std::numeric_limits<double>::infinity();
   bool above_minimum = false;             // strictly greater than `minimum`
   bool below_maximum = false;             // strictly less than `maximum`
-  std::vector<std::string> choices = {};  // of KeyKind::choice
+  std::vector<std::string> choices = {};  // words that KeyKind::choice allows
 };
 
-// Throws std::logic_error for a row that is not written as above.
+// Reads rows. Throws std::logic_error for a row that is not written as above.
 std::vector<Key> keys_of(std::string_view rows);
 
-// What becomes of keys that are not in a table.
+// What validation does with keys that are not in a table.
 enum class Unknown { refused, ignored };
 
 class KeyTable {
@@ -129,19 +128,19 @@ class KeyTable {
 // Documents of several kinds, which the value of one key tells apart: frames by "type", events by "event".
 class KindTables {
  public:
-  // A line "-- NAME | MEANING" begins the rows of a kind, besides those before the first one, which all have,
-  // and that of `key`.
+  // A line "-- NAME | MEANING" begins the rows of a kind. Every kind also has the rows before the first of
+  // these lines, and that of `key`.
   KindTables(std::string title, const std::string& key, std::string_view rows,
              Unknown unknown = Unknown::refused);
 
-  // As KeyTable::validate() by the table of its kind.
+  // KeyTable::validate() by the table of the document's kind.
   Json validate(Json document, const std::string& file) const;
   Json json_schema(const std::string& identifier) const;
 
  private:
   std::string title_;
   Key key_;
-  std::vector<KeyTable> tables_;  // in the order of key_.choices
+  std::vector<KeyTable> tables_;  // ordered as key_.choices
 };
 
 // "must be a number > 0", "must be one of: a, b": what a key allows, in words.

@@ -36,8 +36,8 @@ FlowKind stress_flow() {
       .keys = R"(
 /flow/stress? | number > 0; in stress; named shear stress, σ | Shear stress that is held in the place of a
     rate: its mean rate is what is measured.
-/flow/jammed_viscosity? | number > 0 | Relative viscosity beyond which a realisation under a stress has
-    jammed; 10000 unless given.
+/flow/jammed_viscosity? | number > 0; if stress | Relative viscosity beyond which a realisation under a stress
+    has jammed; 10000 unless given.
 )",
       .read = read_stress,
       .unit = "stress_times",

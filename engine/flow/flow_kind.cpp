@@ -41,14 +41,6 @@ const FlowKind& flow_kind_of(const SceneDocument& scene) {
   };
   for (const FlowKind& kind : all) refuse(kind.key);
   for (const char* key : {"/flow/waves", "/peclet"}) refuse(key);
-  for (const FlowKind& kind : all) {
-    if (scene.has(kind.key)) continue;
-    for (const Key& key : keys_of(kind.keys)) {
-      const bool is_of_a_list = key.pointer.find('*') != std::string::npos;
-      if (!is_of_a_list && scene.has(key.pointer))
-        scene.refuse(key.pointer, "must be left out without " + kind.key);
-    }
-  }
   return flow;
 }
 

@@ -44,8 +44,7 @@ double CrossShear::largest_rate() const { return std::hypot(rate_, amplitude_ * 
 FlowKind oscillation_flow() {
   return {.key = "/flow/oscillation",
           .keys = R"(
-/flow/oscillation? | object | Shear to and fro in the place of shear_rate: strain = amplitude sin(frequency
-    t).
+/flow/oscillation? | object | Oscillating shear in place of shear_rate: strain = amplitude sin(frequency t).
 /flow/oscillation/amplitude | number > 0; named amplitude of the strain, γ_0 | Largest strain.
 /flow/oscillation/frequency | number > 0; in 1 / time; named angular frequency, ω | Angular frequency, in
     radians per time.
@@ -63,7 +62,7 @@ FlowKind oscillation_flow() {
 FlowKind cross_shear_flow() {
   return {.key = "/flow/cross_shear",
           .keys = R"(
-/flow/cross_shear? | object | Shear to and fro across the steady one, u_z = y d/dt [amplitude sin(frequency
+/flow/cross_shear? | object | Oscillating shear across the steady one: u_z = y d/dt [amplitude sin(frequency
     t)].
 /flow/cross_shear/amplitude | number > 0; named amplitude of the strain across, γ_0 | Its largest strain.
 /flow/cross_shear/frequency | number > 0; in 1 / time; named angular frequency across, ω | Angular frequency,

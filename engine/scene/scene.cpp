@@ -266,9 +266,6 @@ double rate_from_peclet(const SceneDocument& scene, double radius, Physics& phys
   for (const char* pointer : {"/flow/shear_rate", "/fluid/thermal_energy"}) {
     if (scene.has(pointer)) scene.refuse(pointer, "must be left out together with /peclet, which sets it");
   }
-  if (!scene.has("/limits")) {
-    scene.miss("/limits", "must be an object with shear_rate and thermal_energy, because /peclet is given");
-  }
   const double peclet = scene.number("/peclet");
   const double scale = 6 * std::numbers::pi * physics.viscosity * radius * radius * radius;
   double rate = scene.number("/limits/shear_rate");
@@ -304,8 +301,7 @@ std::string flow_keys() {
   return keys + wave_keys + R"(
 /peclet? | number > 0; named Péclet number, Pe | Pe = 6 pi eta a^3 rate / k_B T, in place of shear_rate and
     thermal_energy; needs limits.
-/limits? | object | Of the scene with a given peclet: the largest rate and temperature that Pe allows are
-    used.
+/limits | object; if peclet | With peclet: the largest rate and temperature that Pe allows are used.
 /limits/shear_rate | number > 0; in 1 / time | Shear rate that is not exceeded.
 /limits/thermal_energy | number > 0; in energy | k_B T that is not exceeded.
 )";
@@ -319,11 +315,7 @@ void set_flow(const SceneDocument& scene, const Particles& particles, double vol
     scene.refuse(pointer, fmt::format("must be left out with {}, whose cell is {}", flow.key, flow.own_cell));
   }
   double rate = scene.number_or("/flow/shear_rate", 0);
-  if (scene.has("/peclet")) {
-    rate = rate_from_peclet(scene, particles.reference_radius, physics);
-  } else if (scene.has("/limits")) {
-    scene.refuse("/limits", "must be left out without /peclet");
-  }
+  if (scene.has("/peclet")) rate = rate_from_peclet(scene, particles.reference_radius, physics);
   physics.flow = read_flow({scene, rate, physics.viscosity, physics.thermal_energy, volume_fraction});
   if (!scene.has(flow.key) && !scene.has("/peclet")) {
     scene.miss(flow.key, fmt::format("must be a number >= 0, or {} or /peclet with /limits must be given",
@@ -340,10 +332,10 @@ constexpr const char* run_rows = R"(
 /integrator | object; default {{}} | How the equations of motion are solved.
 /integrator/method? | one of explicit, implicit | explicit: velocity Verlet; implicit: steps that solve for
     the velocities. Unless given, implicit with lubrication and explicit without.
-/integrator/timestep | number > 0 or auto; in time; default "auto" | Time step; auto: half of the largest
-    stable explicit one, or the implicit one whose error has been measured, and not more than a 32nd of the
-    production window. An oscillation has a whole number of steps, 128 at least: the step is shortened to
-    that.
+/integrator/timestep | number > 0 or one of auto; in time; default "auto" | Time step; auto: half of the
+    largest stable explicit one, or the implicit one whose error has been measured, and not more than a 32nd
+    of the production window. An oscillation has a whole number of steps, 128 at least: the step is shortened
+    to that.
 /integrator/tolerance? | number > 0 and <= 0.005 | Residual of the equations of an implicit step, relative to
     the motion, in the energy norm; unless given 0.002, with noise 0.004.
 /duration | object | How long a realisation runs.

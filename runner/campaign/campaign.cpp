@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "contract/errors.h"
@@ -69,16 +68,10 @@ Target aimed_at(const Json& document, const std::string& file) {
   return target_of(target["observable"].get<std::string>(), target, target["confidence"].get<double>(), file);
 }
 
-// Of how many first seeds of each point files are kept.
-int seeds_with_files(const Json& document, const std::string& file) {
+// Returns the number of first seeds of each point whose files are kept.
+int seeds_with_files(const Json& document) {
   const Json rule = document.value("keep_files", Json("all"));
-  if (rule == "all") return most_realisations;
-  if (rule == "none") return 0;
-  if (rule.is_number() && rule >= 0 && rule <= most_realisations && std::trunc(rule.get<double>()) == rule) {
-    return rule.get<int>();
-  }
-  throw InputError(file, "/keep_files", shortened(rule),
-                   fmt::format("must be \"all\", \"none\" or an integer >= 0 and <= {}", most_realisations));
+  return rule == "all" ? most_realisations : rule == "none" ? 0 : rule.get<int>();
 }
 
 // Throws InputError for a file that has a scene alone, as many begin with, and says what belongs around it.
@@ -199,7 +192,7 @@ Campaign parse_campaign(const Json& written, const std::string& file) {
                     smallest_minimum));
   }
   campaign.engine = document["engine"].get<std::vector<std::string>>();
-  campaign.seeds_with_files = seeds_with_files(document, file);
+  campaign.seeds_with_files = seeds_with_files(document);
   campaign.points = sweep_points(document["scene"], read_sweep(document["sweep"], file), campaign.name, file);
   return campaign;
 }
@@ -250,8 +243,9 @@ constexpr const char* campaign_rows = R"(
 /show? | array of 1 to {shown} | Where the number of realisations is fixed: numbers in the result's mean that
     tables show, the first one also charts; relative_viscosity unless given.
 /show/* | string | One of them.
-/keep_files? | anything | Which of the files are kept that realisations leave beside their results: "all"
-    (unless given), "none", or those of so many first seeds of each point.
+/keep_files? | integer >= 0 and <= {realisations} or one of all, none | Which of the files are kept that
+    realisations leave beside their results: all (unless given), none, or those of this many first seeds of
+    each point.
 /engine | array of 1 or more; default ["peclet-engine","serve"] | Program and arguments. Without a slash it is
     looked for beside peclet, then on PATH, then among peclet's own adapters (lammps_engine.py); a relative
     path starts at the campaign file, in whose folder it runs.

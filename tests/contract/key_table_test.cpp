@@ -17,7 +17,7 @@ const KeyTable& table() {
 /balls/* | object | It.
 /balls/*/radius | number >= 0 and < 1; in length | Radius.
 /balls/*/heavy | true or false; default false | It.
-/step? | number > 0 or auto | It.
+/step? | number > 0 or one of auto | It.
 /guard | object; default {} | It.
 /guard/limit | number; default 0.05 | It.
 /name? | string | It.
@@ -134,7 +134,7 @@ TEST(KeyTable, SchemaSaysTheSameAsTheTable) {
       Json::parse(
           R"({"type": "number", "minimum": 0, "exclusiveMaximum": 1, "description": "Radius.", "unit": "length"})"));
   EXPECT_EQ(schema["properties"]["step"]["anyOf"],
-            Json::parse(R"([{"type": "number", "exclusiveMinimum": 0}, {"const": "auto"}])"));
+            Json::parse(R"([{"type": "number", "exclusiveMinimum": 0}, {"enum": ["auto"]}])"));
   EXPECT_FALSE(schema["properties"]["free"].contains("additionalProperties"));
   EXPECT_EQ(schema["properties"]["extra"], Json::parse(R"({"description": "It."})"));
 }
@@ -172,6 +172,7 @@ const KeyTable& words() {
 /word? | word
 /name? | name
 /symbol? | name or empty
+/when? | integer >= 0 or one of now, never
 /one? | integer = 1
 /three? | array of 3
 /count? | count
@@ -199,6 +200,8 @@ TEST(KeyTable, ValuesOfEachKindAreTakenOrRefused) {
                                             {{"count", 9007199254740991}},
                                             {{"by_name", {{"a/b", 1.5}, {"*", nullptr}}}},
                                             {{"first", {{"size", 1}}}, {"second", {{"size", 2}}}},
+                                            {{"when", 0}},
+                                            {{"when", "never"}},
                                             {{"unknown", true}}})
     EXPECT_NO_THROW(words().validate(good, "f")) << good;
   for (const Json& bad : std::vector<Json>{{{"hash", std::string(63, 'a')}},
@@ -211,6 +214,8 @@ TEST(KeyTable, ValuesOfEachKindAreTakenOrRefused) {
                                            {{"name", ""}},
                                            {{"name", "a\nb"}},
                                            {{"name", longest_of_names + "N"}},
+                                           {{"when", -1}},
+                                           {{"when", "soon"}},
                                            {{"one", 2}},
                                            {{"three", {1, 2, 3, 4}}},
                                            {{"count", 9007199254740992.0}},
@@ -225,6 +230,7 @@ TEST(KeyTable, SchemaSaysWhatTheKindsAllow) {
   const Json keys = words().json_schema("t")["properties"];
   EXPECT_EQ(keys["hash"]["type"], (Json{"string", "null"}));
   EXPECT_EQ(keys["one"]["const"], 1);
+  EXPECT_EQ(keys["when"]["anyOf"][1]["enum"], (Json{"now", "never"}));
   EXPECT_EQ(keys["by_name"]["additionalProperties"]["type"], (Json{"number", "null"}));
   EXPECT_EQ(keys["second"]["required"], Json::array({"size"}));
   EXPECT_FALSE(words().json_schema("t").contains("additionalProperties"));
@@ -265,14 +271,22 @@ TEST(KeyTable, SomeKeysAreOnlyGivenBesideOthers) {
 /depth | number; default 2; if form flat
 /friction? | number
 /load? | number; if friction
+/slip | object; if friction
+/slip/low, /slip/high | number
+/slip/width | number; instead of high
+/slip/steps? | count
 )");
+  const Json slip = {{"low", 0}, {"high", 1}};
   EXPECT_EQ(table.validate({{"form", "oval"}, {"radius", 1}}, "f").size(), 2);
-  EXPECT_EQ(table.validate({{"form", "flat"}, {"friction", 1}, {"load", 1}}, "f")["depth"], 2);
+  EXPECT_EQ(table.validate({{"form", "flat"}, {"friction", 1}, {"load", 1}, {"slip", slip}}, "f")["depth"],
+            2);
   for (const auto& [document, message] : std::vector<std::pair<Json, std::string>>{
-           {{{"form", "round"}}, "f: /radius: missing: must be a number"},
+           {{{"form", "round"}}, "f: /radius: missing: must be a number, because form is round"},
            {{{"radius", 1}}, "f: /form: missing: must be one of: round, flat, oval"},
            {{{"form", "flat"}, {"radius", 1}},
             "f: /radius: 1: must be left out unless form is round or oval"},
+           {{{"form", "flat"}, {"friction", 1}},
+            "f: /slip: missing: must be an object with low, high or width, because friction is given"},
            {{{"form", "flat"}, {"load", 1}}, "f: /load: 1: must be left out without friction"}}) {
     try {
       table.validate(document, "f");
@@ -282,7 +296,8 @@ TEST(KeyTable, SomeKeysAreOnlyGivenBesideOthers) {
     }
   }
   const Json schema = table.json_schema("t");
-  EXPECT_EQ(schema["dependentRequired"], (Json{{"load", {"friction"}}}));
+  EXPECT_EQ(schema["dependentRequired"],
+            (Json::parse(R"({"load": ["friction"], "slip": ["friction"], "friction": ["slip"]})")));
   EXPECT_EQ(schema["dependentSchemas"]["depth"]["properties"]["form"]["enum"], Json::array({"flat"}));
   EXPECT_EQ(schema["allOf"].size(), 1);
 }

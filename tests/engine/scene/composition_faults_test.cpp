@@ -87,7 +87,7 @@ const CompositionFault distribution_faults[] = {
     {R"({"form": "histogram", "radii": [1], "shares": [1]})", "/mean_radius", "1",
      "must be left out unless form is lognormal or uniform or gaussian"},
     {R"({"form": "histogram", "mean_radius": null, "relative_width": null})", "/radii", "missing",
-     "must be an array of 1 to 256"},
+     "must be an array of 1 to 256, because form is histogram"},
     {R"({"form": "histogram", "mean_radius": null, "relative_width": null, "radii": [1, 2], "shares": [1]})",
      "/shares", "[1]", "must have a share for each of the 2 radii"},
     {R"({"form": "histogram", "mean_radius": null, "relative_width": null, "radii": [1, 2], "shares": [0, 0]})",
