@@ -24,7 +24,7 @@ std::vector<Criterion> also_of(const Json& target, const std::string& leading, c
   if (!target.contains("also")) return also;
   for (const Json& written : target["also"]) {
     const std::string pointer = fmt::format("/target/also/{}", also.size());
-    Criterion criterion{written.at("observable").get<std::string>(), tolerance_of(written, file, pointer)};
+    Criterion criterion{written.at("observable").get<std::string>(), tolerance_of(written)};
     const auto is_it = [&](const Criterion& other) { return other.observable == criterion.observable; };
     if (criterion.observable == leading || std::any_of(also.begin(), also.end(), is_it)) {
       throw InputError(file, pointer + "/observable", criterion.observable,
@@ -147,7 +147,7 @@ Json to_json(const Target& target) {
 
 Target target_of(const std::string& observable, const Json& criterion, double confidence,
                  const std::string& file) {
-  Target target{observable, tolerance_of(criterion, file), confidence};
+  Target target{observable, tolerance_of(criterion), confidence};
   target.also = also_of(criterion, observable, file);
   return target;
 }
