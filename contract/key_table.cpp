@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
+#include <stdexcept>
 #include <utility>
 
 #include "contract/errors.h"
@@ -13,31 +15,21 @@
 namespace peclet {
 namespace {
 
-std::string_view name_of(const Key& key) {
-  return std::string_view(key.pointer).substr(key.pointer.rfind('/') + 1);
-}
+std::string name_of(const Key& key) { return key.pointer.substr(key.pointer.rfind('/') + 1); }
 
-// A key's name as a segment of a JSON pointer (RFC 6901).
-std::string escaped(std::string_view name) {
-  std::string segment;
-  for (const char c : name) {
-    if (c == '~') {
-      segment += "~0";
-    } else if (c == '/') {
-      segment += "~1";
-    } else {
-      segment += c;
-    }
+// The key of the same object that may be given instead of this one; null when there is none.
+const Key* alternative_to(const KeyTable& table, const Key& key) {
+  for (const Key* other : table.below(key.pointer.substr(0, key.pointer.rfind('/')))) {
+    if (other->instead_of == name_of(key)) return other;
   }
-  return segment;
+  return nullptr;
 }
 
 bool is_whole(const Json& value) {
   if (value.is_number_integer()) return true;
-  constexpr double first_inexact_integer = 9007199254740992.0;  // 2^53
   if (!value.is_number_float()) return false;
   const auto number = value.get<double>();
-  return std::trunc(number) == number && std::abs(number) < first_inexact_integer;
+  return std::trunc(number) == number && std::abs(number) < largest_count;
 }
 
 bool in_range(const Key& key, double number) {
@@ -46,34 +38,56 @@ bool in_range(const Key& key, double number) {
   return std::isfinite(number) && high_enough && low_enough;
 }
 
+bool is_word(std::string_view text) {
+  return !text.empty() && text.size() <= longest_word && text.front() != '-' &&
+         text.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-") == std::string::npos;
+}
+
 // Whether the value itself is allowed, whatever may be wrong below it.
-bool is_allowed(const Key& key, const Json& value) {
-  switch (key.kind) {
+bool is_of_kind(KeyKind kind, const Key& key, const Json& value) {
+  switch (kind) {
+    case KeyKind::null:
+      return value.is_null();
+    case KeyKind::empty:
+      return value == "";
     case KeyKind::any:
       return true;
     case KeyKind::object:
       return value.is_object();
     case KeyKind::array:
-      return value.is_array() && value.size() >= key.minimum_items && value.size() <= key.maximum_items;
+      return value.is_array() && in_range(key, static_cast<double>(value.size()));
     case KeyKind::boolean:
       return value.is_boolean();
     case KeyKind::string:
       return value.is_string();
+    case KeyKind::hash:
+      return value.is_string() && is_hash(value.get_ref<const std::string&>());
+    case KeyKind::word:
+      return value.is_string() && is_word(value.get_ref<const std::string&>());
+    case KeyKind::name:
+      return value.is_string() && is_name(value.get_ref<const std::string&>());
     case KeyKind::choice:
-      return value.is_string() &&
-             std::count(key.choices.begin(), key.choices.end(), value.get<std::string>()) > 0;
-    case KeyKind::integer_or_object:
-      if (value.is_object()) return true;
-      [[fallthrough]];
+      return value.is_string() && std::ranges::count(key.choices, value.get_ref<const std::string&>()) > 0;
     case KeyKind::integer:
       return is_whole(value) && in_range(key, value.get<double>());
-    case KeyKind::number_or_auto:
-      if (value == "auto") return true;
-      [[fallthrough]];
     case KeyKind::number:
       return value.is_number() && in_range(key, value.get<double>());
   }
   return false;
+}
+
+bool is_allowed(const Key& key, const Json& value) {
+  return is_of_kind(key.kind, key, value) ||
+         std::ranges::any_of(key.others, [&](KeyKind kind) { return is_of_kind(kind, key, value); });
+}
+
+// Returns whether the key may be given in this object. A missing word that decides counts as one that allows
+// it: its own absence is the fault.
+bool may_be_given(const Key& key, const Json& object) {
+  if (key.only_if.empty()) return true;
+  const auto other = object.find(key.only_if);
+  if (key.if_words.empty()) return other != object.end();
+  return other == object.end() || std::ranges::count(key.if_words, other->get<std::string>()) > 0;
 }
 
 // A share that was given in per cent, as 5 for 5 %.
@@ -94,11 +108,14 @@ class Validation {
     if (!is_allowed(key, value)) {
       throw InputError(file_, pointer, shortened(value), allowed_values(key) + hint_at_percent(key, value));
     }
-    const bool is_either = key.kind == KeyKind::integer_or_object;
-    if (key.kind == KeyKind::array) check_array(value, key.pointer, pointer);
-    if (key.kind == KeyKind::object || (is_either && value.is_object())) {
-      check_object(value, key.pointer, pointer);
-    } else if (key.kind == KeyKind::integer || is_either) {
+    if (key.kind == KeyKind::any || value.is_null()) return;
+    const std::string& pattern = key.same_as.empty() ? key.pointer : key.same_as;
+    if (value.is_object()) {
+      check_object(value, pattern, pointer);
+    } else if (const Key* element = value.is_array() ? table_.find(pattern + "/*") : nullptr) {
+      for (std::size_t i = 0; i < value.size(); ++i)
+        check_value(value[i], *element, fmt::format("{}/{}", pointer, i));
+    } else if (key.kind == KeyKind::integer && value.is_number()) {
       value = static_cast<long long>(value.get<double>());
     }
   }
@@ -106,21 +123,26 @@ class Validation {
   void check_object(Json& object, const std::string& pattern, const std::string& pointer) const {
     const std::vector<const Key*> keys = table_.below(pattern);
     if (keys.empty()) return;
+    const Key* const any_member = table_.find(pattern + "/*");
     for (const auto& [name, value] : object.items()) {
       const bool is_plain = name != "*" && name.find('/') == std::string::npos;
       const Key* key = is_plain ? table_.find(pattern + '/' + name) : nullptr;
-      if (key == nullptr) refuse_unknown(keys, name, pointer + '/' + escaped(name));
-      check_value(value, *key, pointer + '/' + escaped(name));
+      if (key == nullptr) key = any_member;
+      if (key == nullptr && table_.ignores_unknown()) continue;
+      const std::string below = pointer + (Json::json_pointer() / name).to_string();
+      if (key == nullptr) refuse_unknown(keys, name, below);
+      check_value(value, *key, below);
     }
     for (const Key* key : keys) {
-      const std::string name(name_of(*key));
+      if (object.contains(name_of(*key))) refuse_misplaced(object, *key, pointer);
+    }
+    for (const Key* key : keys) {
+      const std::string name = name_of(*key);
       const std::string below = pointer + '/' + name;
-      if (object.contains(name)) {
-        refuse_both(object, *key, below);
+      if (key == any_member || object.contains(name) || !may_be_given(*key, object)) continue;
+      if (const Key* other = alternative_to(table_, *key); other && object.contains(name_of(*other)))
         continue;
-      }
-      if (has_alternative(keys, object, name)) continue;
-      if (key->required) throw InputError(file_, below, "missing", allowed_values(*key));
+      if (key->required) throw InputError(file_, below, "missing", wanted(*key, object));
       if (key->default_value.is_null()) continue;
       object[name] = key->default_value;
       check_value(object[name], *key, below);
@@ -128,32 +150,41 @@ class Validation {
   }
 
  private:
-  void check_array(Json& array, const std::string& pattern, const std::string& pointer) const {
-    const Key* element = table_.find(pattern + "/*");
-    if (element == nullptr) return;
-    for (std::size_t i = 0; i < array.size(); ++i) {
-      check_value(array[i], *element, fmt::format("{}/{}", pointer, i));
+  // Returns what a missing key must be, with the keys that an object needs, and why it must be given.
+  std::string wanted(const Key& key, const Json& object) const {
+    std::vector<std::string> members;
+    for (const Key* member : table_.below(key.same_as.empty() ? key.pointer : key.same_as)) {
+      const Key* const other = alternative_to(table_, *member);
+      if (!member->required || !member->only_if.empty()) continue;
+      members.push_back(name_of(*member) + (other ? " or " + name_of(*other) : ""));
     }
+    std::string words = allowed_values(key);
+    if (!members.empty()) words += fmt::format(" with {}", fmt::join(members, ", "));
+    if (key.only_if.empty()) return words;
+    const std::string value = key.if_words.empty() ? "given" : object[key.only_if].get<std::string>();
+    return words + fmt::format(", because {} is {}", key.only_if, value);
   }
 
-  static bool has_alternative(const std::vector<const Key*>& keys, const Json& object,
-                              const std::string& name) {
-    return std::any_of(keys.begin(), keys.end(), [&](const Key* key) {
-      return key->instead_of == name && object.contains(name_of(*key));
-    });
-  }
-
-  void refuse_both(const Json& object, const Key& key, const std::string& pointer) const {
-    if (key.instead_of.empty() || !object.contains(key.instead_of)) return;
-    throw InputError(file_, pointer, shortened(object[std::string(name_of(key))]),
-                     fmt::format("must not be given beside {}", key.instead_of));
+  void refuse_misplaced(const Json& object, const Key& key, const std::string& pointer) const {
+    std::string allowed;
+    if (!may_be_given(key, object)) {
+      allowed = key.if_words.empty() ? fmt::format("must be left out without {}", key.only_if)
+                                     : fmt::format("must be left out unless {} is {}", key.only_if,
+                                                   fmt::join(key.if_words, " or "));
+    } else if (!key.instead_of.empty() && object.contains(key.instead_of)) {
+      allowed = fmt::format("must not be given beside {}", key.instead_of);
+    } else {
+      return;
+    }
+    const std::string name = name_of(key);
+    throw InputError(file_, pointer + '/' + name, shortened(object[name]), allowed);
   }
 
   [[noreturn]] void refuse_unknown(const std::vector<const Key*>& keys, const std::string& name,
                                    const std::string& pointer) const {
     std::vector<std::string> names;
     names.reserve(keys.size());
-    for (const Key* key : keys) names.emplace_back(name_of(*key));
+    for (const Key* key : keys) names.push_back(name_of(*key));
     throw InputError(file_, pointer, "unknown key",
                      fmt::format("allowed keys: {}{}", fmt::join(names, ", "), suggestion(name, names)));
   }
@@ -164,12 +195,11 @@ class Validation {
 
 }  // namespace
 
-KeyTable::KeyTable(std::string title, std::vector<Key> keys)
-    : title_(std::move(title)), keys_(std::move(keys)) {}
+KeyTable::KeyTable(std::string title, std::vector<Key> keys, Unknown unknown)
+    : title_(std::move(title)), keys_(std::move(keys)), unknown_(unknown) {}
 
 const Key* KeyTable::find(std::string_view pointer) const {
-  const auto found =
-      std::find_if(keys_.begin(), keys_.end(), [&](const Key& key) { return key.pointer == pointer; });
+  const auto found = std::ranges::find(keys_, pointer, &Key::pointer);
   return found == keys_.end() ? nullptr : &*found;
 }
 
@@ -181,17 +211,31 @@ std::vector<const Key*> KeyTable::below(std::string_view pointer) const {
   return found;
 }
 
-Json KeyTable::validate(const Json& document, const std::string& file, const std::string& root) const {
+Json KeyTable::validate(Json document, const std::string& file, const std::string& root) const {
   const Validation validation(*this, file);
-  Json filled = document;
   if (const Key* key = find(root)) {
-    validation.check_value(filled, *key, "");
+    validation.check_value(document, *key, "");
   } else {
     if (!document.is_object()) throw InputError(file, "", shortened(document), "must be an object");
-    validation.check_object(filled, root, "");
+    validation.check_object(document, root, "");
   }
-  return filled;
+  return document;
 }
+
+Json KindTables::validate(Json document, const std::string& file) const {
+  // What tells it apart comes first: it decides what else there is.
+  const KeyTable kind("", {key_}, Unknown::ignored);
+  document = kind.validate(std::move(document), file);
+  const std::string name = document[name_of(key_)];
+  const auto found = std::ranges::find(key_.choices, name);
+  return tables_[static_cast<std::size_t>(found - key_.choices.begin())].validate(std::move(document), file);
+}
+
+bool is_hash(std::string_view text) {
+  return text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
+bool is_name(std::string_view text) { return !text.empty() && printable(text, longest_name) == text; }
 
 std::string shortened(const Json& value) {
   constexpr std::size_t longest = 60;
@@ -203,96 +247,216 @@ std::string shortened(const Json& value) {
   return text.substr(0, end) + "...";
 }
 
-// What a table of keys looks like to others: in words, as JSON Schema, as a page of the manual.
+// How a table of keys is written: as rows, in words, as JSON Schema, as a page of the manual.
 
 namespace {
 
-// " >= 1 and <= 5"; nothing where there is no bound.
-std::string range_in_words(const Key& key) {
-  std::string words;
-  if (std::isfinite(key.minimum)) {
-    words += fmt::format(" {} {}", key.above_minimum ? ">" : ">=", key.minimum);
-  }
-  if (std::isfinite(key.maximum)) {
-    words +=
-        fmt::format("{} {} {}", words.empty() ? "" : " and", key.below_maximum ? "<" : "<=", key.maximum);
-  }
-  return words;
+struct KindText {
+  KeyKind kind;
+  std::string_view row;
+  const char *message, *type, *pattern = nullptr;
+};
+
+// clang-format off
+constexpr KindText kind_texts[] = {
+    {KeyKind::object, "object", "an object", "object"},
+    {KeyKind::array, "array", "an array", "array"},
+    {KeyKind::number, "number", "a number", "number"},
+    {KeyKind::integer, "integer", "an integer", "integer"},
+    {KeyKind::integer, "count", "an integer", "integer"},
+    {KeyKind::boolean, "true or false", "true or false", "boolean"},
+    {KeyKind::string, "string", "a string", "string"},
+    {KeyKind::hash, "hash", "a SHA-256 in lower-case hexadecimal", "string", "^[0-9a-f]{64}$"},
+    {KeyKind::word, "word", "a word of at most 64 letters a-z, digits and hyphens", "string",
+     "^[a-z0-9][a-z0-9-]{0,63}$"},
+    {KeyKind::name, "name", "a name of 1 to 120 bytes without control characters", "string",
+     "^[^\\u0000-\\u001f\\u007f]{1,120}$"},
+    {KeyKind::choice, "one of ", nullptr, nullptr},
+    {KeyKind::null, "null", "null", "null"},
+    {KeyKind::empty, "empty", "\"\"", nullptr},
+    {KeyKind::any, "anything", "anything", nullptr},
+};
+// clang-format on
+static_assert(longest_word == 64 && longest_name == 120);
+
+const KindText& text_of(KeyKind kind) {
+  return *std::ranges::find_if(kind_texts, [kind](const KindText& text) { return text.kind == kind; });
 }
 
-// " of 1 to 256"; nothing where any number will do.
-std::string items_in_words(const Key& key) {
-  if (key.maximum_items < std::numeric_limits<std::size_t>::max())
-    return fmt::format(" of {} to {}", key.minimum_items, key.maximum_items);
-  return key.minimum_items == 0 ? "" : fmt::format(" of {} or more", key.minimum_items);
+std::string_view trimmed(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(' ');
+  if (begin == std::string_view::npos) return "";
+  return text.substr(begin, text.find_last_not_of(' ') + 1 - begin);
+}
+
+// Takes what is before the first `mark` out of the text, and the mark.
+std::string_view cut(std::string_view& text, std::string_view mark) {
+  const std::size_t end = text.find(mark);
+  const std::string_view part = trimmed(text.substr(0, end));
+  text = end == std::string_view::npos ? "" : text.substr(end + mark.size());
+  return part;
+}
+
+bool cut_begin(std::string_view& text, std::string_view begin) {
+  if (!text.starts_with(begin)) return false;
+  text.remove_prefix(begin.size());
+  return true;
+}
+
+bool cut_end(std::string_view& text, std::string_view end) {
+  if (!text.ends_with(end)) return false;
+  text.remove_suffix(end.size());
+  return true;
+}
+
+// "> 0 and <= 1", "= 1", "of 3", "of 1 to 64"
+void read_bounds(Key& key, std::string_view text) {
+  const bool is_open = cut_end(text, " or more");
+  std::istringstream words{std::string(text)};
+  std::string relation;
+  for (double bound = 0; words >> relation;) {
+    if (relation == "and") continue;
+    if (!(words >> bound)) throw std::logic_error("a bound is missing");
+    const bool is_exact = relation == "=" || relation == "of";
+    if (is_exact || relation.front() == '>') key.minimum = bound;
+    if (is_exact || relation.front() == '<' || relation == "to") key.maximum = bound;
+    key.above_minimum = key.above_minimum || relation == ">";
+    key.below_maximum = key.below_maximum || relation == "<";
+  }
+  if (is_open) key.maximum = std::numeric_limits<double>::infinity();
+}
+
+void read_choices(Key& key, std::string_view text) {
+  while (!text.empty()) key.choices.emplace_back(cut(text, ", "));
+}
+
+void read_kind(Key& key, std::string_view text) {
+  for (std::size_t at = text.rfind(" or "); at != std::string_view::npos; at = text.rfind(" or ")) {
+    std::string_view other = text.substr(at + 4);
+    const bool is_choice = cut_begin(other, text_of(KeyKind::choice).row);
+    const auto* const found = std::ranges::find(kind_texts, other, &KindText::row);
+    if (!is_choice && found == std::end(kind_texts)) break;
+    key.others.push_back(is_choice ? KeyKind::choice : found->kind);
+    if (is_choice) read_choices(key, other);
+    text = text.substr(0, at);
+  }
+  const auto* const found =
+      std::ranges::find_if(kind_texts, [&](const KindText& kind) { return text.starts_with(kind.row); });
+  if (found == std::end(kind_texts)) throw std::logic_error("there is no such kind");
+  key.kind = found->kind;
+  text.remove_prefix(found->row.size());
+  if (key.kind == KeyKind::choice) {
+    read_choices(key, text);
+  } else if (found->row == "count") {
+    key.minimum = 0;
+    key.maximum = largest_count - 1;
+  } else {
+    read_bounds(key, text);
+  }
+}
+
+void read_row(std::string_view row, std::vector<Key>& keys) {
+  std::string_view rest = row, pointers = cut(rest, " | "), allowed = cut(rest, " | ");
+  Key key;
+  key.meaning = trimmed(rest);
+  read_kind(key, cut(allowed, "; "));
+  while (!allowed.empty()) {
+    std::string_view more = cut(allowed, "; ");
+    if (cut_begin(more, "in ")) {
+      key.unit = more;
+    } else if (cut_begin(more, "named ")) {
+      key.words = cut(more, ", ");
+      key.symbol = more;
+    } else if (cut_begin(more, "default ")) {
+      key.default_value = Json::parse(more);
+    } else if (cut_begin(more, "instead of ")) {
+      key.instead_of = more;
+    } else if (cut_begin(more, "if ")) {
+      key.only_if = cut(more, " ");
+      while (!more.empty()) key.if_words.emplace_back(cut(more, ", "));
+    } else if (cut_begin(more, "as ")) {
+      key.same_as = more;
+    } else {
+      throw std::logic_error(fmt::format("\"{}\" is not known", more));
+    }
+  }
+  while (!pointers.empty()) {
+    std::string_view pointer = cut(pointers, ", ");
+    key.required = !cut_end(pointer, "?") && !pointer.ends_with('*') && key.default_value.is_null() &&
+                   key.instead_of.empty();
+    key.pointer = pointer;
+    keys.push_back(key);
+  }
+}
+
+// Returns the rows, each in one line, and the lines that begin a kind.
+std::vector<std::string> rows_in(std::string_view text) {
+  std::vector<std::string> rows;
+  while (!text.empty()) {
+    const bool is_row = text.starts_with('/') || text.starts_with("-- ");
+    const std::string_view line = cut(text, "\n");
+    if (is_row) {
+      rows.emplace_back(line);
+    } else if (!line.empty()) {
+      if (rows.empty()) throw std::logic_error(fmt::format("a table of keys begins with {}", line));
+      rows.back() += fmt::format(" {}", line);
+    }
+  }
+  return rows;
+}
+
+std::string bounds_in_words(const Key& key) {
+  const bool is_array = key.kind == KeyKind::array, has_least = std::isfinite(key.minimum);
+  if (key.minimum == key.maximum) return fmt::format(" {} {}", is_array ? "of" : "=", key.minimum);
+  if (is_array && std::isfinite(key.maximum))
+    return fmt::format(" of {} to {}", has_least ? key.minimum : 0, key.maximum);
+  if (is_array) return has_least ? fmt::format(" of {} or more", key.minimum) : "";
+  std::string words;
+  if (has_least) words += fmt::format(" {} {}", key.above_minimum ? ">" : ">=", key.minimum);
+  if (std::isfinite(key.maximum)) {
+    words += fmt::format("{} {} {}", has_least ? " and" : "", key.below_maximum ? "<" : "<=", key.maximum);
+  }
+  return words;
 }
 
 // A bound as people and canonical JSON write it: 1, not 1.0.
 Json bound(double number) { return Json::parse(canonical_json(number)); }
 
 void add_range(const Key& key, Json& schema) {
-  if (std::isfinite(key.minimum)) {
-    schema[key.above_minimum ? "exclusiveMinimum" : "minimum"] = bound(key.minimum);
+  if (key.kind == KeyKind::array) {
+    if (key.minimum > 0) schema["minItems"] = bound(key.minimum);
+    if (std::isfinite(key.maximum)) schema["maxItems"] = bound(key.maximum);
+  } else if (key.minimum == key.maximum) {
+    schema["const"] = bound(key.minimum);
+  } else {
+    if (std::isfinite(key.minimum))
+      schema[key.above_minimum ? "exclusiveMinimum" : "minimum"] = bound(key.minimum);
+    if (std::isfinite(key.maximum))
+      schema[key.below_maximum ? "exclusiveMaximum" : "maximum"] = bound(key.maximum);
   }
-  if (std::isfinite(key.maximum)) {
-    schema[key.below_maximum ? "exclusiveMaximum" : "maximum"] = bound(key.maximum);
-  }
-}
-
-std::string last_part(const std::string& pointer) { return pointer.substr(pointer.rfind('/') + 1); }
-
-// The key of the same object that may be given instead of this one; null when there is none.
-const Key* alternative_to(const KeyTable& table, const Key& key) {
-  const std::vector<const Key*> beside = table.below(key.pointer.substr(0, key.pointer.rfind('/')));
-  const auto found = std::find_if(beside.begin(), beside.end(), [&](const Key* other) {
-    return other->instead_of == last_part(key.pointer);
-  });
-  return found == beside.end() ? nullptr : *found;
 }
 
 void add_members(const KeyTable& table, const std::string& pointer, Json& schema);
 
 Json schema_of(const KeyTable& table, const Key& key) {
+  const KindText& kind = text_of(key.kind);
+  const std::string& pattern = key.same_as.empty() ? key.pointer : key.same_as;
   Json schema = Json::object();
-  switch (key.kind) {
-    case KeyKind::any:
-      break;
-    case KeyKind::object:
-      add_members(table, key.pointer, schema);
-      break;
-    case KeyKind::array:
-      schema["type"] = "array";
-      if (key.minimum_items > 0) schema["minItems"] = key.minimum_items;
-      if (key.maximum_items < std::numeric_limits<std::size_t>::max()) schema["maxItems"] = key.maximum_items;
-      if (const Key* element = table.find(key.pointer + "/*")) schema["items"] = schema_of(table, *element);
-      break;
-    case KeyKind::boolean:
-      schema["type"] = "boolean";
-      break;
-    case KeyKind::string:
-      schema["type"] = "string";
-      break;
-    case KeyKind::choice:
-      schema["enum"] = key.choices;
-      break;
-    case KeyKind::integer:
-    case KeyKind::number:
-      schema["type"] = key.kind == KeyKind::integer ? "integer" : "number";
-      add_range(key, schema);
-      break;
-    case KeyKind::number_or_auto: {
-      Json number = {{"type", "number"}};
-      add_range(key, number);
-      schema["anyOf"] = Json::array({{{"const", "auto"}}, number});
-      break;
-    }
-    case KeyKind::integer_or_object: {
-      Json integer = {{"type", "integer"}}, object = Json::object();
-      add_range(key, integer);
-      add_members(table, key.pointer, object);
-      schema["anyOf"] = Json::array({integer, object});
-      break;
-    }
+  if (kind.type != nullptr) schema["type"] = kind.type;
+  if (kind.pattern != nullptr) schema["pattern"] = kind.pattern;
+  if (key.kind == KeyKind::choice) schema["enum"] = key.choices;
+  if (key.kind == KeyKind::empty) schema["const"] = "";
+  if (key.kind == KeyKind::object) add_members(table, pattern, schema);
+  if (const Key* element = key.kind == KeyKind::array ? table.find(pattern + "/*") : nullptr)
+    schema["items"] = schema_of(table, *element);
+  add_range(key, schema);
+  if (key.others == std::vector{KeyKind::null} && kind.type != nullptr) {
+    schema["type"] = {kind.type, "null"};
+  } else if (!key.others.empty()) {
+    Json all = Json::array({schema});
+    for (const KeyKind other : key.others)
+      all.push_back(schema_of(table, {.pointer = pattern, .kind = other, .choices = key.choices}));
+    schema = {{"anyOf", all}};
   }
   for (const auto& [name, text] : {std::pair{"title", &key.words},
                                    {"symbol", &key.symbol},
@@ -308,12 +472,25 @@ void add_members(const KeyTable& table, const std::string& pointer, Json& schema
   schema["type"] = "object";
   const std::vector<const Key*> keys = table.below(pointer);
   if (keys.empty()) return;  // holds anything
-  schema["additionalProperties"] = false;
+  if (!table.ignores_unknown()) schema["additionalProperties"] = false;
   for (const Key* key : keys) {
-    const std::string name = last_part(key->pointer);
+    const std::string name = name_of(*key);
+    if (name == "*") {
+      schema["additionalProperties"] = schema_of(table, *key);
+      continue;
+    }
     schema["properties"][name] = schema_of(table, *key);
     if (const Key* const other = alternative_to(table, *key)) {
-      schema["oneOf"] = {{{"required", {name}}}, {{"required", {last_part(other->pointer)}}}};
+      schema["oneOf"] = {{{"required", {name}}}, {{"required", {name_of(*other)}}}};
+    } else if (!key->only_if.empty()) {
+      const Json where = {{"properties", {{key->only_if, {{"enum", key->if_words}}}}}};
+      if (key->if_words.empty()) {
+        schema["dependentRequired"][name].push_back(key->only_if);
+        if (key->required) schema["dependentRequired"][key->only_if].push_back(name);
+      } else {
+        schema["dependentSchemas"][name] = where;
+        if (key->required) schema["allOf"].push_back({{"if", where}, {"then", {{"required", {name}}}}});
+      }
     } else if (key->required) {
       schema["required"].push_back(name);
     }
@@ -332,30 +509,50 @@ std::string cell(const std::string& text) {
 
 }  // namespace
 
-std::string allowed_values(const Key& key) {
-  switch (key.kind) {
-    case KeyKind::any:
-      return "may be anything";
-    case KeyKind::object:
-      return "must be an object";
-    case KeyKind::array:
-      return "must be an array" + items_in_words(key);
-    case KeyKind::boolean:
-      return "must be true or false";
-    case KeyKind::string:
-      return "must be a string";
-    case KeyKind::choice:
-      return fmt::format("must be one of: {}", fmt::join(key.choices, ", "));
-    case KeyKind::integer:
-      return "must be an integer" + range_in_words(key);
-    case KeyKind::number:
-      return "must be a number" + range_in_words(key);
-    case KeyKind::number_or_auto:
-      return "must be a number" + range_in_words(key) + " or \"auto\"";
-    case KeyKind::integer_or_object:
-      return "must be an integer" + range_in_words(key) + ", or an object";
+std::vector<Key> keys_of(std::string_view rows) {
+  std::vector<Key> keys;
+  for (const std::string& row : rows_in(rows)) {
+    try {
+      read_row(row, keys);
+    } catch (const std::exception& error) {
+      throw std::logic_error(fmt::format("no row of a table of keys: {}: {}", row, error.what()));
+    }
   }
-  return "";
+  return keys;
+}
+
+KindTables::KindTables(std::string title, const std::string& key, std::string_view rows, Unknown unknown)
+    : title_(std::move(title)), key_{.pointer = '/' + key, .kind = KeyKind::choice, .required = true} {
+  std::string shared, meaning, own;
+  const auto add = [&] {
+    if (!key_.choices.empty())
+      tables_.emplace_back(
+          meaning, fmt::format("/{} | one of {}\n{}{}", key, key_.choices.back(), shared, own), unknown);
+  };
+  for (const std::string& row : rows_in(rows)) {
+    std::string_view rest = row;
+    if (cut_begin(rest, "-- ")) {
+      add();
+      key_.choices.emplace_back(cut(rest, " | "));
+      meaning = rest;
+      own.clear();
+    } else {
+      (key_.choices.empty() ? shared : own) += row + '\n';
+    }
+  }
+  add();
+}
+
+std::string allowed_values(const Key& key) {
+  if (key.kind == KeyKind::any) return "may be anything";
+  const auto words = [&](KeyKind kind) -> std::string {
+    if (kind != KeyKind::choice) return text_of(kind).message;
+    if (key.choices.size() == 1) return '"' + key.choices[0] + '"';
+    return fmt::format("one of: {}", fmt::join(key.choices, ", "));
+  };
+  std::string all = "must be " + words(key.kind) + bounds_in_words(key);
+  for (const KeyKind other : key.others) all += ", or " + words(other);
+  return all;
 }
 
 Json KeyTable::json_schema(const std::string& identifier) const {
@@ -365,17 +562,32 @@ Json KeyTable::json_schema(const std::string& identifier) const {
   return schema;
 }
 
+Json KindTables::json_schema(const std::string& identifier) const {
+  Json schema = {
+      {"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"$id", identifier}, {"title", title_}};
+  for (std::size_t i = 0; i < tables_.size(); ++i) {
+    Json kind = {{"title", key_.choices[i]}, {"description", tables_[i].title()}};
+    add_members(tables_[i], "", kind);
+    schema["oneOf"].push_back(std::move(kind));
+  }
+  return schema;
+}
+
 std::string KeyTable::markdown() const {
   std::string page = "| key | meaning | unit | default | allowed |\n|---|---|---|---|---|\n";
   for (const Key& key : keys_) {
-    std::string fallback = key.required ? "required" : "";
+    std::string fallback = key.required && key.only_if.empty() ? "required" : "";
     if (!key.instead_of.empty()) fallback = fmt::format("instead of `{}`", key.instead_of);
     if (const Key* const other = alternative_to(*this, key)) {
-      fallback += fmt::format(", or `{}`", last_part(other->pointer));
+      fallback += fmt::format(", or `{}`", name_of(*other));
     }
     if (!key.default_value.is_null()) fallback = fmt::format("`{}`", key.default_value.dump());
     std::string allowed = allowed_values(key);
     if (allowed.starts_with("must be ")) allowed = allowed.substr(std::string_view("must be ").size());
+    if (!key.same_as.empty()) {
+      allowed +=
+          fmt::format(", with the {} of `{}`", key.kind == KeyKind::array ? "elements" : "keys", key.same_as);
+    }
     page += fmt::format("| `{}` | {} | {} | {} | {} |\n", key.pointer, cell(key.meaning), cell(key.unit),
                         cell(fallback), cell(allowed));
   }

@@ -1,49 +1,54 @@
-// write_schemas FOLDER: writes FOLDER/NAME.schema.json of every table of keys, and renews the table's block
-// in FOLDER/README.md (between <!-- NAME keys, generated --> and <!-- end of NAME keys -->).
+// write_schemas FOLDER: writes FOLDER/NAME.schema.json of every table of keys, and renews the blocks of
+// FOLDER/README.md that are generated (between <!-- NAME keys, generated --> and <!-- end of NAME keys -->).
 #include <exception>
 #include <filesystem>
 #include <iostream>
 #include <stdexcept>
 #include <string>
 
+#include "contract/documents.h"
 #include "contract/durable_file.h"
-#include "contract/key_table.h"
 #include "engine/forces/configuration.h"
 #include "engine/observables/scene_reading.h"
+#include "runner/batch/bundle_files.h"
 #include "runner/campaign/campaign.h"
+#include "runner/owner/event_stream.h"
+#include "runner/owner/request.h"
 
 namespace {
 
-struct Document {
-  std::string name;
-  const peclet::KeyTable& keys;
-};
-
-std::string with_block_renewed(std::string page, const Document& document) {
-  const std::string begin = "<!-- " + document.name + " keys, generated -->\n";
-  const std::string end = "<!-- end of " + document.name + " keys -->\n";
+std::string with_block_renewed(std::string page, const std::string& name, const peclet::KeyTable& keys) {
+  const std::string begin = "<!-- " + name + " keys, generated -->\n";
+  const std::string end = "<!-- end of " + name + " keys -->\n";
   const auto from = page.find(begin);
   const auto to = page.find(end);
   if (from == std::string::npos || to == std::string::npos || to < from) {
-    throw std::runtime_error("README.md lacks the marks of " + document.name);
+    throw std::runtime_error("README.md lacks the marks of " + name);
   }
   const auto start = from + begin.size();
-  return page.replace(start, to - start, '\n' + document.keys.markdown() + '\n');
+  return page.replace(start, to - start, '\n' + keys.markdown() + '\n');
 }
 
 void write_schemas(const std::filesystem::path& folder) {
-  const Document documents[] = {
-      {"scene", peclet::engine::scene_keys()},
-      {"campaign", peclet::runner::campaign_keys()},
-      {"configuration", peclet::engine::configuration_keys()},
-  };
   std::string page = peclet::read_file(folder / "README.md");
-  for (const Document& document : documents) {
-    const std::string name = document.name + ".schema.json";
-    peclet::write_durably(folder / name, document.keys.json_schema(name).dump(2) + '\n');
-    page = with_block_renewed(page, document);
-  }
+  const auto write = [&](const std::string& name, const auto& keys) {
+    const std::string file = name + ".schema.json";
+    peclet::write_durably(folder / file, keys.json_schema(file).dump(2) + '\n');
+  };
+  const auto write_both = [&](const std::string& name, const peclet::KeyTable& keys) {
+    write(name, keys);
+    page = with_block_renewed(page, name, keys);
+  };
+  write_both("scene", peclet::engine::scene_keys());
+  write_both("campaign", peclet::runner::campaign_keys());
+  write_both("configuration", peclet::engine::configuration_keys());
   peclet::write_durably(folder / "README.md", page);
+  write("result", peclet::result_keys());
+  write("frames", peclet::frame_keys());
+  write("events", peclet::runner::event_keys());
+  write("requests", peclet::runner::request_keys());
+  write("manifest", peclet::runner::manifest_keys());
+  write("report", peclet::runner::report_keys());
 }
 
 }  // namespace

@@ -33,13 +33,12 @@ std::shared_ptr<const Deformation> read_stress(const FlowSource& source) {
 FlowKind stress_flow() {
   return {
       .key = "/flow/stress",
-      .keys = {named(positive("/flow/stress", "stress",
-                              "Shear stress that is held in the place of a rate: its mean rate is what is "
-                              "measured."),
-                     "shear stress", "σ"),
-               positive("/flow/jammed_viscosity", "",
-                        "Relative viscosity beyond which a realisation under a stress has jammed; 10000 "
-                        "unless given.")},
+      .keys = R"(
+/flow/stress? | number > 0; in stress; named shear stress, σ | Shear stress that is held in the place of a
+    rate: its mean rate is what is measured.
+/flow/jammed_viscosity? | number > 0; if stress | Relative viscosity beyond which a realisation under a stress
+    has jammed; 10000 unless given.
+)",
       .read = read_stress,
       .unit = "stress_times",
       .without_strain = "whose strain is not known beforehand; stress_times are the same for all stresses",

@@ -41,14 +41,6 @@ const FlowKind& flow_kind_of(const SceneDocument& scene) {
   };
   for (const FlowKind& kind : all) refuse(kind.key);
   for (const char* key : {"/flow/waves", "/peclet"}) refuse(key);
-  for (const FlowKind& kind : all) {
-    if (scene.has(kind.key)) continue;
-    for (const Key& key : kind.keys) {
-      const bool is_of_a_list = key.pointer.find('*') != std::string::npos;
-      if (!is_of_a_list && scene.has(key.pointer))
-        scene.refuse(key.pointer, "must be left out without " + kind.key);
-    }
-  }
   return flow;
 }
 
@@ -56,18 +48,17 @@ ImposedFlow read_flow(const FlowSource& source) {
   return ImposedFlow(flow_kind_of(source.scene).read(source), read_waves(source.scene));
 }
 
-Keys duration_keys(const std::string& pointer, const std::string& meaning,
-                   Key (*limit)(std::string, std::string, std::string, bool), bool is_required) {
-  return {
-      block(pointer, meaning + " Ends with the first of its limits that is reached; one at least.",
-            is_required),
-      limit(pointer + "/strain", "", "Strain: shear rate times time.", false),
-      limit(pointer + "/brownian_times", "eta a^3 / k_B T", "Time in units of the Brownian time.", false),
-      limit(pointer + "/time", "time", "Time.", false),
-      limit(pointer + "/cycles", "", fmt::format("Cycles of {}, at least.", flows_with("cycles")), false),
-      limit(pointer + "/stress_times", "eta / stress",
-            fmt::format("Time in units of viscosity over {}.", flows_with("stress_times")), false),
-  };
+std::string duration_keys(const std::string& pointer, const std::string& range, const std::string& meaning) {
+  return fmt::format(R"(
+{0} | object | {2} Ends with the first of its limits that is reached; one at least.
+{1}/strain? | number {3} | Strain: shear rate times time.
+{1}/brownian_times? | number {3}; in eta a^3 / k_B T | Time in units of the Brownian time.
+{1}/time? | number {3}; in time | Time.
+{1}/cycles? | number {3} | Cycles of {4}, at least.
+{1}/stress_times? | number {3}; in eta / stress | Time in units of viscosity over {5}.
+)",
+                     pointer, pointer.substr(0, pointer.find('?')), meaning, range, flows_with("cycles"),
+                     flows_with("stress_times"));
 }
 
 void check_duration(const SceneDocument& scene, const FlowKind& flow, const std::string& pointer) {

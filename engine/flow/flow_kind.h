@@ -20,8 +20,8 @@ struct FlowSource {
 };
 
 struct FlowKind {
-  std::string key;  // by which a scene asks for it: "/flow/segments"
-  Keys keys;
+  std::string key;   // by which a scene asks for it: "/flow/segments"
+  std::string keys;  // rows of a table
   // Requires a scene that has the key. Throws InputError where its keys do not go together.
   std::shared_ptr<const Deformation> (*read)(const FlowSource& source);
 
@@ -48,9 +48,9 @@ const FlowKind& flow_kind_of(const SceneDocument& scene);
 
 ImposedFlow read_flow(const FlowSource& source);
 
-// Keys of a duration, by limits that `limit` makes; some of them are known to some flows alone.
-Keys duration_keys(const std::string& pointer, const std::string& meaning,
-                   Key (*limit)(std::string, std::string, std::string, bool), bool is_required = required);
+// Rows of a duration by limits in this range, "> 0"; some of them are known to some flows alone. A pointer
+// that ends in ? is not required.
+std::string duration_keys(const std::string& pointer, const std::string& range, const std::string& meaning);
 
 // Throws InputError where the duration at this place has a limit that the flow does not know.
 void check_duration(const SceneDocument& scene, const FlowKind& flow, const std::string& pointer);

@@ -42,15 +42,13 @@ Matrix3 CrossShear::displacement_gradient(double time) const {
 double CrossShear::largest_rate() const { return std::hypot(rate_, amplitude_ * frequency_); }
 
 FlowKind oscillation_flow() {
-  const std::string key = "/flow/oscillation";
-  return {.key = key,
-          .keys = {block(key,
-                         "Shear to and fro in the place of shear_rate: strain = amplitude sin(frequency t)."),
-                   named(positive(key + "/amplitude", "", "Largest strain.", required),
-                         "amplitude of the strain", "γ_0"),
-                   named(positive(key + "/frequency", "1 / time", "Angular frequency, in radians per time.",
-                                  required),
-                         "angular frequency", "ω")},
+  return {.key = "/flow/oscillation",
+          .keys = R"(
+/flow/oscillation? | object | Oscillating shear in place of shear_rate: strain = amplitude sin(frequency t).
+/flow/oscillation/amplitude | number > 0; named amplitude of the strain, γ_0 | Largest strain.
+/flow/oscillation/frequency | number > 0; in 1 / time; named angular frequency, ω | Angular frequency, in
+    radians per time.
+)",
           .read = [](const FlowSource& source) -> std::shared_ptr<const Deformation> {
             return std::make_shared<OscillatoryShear>(source.scene.number("/flow/oscillation/amplitude"),
                                                       source.scene.number("/flow/oscillation/frequency"));
@@ -62,29 +60,28 @@ FlowKind oscillation_flow() {
 }
 
 FlowKind cross_shear_flow() {
-  const std::string key = "/flow/cross_shear";
-  return {
-      .key = key,
-      .keys = {block(key,
-                     "Shear to and fro across the steady one, u_z = y d/dt [amplitude sin(frequency t)]."),
-               named(positive(key + "/amplitude", "", "Its largest strain.", required),
-                     "amplitude of the strain across", "γ_0"),
-               named(positive(key + "/frequency", "1 / time", "Angular frequency, in radians per time.",
-                              required),
-                     "angular frequency across", "ω")},
-      .read = [](const FlowSource& source) -> std::shared_ptr<const Deformation> {
-        if (!(source.shear_rate > 0)) {
-          source.scene.refuse("/flow/cross_shear",
-                              "must be left out unless the shear rate is > 0; /flow/oscillation shears to "
-                              "and fro alone");
-        }
-        return std::make_shared<CrossShear>(source.shear_rate,
-                                            source.scene.number("/flow/cross_shear/amplitude"),
-                                            source.scene.number("/flow/cross_shear/frequency"));
-      },
-      .beside = {"/flow/shear_rate", "/peclet"},
-      .unit = "cycles",
-      .refused_observables = {"mean_squared_displacement", "transient"}};
+  return {.key = "/flow/cross_shear",
+          .keys = R"(
+/flow/cross_shear? | object | Oscillating shear across the steady one: u_z = y d/dt [amplitude sin(frequency
+    t)].
+/flow/cross_shear/amplitude | number > 0; named amplitude of the strain across, γ_0 | Its largest strain.
+/flow/cross_shear/frequency | number > 0; in 1 / time; named angular frequency across, ω | Angular frequency,
+    in radians per time.
+)",
+          .read = [](const FlowSource& source) -> std::shared_ptr<const Deformation> {
+            if (!(source.shear_rate > 0)) {
+              source.scene.refuse(
+                  "/flow/cross_shear",
+                  "must be left out unless the shear rate is > 0; /flow/oscillation shears to "
+                  "and fro alone");
+            }
+            return std::make_shared<CrossShear>(source.shear_rate,
+                                                source.scene.number("/flow/cross_shear/amplitude"),
+                                                source.scene.number("/flow/cross_shear/frequency"));
+          },
+          .beside = {"/flow/shear_rate", "/peclet"},
+          .unit = "cycles",
+          .refused_observables = {"mean_squared_displacement", "transient"}};
 }
 
 }  // namespace peclet::engine

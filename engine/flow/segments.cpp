@@ -149,31 +149,19 @@ std::shared_ptr<const Deformation> read_segments(const FlowSource& source) {
   return std::make_shared<Segments>(all, scene.at(pointer).at("shear_rate").get<double>());
 }
 
-Keys segment_keys() {
-  return {
-      {.pointer = "/flow/segments",
-       .kind = KeyKind::array,
-       .meaning = "Shear in the place of shear_rate whose rate changes: a list of segments in time. "
-                  "Reversals, stops and ramps are such lists.",
-       .minimum_items = 1,
-       .maximum_items = 64},
-      block("/flow/segments/*", "One segment; the last one goes on and says its rate alone."),
-      {.pointer = "/flow/segments/*/shear_rate",
-       .kind = KeyKind::number,
-       .meaning = "Shear rate, of either sign.",
-       .unit = "1 / time",
-       .required = true},
-      {.pointer = "/flow/segments/*/final_rate",
-       .kind = KeyKind::number,
-       .meaning = "Shear rate at its end, to which it changes linearly; that of its beginning unless given.",
-       .unit = "1 / time"},
-      positive("/flow/segments/*/strain", "", "Strain that it makes, summed over both directions."),
-      positive("/flow/segments/*/time", "time", "Time that it takes, in the place of strain."),
-  };
-}
+constexpr const char* segment_keys = R"(
+/flow/segments? | array of 1 to 64 | Shear in the place of shear_rate whose rate changes: a list of segments
+    in time. Reversals, stops and ramps are such lists.
+/flow/segments/* | object | One segment; the last one goes on and says its rate alone.
+/flow/segments/*/shear_rate | number; in 1 / time | Shear rate, of either sign.
+/flow/segments/*/final_rate? | number; in 1 / time | Shear rate at its end, to which it changes linearly; that
+    of its beginning unless given.
+/flow/segments/*/strain? | number > 0 | Strain that it makes, summed over both directions.
+/flow/segments/*/time? | number > 0; in time | Time that it takes, in the place of strain.
+)";
 
 }  // namespace
 
-FlowKind segments_flow() { return {.key = "/flow/segments", .keys = segment_keys(), .read = read_segments}; }
+FlowKind segments_flow() { return {.key = "/flow/segments", .keys = segment_keys, .read = read_segments}; }
 
 }  // namespace peclet::engine

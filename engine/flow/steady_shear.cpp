@@ -18,9 +18,10 @@ double SteadyShear::time_of(double strain, double /*from*/) const {
 
 FlowKind steady_shear_flow() {
   return {.key = "/flow/shear_rate",
-          .keys = {named(not_negative("/flow/shear_rate", "1 / time",
-                                      "Shear rate; 0: no mean shear. Not together with peclet."),
-                         "shear rate", "γ̇")},
+          .keys = R"(
+/flow/shear_rate? | number >= 0; in 1 / time; named shear rate, γ̇ | Shear rate; 0: no mean shear. Not
+    together with peclet.
+)",
           .read = [](const FlowSource& source) -> std::shared_ptr<const Deformation> {
             return std::make_shared<SteadyShear>(source.shear_rate);
           },

@@ -22,25 +22,20 @@ Matrix3 UniaxialExtension::edges_at_start(const Vector3& box) const {
 }
 
 FlowKind uniaxial_extension_flow() {
-  return {
-      .key = "/flow/uniaxial_rate",
-      .keys = {{.pointer = "/flow/uniaxial_rate",
-                .kind = KeyKind::number,
-                .meaning =
-                    "Uniaxial extension in the place of shear: (rate x, -rate y / 2, -rate z / 2); biaxial "
-                    "extension along y and z where it is below 0. Strains are Hencky strains along x, at "
-                    "most 10 in a realisation.",
-                .unit = "1 / time",
-                .words = "uniaxial extension rate",
-                .symbol = "ε̇"}},
-      .read = [](const FlowSource& source) -> std::shared_ptr<const Deformation> {
-        const double rate = source.scene.number("/flow/uniaxial_rate");
-        if (rate == 0) source.scene.refuse("/flow/uniaxial_rate", "must be a number other than 0");
-        return std::make_shared<UniaxialExtension>(rate);
-      },
-      .largest_strain = UniaxialExtension::largest_strain,
-      .own_cell = "a turned cube",
-      .refused_observables = {"mean_squared_displacement", "pair_distribution", "profiles"}};
+  return {.key = "/flow/uniaxial_rate",
+          .keys = R"(
+/flow/uniaxial_rate? | number; in 1 / time; named uniaxial extension rate, ε̇ | Uniaxial extension in the
+    place of shear: (rate x, -rate y / 2, -rate z / 2); biaxial extension along y and z where it is below 0.
+    Strains are Hencky strains along x, at most 10 in a realisation.
+)",
+          .read = [](const FlowSource& source) -> std::shared_ptr<const Deformation> {
+            const double rate = source.scene.number("/flow/uniaxial_rate");
+            if (rate == 0) source.scene.refuse("/flow/uniaxial_rate", "must be a number other than 0");
+            return std::make_shared<UniaxialExtension>(rate);
+          },
+          .largest_strain = UniaxialExtension::largest_strain,
+          .own_cell = "a turned cube",
+          .refused_observables = {"mean_squared_displacement", "pair_distribution", "profiles"}};
 }
 
 }  // namespace peclet::engine

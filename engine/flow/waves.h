@@ -68,7 +68,17 @@ class Waves final : public FlowVariation {
   bool faxen_;
 };
 
-Keys wave_keys();
+inline constexpr const char* wave_keys = R"(
+/flow/waves? | array of 1 to 64 | Waves along y that the flow has besides: u_x = sum of sine sin(k y) + cosine
+    cos(k y) with k = 2 pi periods / L.
+/flow/waves/* | object | One wave.
+/flow/waves/*/periods | integer >= 1 and <= 1000 | Periods of the wave along the edge of the box.
+/flow/waves/*/sine | number; in length / time; default 0 | Amplitude of the sine.
+/flow/waves/*/cosine | number; in length / time; default 0 | Amplitude of the cosine.
+/flow/faxen? | true or false | Whether spheres feel the curvature of the waves: their velocity with the factor
+    1 - a^2 k^2 / 6, the strain of their stresslet with 1 - a^2 k^2 / 10. Must be given with waves; without
+    them nothing is curved.
+)";
 // Returns the waves of the scene; null without any.
 std::shared_ptr<const FlowVariation> read_waves(const SceneDocument& scene);
 

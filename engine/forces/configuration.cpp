@@ -19,49 +19,6 @@
 namespace peclet::engine {
 namespace {
 
-std::vector<Key> vector_keys(const std::string& pointer, const std::string& meaning, const std::string& unit,
-                             bool required) {
-  return {
-      {.pointer = pointer, .kind = KeyKind::array, .meaning = meaning, .unit = unit, .required = required},
-      {.pointer = pointer + "/*",
-       .kind = KeyKind::array,
-       .meaning = "components x, y, z",
-       .minimum_items = 3},
-      {.pointer = pointer + "/*/*", .kind = KeyKind::number, .meaning = "component"}};
-}
-
-std::vector<Key> single_vector_keys(const std::string& pointer, const std::string& meaning, KeyKind kind) {
-  return {
-      {.pointer = pointer, .kind = KeyKind::array, .meaning = meaning, .required = true, .minimum_items = 3},
-      {.pointer = pointer + "/*", .kind = kind, .meaning = "component"}};
-}
-
-std::vector<Key> pair_keys(const std::string& pointer, const std::string& meaning,
-                           const std::vector<std::pair<std::string, std::string>>& vectors) {
-  std::vector<Key> keys = {{.pointer = pointer, .kind = KeyKind::array, .meaning = meaning},
-                           {.pointer = pointer + "/*", .kind = KeyKind::object, .meaning = "one pair"},
-                           {.pointer = pointer + "/*/i",
-                            .kind = KeyKind::integer,
-                            .meaning = "first particle",
-                            .required = true,
-                            .minimum = 0},
-                           {.pointer = pointer + "/*/j",
-                            .kind = KeyKind::integer,
-                            .meaning = "second particle, above i",
-                            .required = true,
-                            .minimum = 0}};
-  const auto append = [&keys](const std::vector<Key>& more) {
-    keys.insert(keys.end(), more.begin(), more.end());
-  };
-  append(single_vector_keys(pointer + "/*/image",
-                            "lattice vectors added to the second particle's position as given",
-                            KeyKind::integer));
-  for (const auto& [name, text] : vectors) {
-    append(single_vector_keys(pointer + "/*/" + name, text, KeyKind::number));
-  }
-  return keys;
-}
-
 Vector3 vector_from(const Json& array) {
   return {array.at(0).get<double>(), array.at(1).get<double>(), array.at(2).get<double>()};
 }
@@ -81,7 +38,6 @@ class Reader {
     particles.position = field("/state/position", radius.size());
     particles.velocity = field("/state/velocity", radius.size());
     particles.angular_velocity = field("/state/angular_velocity", radius.size());
-    check_three("/state/box/lengths");
     configuration.box = PeriodicCell(vector_from(state.at("box").at("lengths")),
                                      configuration.physics.flow.deformation().velocity_gradient(0),
                                      state.at("box").at("tilt").get<double>());
@@ -126,16 +82,7 @@ class Reader {
     }
   }
 
-  void check_three(const std::string& pointer) const {
-    if (at(pointer).size() != 3) {
-      refuse(pointer, at(pointer).dump(), "must have three components");
-    }
-  }
-
-  Vector3 vector(const std::string& pointer) const {
-    check_three(pointer);
-    return vector_from(at(pointer));
-  }
+  Vector3 vector(const std::string& pointer) const { return vector_from(at(pointer)); }
 
   VectorField field(const std::string& pointer, std::size_t count) const {
     if (at(pointer).size() != count) {
@@ -155,7 +102,6 @@ class Reader {
     if (i >= j || j >= count) {
       refuse(pointer + "/j", std::to_string(j), fmt::format("must be above i = {} and below {}", i, count));
     }
-    check_three(pointer + "/image");
     const auto image = entry.at("image").get<std::vector<std::int32_t>>();
     return {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j), {image[0], image[1], image[2]}};
   }
@@ -181,72 +127,44 @@ class Reader {
 }  // namespace
 
 const KeyTable& configuration_keys() {
-  static const KeyTable table = [] {
-    std::vector<Key> keys = {
-        {.pointer = "/scene",
-         .kind = KeyKind::any,
-         .meaning = fmt::format("the blocks {} of a scene", fmt::join(blocks_of_physics(), ", ")),
-         .required = true},
-        {.pointer = "/advance",
-         .kind = KeyKind::number,
-         .meaning = "time by which the springs are advanced",
-         .unit = "time",
-         .minimum = 0},
-        {.pointer = "/state", .kind = KeyKind::object, .meaning = "the configuration", .required = true},
-        {.pointer = "/state/box", .kind = KeyKind::object, .meaning = "the periodic cell", .required = true}};
-    const auto append = [&keys](const std::vector<Key>& more) {
-      keys.insert(keys.end(), more.begin(), more.end());
-    };
-    keys.push_back({.pointer = "/state/box/lengths",
-                    .kind = KeyKind::array,
-                    .meaning = "Lx, Ly, Lz",
-                    .unit = "length",
-                    .required = true,
-                    .minimum_items = 3});
-    keys.push_back({.pointer = "/state/box/lengths/*",
-                    .kind = KeyKind::number,
-                    .meaning = "edge",
-                    .minimum = 0,
-                    .above_minimum = true});
-    keys.push_back({.pointer = "/state/box/tilt",
-                    .kind = KeyKind::number,
-                    .meaning = "x component of the second lattice vector",
-                    .unit = "length",
-                    .default_value = 0.0});
-    keys.push_back({.pointer = "/state/radius",
-                    .kind = KeyKind::array,
-                    .meaning = "radii",
-                    .unit = "length",
-                    .required = true,
-                    .minimum_items = 1});
-    keys.push_back({.pointer = "/state/radius/*",
-                    .kind = KeyKind::number,
-                    .meaning = "radius",
-                    .minimum = 0,
-                    .above_minimum = true});
-    append(vector_keys("/state/position", "centres", "length", true));
-    append(vector_keys("/state/velocity", "velocities in the laboratory frame", "length / time", true));
-    append(vector_keys("/state/angular_velocity", "angular velocities", "1 / time", true));
-    append(pair_keys("/state/springs", "contact springs",
-                     {{"tangential", "sliding spring"}, {"rolling", "rolling spring"}}));
-    keys.push_back({.pointer = "/state/springs/*/slides",
-                    .kind = KeyKind::boolean,
-                    .meaning = "whether the contact slides, with kinetic friction",
-                    .default_value = false});
-    keys.push_back({.pointer = "/state/noise", .kind = KeyKind::object, .meaning = "random vectors to use"});
-    keys.push_back({.pointer = "/state/noise/timestep",
-                    .kind = KeyKind::number,
-                    .meaning = "dt of the amplitude sqrt(2 kT / dt)",
-                    .unit = "time",
-                    .required = true,
-                    .minimum = 0,
-                    .above_minimum = true});
-    append(vector_keys("/state/noise/force", "normal vectors of the forces", "", true));
-    append(vector_keys("/state/noise/torque", "normal vectors of the torques", "", true));
-    append(pair_keys("/state/noise/pairs", "normal vectors of pairs",
-                     {{"theta", "of force and turning"}, {"chi", "of the spins"}}));
-    return KeyTable("configuration", keys);
-  }();
+  static const KeyTable table("configuration", fmt::format(R"(
+/scene | anything | the blocks {} of a scene
+/advance? | number >= 0; in time | time by which the springs are advanced
+/state | object | the configuration
+/state/box | object | the periodic cell
+/state/box/lengths | array of 3; in length | Lx, Ly, Lz
+/state/box/lengths/* | number > 0 | edge
+/state/box/tilt | number; in length; default 0.0 | x component of the second lattice vector
+/state/radius | array of 1 or more; in length | radii
+/state/radius/* | number > 0 | radius
+/state/position | array; in length | centres
+/state/position/* | array of 3 | components x, y, z
+/state/position/*/* | number | component
+/state/velocity | array; in length / time; as /state/position | velocities in the laboratory frame
+/state/angular_velocity | array; in 1 / time; as /state/position | angular velocities
+/state/springs? | array | contact springs
+/state/springs/* | object | one pair
+/state/springs/*/i | integer >= 0 | first particle
+/state/springs/*/j | integer >= 0 | second particle, above i
+/state/springs/*/image | array of 3 | lattice vectors added to the second particle's position as given
+/state/springs/*/image/* | integer | component
+/state/springs/*/tangential | array of 3; as /state/position/* | sliding spring
+/state/springs/*/rolling | array of 3; as /state/position/* | rolling spring
+/state/springs/*/slides | true or false; default false | whether the contact slides, with kinetic friction
+/state/noise? | object | random vectors to use
+/state/noise/timestep | number > 0; in time | dt of the amplitude sqrt(2 kT / dt)
+/state/noise/force | array; as /state/position | normal vectors of the forces
+/state/noise/torque | array; as /state/position | normal vectors of the torques
+/state/noise/pairs? | array | normal vectors of pairs
+/state/noise/pairs/* | object | one pair
+/state/noise/pairs/*/i | integer >= 0 | first particle
+/state/noise/pairs/*/j | integer >= 0 | second particle, above i
+/state/noise/pairs/*/image | array of 3; as /state/springs/*/image | lattice vectors added to the second
+    particle's position as given
+/state/noise/pairs/*/theta | array of 3; as /state/position/* | of force and turning
+/state/noise/pairs/*/chi | array of 3; as /state/position/* | of the spins
+)",
+                                                           fmt::join(blocks_of_physics(), ", ")));
   return table;
 }
 

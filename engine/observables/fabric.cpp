@@ -56,20 +56,15 @@ Quantity fabric_quantity(const std::string& name, const std::vector<Axis>& furth
   return quantity;
 }
 
-Key fabric_gap(const std::string& pointer, const std::string& meaning) {
-  return fraction_up_to(positive(pointer, "", meaning), 1);
-}
-
 ObservableKind fabric() {
-  return {
-      .name = "fabric",
-      .meaning = "the fabric tensor <n n> of contacts and of near pairs",
-      .settings = {with_default(
-          fabric_gap("/fabric/gap", "Gap xi = 2 (r - a_i - a_j) / (a_i + a_j) below which a pair is near."),
-          0.05)},
-      .read = [](const SceneDocument& document, const Scene&) {
-        return maker<Fabric>(document.number("/fabric/gap"));
-      }};
+  return {.name = "fabric",
+          .meaning = "the fabric tensor <n n> of contacts and of near pairs",
+          .settings =
+              "/fabric/gap | number > 0 and <= 1; default 0.05 | "
+              "Gap xi = 2 (r - a_i - a_j) / (a_i + a_j) below which a pair is near.",
+          .read = [](const SceneDocument& document, const Scene&) {
+            return maker<Fabric>(document.number("/fabric/gap"));
+          }};
 }
 
 }  // namespace peclet::engine

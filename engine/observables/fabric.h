@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "engine/flow/scene_document.h"
 #include "engine/observables/accumulators.h"
 #include "engine/state/system.h"
 
@@ -33,8 +32,5 @@ FabricSums fabric_of(const System& system, double gap);
 
 // The quantity of the components of a fabric, over a further axis or none.
 Quantity fabric_quantity(const std::string& name, const std::vector<Axis>& further = {});
-
-// The key of a gap.
-Key fabric_gap(const std::string& pointer, const std::string& meaning);
 
 }  // namespace peclet::engine

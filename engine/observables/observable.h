@@ -82,7 +82,7 @@ struct ObservableKind {
   std::string meaning;  // behind its name in the list of all
   Sampling sampling = Sampling::seldom;
   bool interval_is_a_duration = false;  // in strain, Brownian times or time; else it is a time
-  Keys settings{};                      // in the block "/NAME", besides its interval
+  std::string settings{};               // rows of the block "/NAME" without its interval
   std::vector<std::string> numbers{};   // of the result that are not below its name
   // Reads the settings. Throws InputError where the scene does not go with them.
   MakeFromPlan (*read)(const SceneDocument& document, const Scene& scene);

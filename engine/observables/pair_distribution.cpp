@@ -199,17 +199,14 @@ MakeFromPlan read_distribution(const SceneDocument& document, const Scene&) {
 ObservableKind pair_distribution() {
   return {.name = "pair_distribution",
           .meaning = "g(r) and g(x, y)",
-          .settings = {with_default(positive("/pair_distribution/range", "reference radius",
-                                             "Largest distance; at most half of the shortest edge of the "
-                                             "box, in a cube at rest 0.707 of it."),
-                                    4),
-                       with_default(positive("/pair_distribution/bin", "reference radius",
-                                             "Width of a bin; a whole number of them, at most 1000, makes "
-                                             "up the range."),
-                                    0.1),
-                       with_default(positive("/pair_distribution/slab", "reference radius",
-                                             "Distance |z| below which a pair counts for g(x, y)."),
-                                    0.1)},
+          .settings = R"(
+/pair_distribution/range | number > 0; in reference radius; default 4 | Largest distance; at most half of the
+    shortest edge of the box, in a cube at rest 0.707 of it.
+/pair_distribution/bin | number > 0; in reference radius; default 0.1 | Width of a bin; a whole number of
+    them, at most 1000, makes up the range.
+/pair_distribution/slab | number > 0; in reference radius; default 0.1 | Distance |z| below which a pair
+    counts for g(x, y).
+)",
           .read = read_distribution};
 }
 

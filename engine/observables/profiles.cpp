@@ -270,20 +270,15 @@ class Profiles : public Observable {
 }  // namespace
 
 ObservableKind profiles() {
-  constexpr double most_bins = 1000;
-  return {.name = "profiles",
-          .meaning =
-              "by y: volume fraction, of each radius too, velocity and its variance, stress by term, "
-              "and the balance of momentum",
-          .settings = {with_default({.pointer = "/profiles/bins",
-                                     .kind = KeyKind::integer,
-                                     .meaning = "Equal bins of the box along y.",
-                                     .minimum = 1,
-                                     .maximum = most_bins},
-                                    20)},
-          .read = [](const SceneDocument& document, const Scene&) {
-            return maker<Profiles>(document.at("/profiles/bins").get<std::size_t>());
-          }};
+  return {
+      .name = "profiles",
+      .meaning =
+          "by y: volume fraction, of each radius too, velocity and its variance, stress by term, "
+          "and the balance of momentum",
+      .settings = "/profiles/bins | integer >= 1 and <= 1000; default 20 | Equal bins of the box along y.",
+      .read = [](const SceneDocument& document, const Scene&) {
+        return maker<Profiles>(document.at("/profiles/bins").get<std::size_t>());
+      }};
 }
 
 }  // namespace peclet::engine

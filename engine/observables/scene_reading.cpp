@@ -12,31 +12,26 @@
 namespace peclet::engine {
 namespace {
 
-// The keys of all blocks, and the choices of "/observables/*".
-Keys observable_keys() {
-  std::string meaning = "stress: the tensor, split by term, which is always there.";
-  std::vector<std::string> names{"stress"};
-  Keys blocks;
+// Returns the rows of all blocks and of "/observables/*".
+std::string observable_keys() {
+  std::string meaning = "stress: the tensor, split by term, which is always there.", names = "stress", blocks;
   for (const ObservableKind& kind : observable_kinds()) {
     meaning += fmt::format(" {}: {}.", kind.name, kind.meaning);
-    names.push_back(kind.name);
+    names += ", " + kind.name;
     if (!kind.has_settings()) continue;
-    blocks.push_back(block('/' + kind.name, "How the observable of that name is measured."));
-    const std::string interval = fmt::format("/{}/interval", kind.name);
+    blocks += fmt::format("/{}? | object | How the observable of that name is measured.\n", kind.name);
+    const std::string interval = fmt::format("/{}/interval?", kind.name);
     const std::string unless_given =
         fmt::format("in whole steps; {} unless given.",
                     kind.sampling == Sampling::often ? "one step" : "a 256th of the production window");
     if (kind.interval_is_a_duration) {
-      const Keys limits =
-          duration_keys(interval, "From one to the next, " + unless_given, positive, /*is_required=*/false);
-      blocks.insert(blocks.end(), limits.begin(), limits.end());
+      blocks += duration_keys(interval, "> 0", "From one to the next, " + unless_given);
     } else if (kind.sampling != Sampling::of_every_step) {
-      blocks.push_back(positive(interval, "time", "Time between samples, " + unless_given));
+      blocks += fmt::format("{} | number > 0; in time | Time between samples, {}\n", interval, unless_given);
     }
-    blocks.insert(blocks.end(), kind.settings.begin(), kind.settings.end());
+    blocks += kind.settings + '\n';
   }
-  blocks.insert(blocks.begin(), choice("/observables/*", meaning, names));
-  return blocks;
+  return fmt::format("/observables/* | one of {} | {}\n{}", names, meaning, blocks);
 }
 
 // Steps between samples, one at least. A time that is longer than any window is never again.

@@ -277,10 +277,9 @@ ObservableKind trajectory() {
               "trajectory.gsd beside the result, with places, motion and stress of each sphere in "
               "every frame",
           .interval_is_a_duration = true,
-          .settings = {with_default({.pointer = "/trajectory/contacts",
-                                     .kind = KeyKind::boolean,
-                                     .meaning = "Whether frames list the contacts, with their forces."},
-                                    false)},
+          .settings =
+              "/trajectory/contacts | true or false; default false | "
+              "Whether frames list the contacts, with their forces.",
           .read = [](const SceneDocument& document, const Scene& scene) {
             const bool contacts = document.at("/trajectory/contacts").get<bool>();
             if (contacts && !scene.physics.contact) {

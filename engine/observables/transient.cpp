@@ -138,21 +138,16 @@ class Transient : public Observable {
 }  // namespace
 
 ObservableKind transient() {
-  constexpr double most_bins = 1000;
   return {.name = "transient",
           .meaning =
               "shear stress, normal stress differences and pressure over the strain, or time, of the "
               "window",
           .sampling = Sampling::of_every_step,
-          .settings = {with_default({.pointer = "/transient/bins",
-                                     .kind = KeyKind::integer,
-                                     .meaning = "Equal parts of the production window.",
-                                     .minimum = 1,
-                                     .maximum = most_bins},
-                                    50),
-                       fabric_gap("/transient/fabric_gap",
-                                  "As /fabric/gap, of the fabric over the window; "
-                                  "absent: that is not measured.")},
+          .settings = R"(
+/transient/bins | integer >= 1 and <= 1000; default 50 | Equal parts of the production window.
+/transient/fabric_gap? | number > 0 and <= 1 | As /fabric/gap, of the fabric over the window; absent: that is
+    not measured.
+)",
           .read = [](const SceneDocument& document, const Scene& scene) {
             require_stress_of_forces(document, scene, "transient");
             std::optional<double> gap;

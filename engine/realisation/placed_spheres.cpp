@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "contract/errors.h"
+#include "contract/key_table.h"
 #include "contract/named_files.h"
 #include "contract/sha256.h"
 #include "contract/text.h"
@@ -74,7 +75,7 @@ class Placing {
     const std::vector<std::string> lines = lines_of_list();
     for (std::size_t seed = 0; seed < lines.size(); ++seed) {
       const auto [first, is_new] = seeds.emplace(lines[seed].substr(0, 64), seed);
-      if (is_new || !is_sha256(first->first)) continue;
+      if (is_new || !is_hash(first->first)) continue;
       refuse(
           "/start/list", lines[seed],
           fmt::format("must have another file for each seed without noise, but seed {} begins at a file of "
@@ -117,7 +118,7 @@ class Placing {
              fmt::format("must have a line for seed {}, the {}th", seed, seed + 1));
     }
     const std::string& line = lines[seed];
-    const bool is_good = line.size() > 67 && is_sha256(line.substr(0, 64)) && line[64] == ' ' &&
+    const bool is_good = line.size() > 67 && is_hash(line.substr(0, 64)) && line[64] == ' ' &&
                          (line[65] == ' ' || line[65] == '*') && line[66] == '/';
     if (!is_good) {
       refuse("/start/list", line, "must be lines of sha256sum, each with an absolute path");

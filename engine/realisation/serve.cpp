@@ -12,6 +12,7 @@
 #include <thread>
 #include <utility>
 
+#include "contract/documents.h"
 #include "contract/durable_file.h"
 #include "contract/errors.h"
 #include "contract/frames.h"
@@ -61,11 +62,7 @@ class Worker {
       } else if (channel_.receive(message, std::chrono::milliseconds(-1)) == FrameChannel::Status::closed) {
         return 0;
       }
-      try {
-        handle(message);
-      } catch (const Json::exception& error) {
-        throw FrameError(fmt::format("the message {} is incomplete: {}", shortened(message), error.what()));
-      }
+      handle(message);
     }
     return 0;
   }
@@ -83,8 +80,9 @@ class Worker {
     }
   }
 
-  void handle(const Json& message) {
-    const auto type = message.at("type").get<std::string>();
+  void handle(Json given) {
+    const Json message = checked_frame(std::move(given));
+    const auto type = message["type"].get<std::string>();
     if (type == "validate") {
       validate(message);
     } else if (type == "job") {
@@ -97,12 +95,12 @@ class Worker {
   }
 
   void validate(const Json& message) {
-    Json answer = {{"request", message.at("request")}};
+    Json answer = {{"request", message["request"]}};
     try {
-      const Scene scene = read_scene(message.at("scene"), "scene");
+      const Scene scene = read_scene(message["scene"], "scene");
       const Schedule schedule = make_schedule(scene, "scene");
       check_fit(scene, schedule, "scene");
-      if (scene.start) check_start_of_campaign(scene, "scene", message.value("seeds", std::int64_t{1}));
+      if (scene.start) check_start_of_campaign(scene, "scene", message["seeds"].get<std::int64_t>());
       answer["type"] = "validated";
       answer["timestep"] = schedule.timestep;
       answer["steps"] = schedule.total();
@@ -125,22 +123,22 @@ class Worker {
   }
 
   void run(const Json& message) {
-    const Json& id = message.at("job");
+    const Json& id = message["job"];
     JobSpecification job;
-    job.header = {message.at("point").get<std::string>(), message.at("seed").get<std::uint64_t>()};
-    job.scene = message.at("scene");
+    job.header = {message["point"].get<std::string>(), message["seed"].get<std::uint64_t>()};
+    job.scene = message["scene"];
     job.scene_name = "scene";
-    job.threads = message.value("threads", 1);
-    job.checkpoint = message.at("checkpoint").get<std::string>();
-    job.checkpoint_seconds = message.value("checkpoint_seconds", job.checkpoint_seconds);
-    job.files = message.value("files", "");
-    job.failures = message.value("failures", "");
+    job.threads = message["threads"].get<int>();
+    job.checkpoint = message["checkpoint"].get<std::string>();
+    job.checkpoint_seconds = message["checkpoint_seconds"].get<double>();
+    job.files = message["files"].get<std::string>();
+    job.failures = message["failures"].get<std::string>();
     job.restart_on_bad_checkpoint = true;
     told_to_leave_ = false;
     tries_left_ = last_tries;
     try {
-      const std::optional<Json> result = run_job(job, events(id, message.value("progress_seconds", 1.0)));
-      if (result && deliver(id, *result, message.at("spool").get<std::string>())) {
+      const std::optional<Json> result = run_job(job, events(id, message["progress_seconds"].get<double>()));
+      if (result && deliver(id, *result, message["spool"].get<std::string>())) {
         leave_ = told_to_leave_;  // nobody says it twice, except after "drained"
       } else {
         tell({{"type", "drained"}, {"job", id}, {"step", last_step_}});

@@ -8,17 +8,13 @@
 
 namespace peclet::engine {
 
-inline Keys attraction_keys() {
-  return {
-      block("/attraction",
-            "Van der Waals attraction of the surfaces, at distance h: force A_H a / (12 (h^2 + eps^2)), in "
-            "overlap as at h = 0, with a = 2 a_i a_j / (a_i + a_j); absent: none."),
-      named(not_negative("/attraction/hamaker", "energy", "Hamaker constant A_H.", required),
-            "Hamaker constant", "A_H"),
-      with_default(positive("/attraction/regularisation", "", "eps / a."), 0.01),
-      positive("/attraction/cutoff", "length", "Distance h beyond which there is none.", required),
-  };
-}
+inline constexpr const char* attraction_keys = R"(
+/attraction? | object | Van der Waals attraction of the surfaces, at distance h: force A_H a / (12 (h^2 +
+    eps^2)), in overlap as at h = 0, with a = 2 a_i a_j / (a_i + a_j); absent: none.
+/attraction/hamaker | number >= 0; in energy; named Hamaker constant, A_H | Hamaker constant A_H.
+/attraction/regularisation | number > 0; default 0.01 | eps / a.
+/attraction/cutoff | number > 0; in length | Distance h beyond which there is none.
+)";
 
 // None with a constant of 0.
 inline std::optional<AttractionParameters> read_attraction(const SceneDocument& scene) {

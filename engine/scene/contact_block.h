@@ -6,50 +6,32 @@
 
 namespace peclet::engine {
 
-inline Keys contact_keys() {
-  return {
-      block("/contact", "Forces between overlapping spheres; absent: none."),
-      named(positive("/contact/normal_stiffness", "force / length", "Normal stiffness k_n.", required),
-            "normal stiffness", "k_n"),
-      with_default(not_negative("/contact/normal_damping", "force time / length", "Normal damping."), 0),
-      named(not_negative("/contact/friction", "",
-                         "Coefficient of sliding friction; absent (or 0): frictionless."),
-            "coefficient of friction", "μ"),
-      named(not_negative(
-                "/contact/kinetic_friction", "",
-                "Coefficient of kinetic friction, while a contact slides; at most that of friction, and with "
-                "it only; absent: the same."),
-            "coefficient of kinetic friction", "μ_k"),
-      not_negative("/contact/critical_load", "force",
-                   "Normal force F_CL below which a contact has no friction, which goes by what exceeds it; "
-                   "with friction only; absent (or 0): none."),
-      positive("/contact/largest_load", "force",
-               "Load of friction beyond which it grows no more, with friction only; absent: none."),
-      positive("/contact/tangential_stiffness", "force / length",
-               "Tangential stiffness, with friction only; 2/7 of the normal one unless given."),
-      not_negative(
-          "/contact/rolling_stiffness", "force / length",
-          "Stiffness against rolling; absent (or 0): free rolling. Above 0 it needs friction above 0."),
-      named(
-          not_negative(
-              "/contact/rolling_friction", "",
-              "Coefficient that caps rolling resistance, with rolling_stiffness only; that of sliding unless "
-              "given."),
-          "coefficient of rolling friction", "μ_r"),
-  };
-}
+inline constexpr const char* contact_keys = R"(
+/contact? | object | Forces between overlapping spheres; absent: none.
+/contact/normal_stiffness | number > 0; in force / length; named normal stiffness, k_n | Normal stiffness k_n.
+/contact/normal_damping | number >= 0; in force time / length; default 0 | Normal damping.
+/contact/friction? | number >= 0; named coefficient of friction, μ | Coefficient of sliding friction; absent
+    (or 0): frictionless.
+/contact/kinetic_friction? | number >= 0; if friction; named coefficient of kinetic friction, μ_k |
+    Coefficient of kinetic friction, while a contact slides; at most that of friction, and with it only;
+    absent: the same.
+/contact/critical_load? | number >= 0; in force; if friction | Normal force F_CL below which a contact has no
+    friction, which goes by what exceeds it; with friction only; absent (or 0): none.
+/contact/largest_load? | number > 0; in force; if friction | Load of friction beyond which it grows no more,
+    with friction only; absent: none.
+/contact/tangential_stiffness? | number > 0; in force / length; if friction | Tangential stiffness, with
+    friction only; 2/7 of the normal one unless given.
+/contact/rolling_stiffness? | number >= 0; in force / length | Stiffness against rolling; absent (or 0): free
+    rolling. Above 0 it needs friction above 0.
+/contact/rolling_friction? | number >= 0; if rolling_stiffness; named coefficient of rolling friction, μ_r |
+    Coefficient that caps rolling resistance, with rolling_stiffness only; that of sliding unless given.
+)";
 
 inline ContactParameters read_contact(const SceneDocument& scene) {
   ContactParameters contact;
   contact.normal_stiffness = scene.number("/contact/normal_stiffness");
   contact.normal_damping = scene.number("/contact/normal_damping");
   contact.friction = scene.number_or("/contact/friction", 0);
-  for (const char* key : {"/contact/tangential_stiffness", "/contact/kinetic_friction",
-                          "/contact/critical_load", "/contact/largest_load"}) {
-    if (scene.has(key) && !scene.has("/contact/friction")) {
-      scene.refuse(key, "must be left out without /contact/friction");
-    }
-  }
   contact.kinetic_friction = scene.number_or("/contact/kinetic_friction", contact.kinetic_friction);
   if (scene.has("/contact/kinetic_friction") && contact.kinetic_friction > contact.friction) {
     scene.refuse("/contact/kinetic_friction", "must be a number >= 0 and <= /contact/friction, which is " +
@@ -63,9 +45,6 @@ inline ContactParameters read_contact(const SceneDocument& scene) {
   contact.rolling_stiffness = scene.number_or("/contact/rolling_stiffness", 0);
   if (contact.rolling_stiffness > 0 && contact.friction <= 0) {
     scene.refuse("/contact/rolling_stiffness", "must be 0 or left out unless /contact/friction is > 0");
-  }
-  if (scene.has("/contact/rolling_friction") && !scene.has("/contact/rolling_stiffness")) {
-    scene.refuse("/contact/rolling_friction", "must be left out without /contact/rolling_stiffness");
   }
   contact.rolling_friction = scene.number_or("/contact/rolling_friction", contact.friction);
   return contact;

@@ -12,7 +12,7 @@ namespace peclet::engine {
 
 struct LawBlock {
   const char* name;
-  Keys (*keys)();
+  const char* keys;
   void (*read)(const SceneDocument& scene, Physics& physics);  // of a scene that has the block
 };
 

@@ -111,104 +111,51 @@ void set_equal_inertia(const SceneDocument& scene, Particles& particles,
   }
 }
 
-Keys mixture_keys() {
-  Key self =
-      block("/particles/mixture",
-            "Two groups of sizes, small colloids and large grains, and how much of the volume is grains.");
-  self.instead_of = "species";
-  const auto group = [](const char* pointer, const char* meaning) {
-    return Key{.pointer = pointer,
-               .kind = KeyKind::array,
-               .meaning = meaning,
-               .required = true,
-               .minimum_items = 1,
-               .maximum_items = most_species};
-  };
-  Keys keys = {self,
-               group(colloids_at, "Sizes of the colloids, as in species; shares are within the group.")};
-  const auto append = [&](const Keys& more) { keys.insert(keys.end(), more.begin(), more.end()); };
-  append(species_keys(colloids_at));
-  keys.push_back(group(grains_at, "Sizes of the grains, likewise."));
-  append(species_keys(grains_at));
-  Key alpha = named(
-      not_negative(alpha_at, "",
-                   "Volume of the grains over that of all spheres: 0 leaves colloids only, 1 grains only.",
-                   required),
-      "share of grains in the solid volume", "α");
-  alpha.maximum = 1;
-  keys.push_back(alpha);
-  keys.push_back(
-      choice("/particles/mixture/reference",
-             "The a of Pe in place of reference_radius, by the first radius a_c of the colloids and a_g "
-             "of the grains: a_c, a_g, or mean: (1 - alpha) a_c + alpha a_g. colloids unless given.",
-             {"colloids", "grains", "mean"}));
-  return keys;
-}
-
-Keys volume_fraction_keys() {
-  Key addition =
-      block("/addition",
-            "The volume fraction of a mixture to which one group was added, while the volumes of the "
-            "liquid and of the other group stayed: it follows from alpha.");
-  addition.instead_of = "volume_fraction";
-  return {
-      must_be_given(fraction(
-          named(positive("/volume_fraction", "",
-                         "Volume of the particles over that of the box; below 0.74 without a mixture."),
-                "volume fraction", "φ"),
-          densest_of_two_groups)),
-      addition,
-      must_be_given(choice("/addition/added", "Which group is added.", {"colloids", "grains"})),
-      fraction(named(positive("/addition/base_volume_fraction", "",
-                              "Volume fraction before, of the other group alone.", required),
-                     "volume fraction before the addition", "φ_0"),
-               densest_of_one_size),
-      block("/box", "The periodic box; absent: a cube."),
-      positive(
-          "/box/height", "length",
-          "Edge along y, the direction of the velocity gradient. The other two are equal; the volume follows "
-          "from spheres and volume fraction.",
-          required),
-  };
-}
+// {species}: rows of one size; {most}: of sizes; {one_size} and {two_groups}: the densest packings.
+constexpr const char* particle_rows = R"(
+/particles | object | The spheres.
+/particles/count | integer >= 1 and <= {particles}; named number of particles, N | Number of particles.
+/particles/density | number > 0; in mass / length^3; named density of the particles, ρ | Mass density of the
+    particles.
+/particles/density_rule? | one of equal-inertia | equal-inertia: spheres of radius a_i have the density times
+    (a / a_i)^2, a the radius of reference, so that tau_I is the same for all; absent: density is that of all
+    that have none of their own.
+/particles/species | array of 1 to {most} | The sizes; all have volume_share or all have number_share. A
+    single species needs neither.
+{species}
+/particles/mixture | object; instead of species | Two groups of sizes, small colloids and large grains, and
+    how much of the volume is grains.
+/particles/mixture/colloids | array of 1 to {most} | Sizes of the colloids, as in species; shares are within
+    the group.
+/particles/mixture/colloids/* | object; as /particles/species/* | One size, or one distribution of sizes.
+/particles/mixture/grains | array of 1 to {most} | Sizes of the grains, likewise.
+/particles/mixture/grains/* | object; as /particles/species/* | One size, or one distribution of sizes.
+/particles/mixture/alpha | number >= 0 and <= 1; named share of grains in the solid volume, α | Volume of the
+    grains over that of all spheres: 0 leaves colloids only, 1 grains only.
+/particles/mixture/reference? | one of colloids, grains, mean | The a of Pe in place of reference_radius, by
+    the first radius a_c of the colloids and a_g of the grains: a_c, a_g, or mean: (1 - alpha) a_c + alpha
+    a_g. colloids unless given.
+/particles/reference_radius? | number > 0; in length | The a of Pe, St, Brownian times and derived groups; the
+    radius of the first species, or of the first colloids, unless given.
+/volume_fraction | number > 0 and < {two_groups}; named volume fraction, φ | Volume of the particles over that
+    of the box; below 0.74 without a mixture.
+/addition | object; instead of volume_fraction | The volume fraction of a mixture to which one group was
+    added, while the volumes of the liquid and of the other group stayed: it follows from alpha.
+/addition/added | one of colloids, grains | Which group is added.
+/addition/base_volume_fraction | number > 0 and < {one_size}; named volume fraction before the addition, φ_0 |
+    Volume fraction before, of the other group alone.
+/box? | object | The periodic box; absent: a cube.
+/box/height | number > 0; in length | Edge along y, the direction of the velocity gradient. The other two are
+    equal; the volume follows from spheres and volume fraction.
+)";
 
 }  // namespace
 
-Keys particle_keys() {
-  Keys keys = {
-      block("/particles", "The spheres.", required),
-      {.pointer = "/particles/count",
-       .kind = KeyKind::integer,
-       .meaning = "Number of particles.",
-       .words = "number of particles",
-       .symbol = "N",
-       .required = true,
-       .minimum = 1,
-       .maximum = most_particles},
-      named(positive("/particles/density", "mass / length^3", "Mass density of the particles.", required),
-            "density of the particles", "ρ"),
-      choice("/particles/density_rule",
-             "equal-inertia: spheres of radius a_i have the density times (a / a_i)^2, a the radius of "
-             "reference, so that tau_I is the same for all; absent: density is that of all that have none of "
-             "their own.",
-             {"equal-inertia"}),
-      {.pointer = "/particles/species",
-       .kind = KeyKind::array,
-       .meaning =
-           "The sizes; all have volume_share or all have number_share. A single species needs neither.",
-       .required = true,
-       .minimum_items = 1,
-       .maximum_items = most_species},
-  };
-  const auto append = [&](const Keys& more) { keys.insert(keys.end(), more.begin(), more.end()); };
-  append(species_keys("/particles/species"));
-  append(mixture_keys());
-  keys.push_back(
-      positive("/particles/reference_radius", "length",
-               "The a of Pe, St, Brownian times and derived groups; the radius of the first species, or "
-               "of the first colloids, unless given."));
-  append(volume_fraction_keys());
-  return keys;
+std::string particle_keys() {
+  using fmt::arg;
+  return fmt::format(particle_rows, arg("particles", most_particles), arg("species", species_keys()),
+                     arg("most", most_species), arg("one_size", densest_of_one_size),
+                     arg("two_groups", densest_of_two_groups));
 }
 
 Particles read_particles(const SceneDocument& scene) {

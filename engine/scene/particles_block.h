@@ -7,7 +7,7 @@
 namespace peclet::engine {
 
 // Of /particles, /volume_fraction and /addition.
-Keys particle_keys();
+std::string particle_keys();
 
 // Sizes with their shares, densities and the radius of reference. Throws InputError where they do not go
 // together.

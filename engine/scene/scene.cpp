@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <utility>
 
 #include "contract/errors.h"
 #include "engine/flow/controlled_shear.h"
@@ -177,7 +176,6 @@ Scene read_without_observables(const Json& document, const std::string& file) {
   const Json& filled = scene.document;
   const Reading reading(filled, file);
   fill_method_and_guard(scene.document);
-  fill_lubrication(scene.document);
 
   scene.particles = reading.particles();
   scene.volume_fraction = reading.volume_fraction(scene.particles);
@@ -221,7 +219,7 @@ std::vector<std::string> blocks_of_physics() {
 Physics read_physics(const Json& document, const std::string& file, const std::string& pointer) {
   if (!document.is_object()) throw InputError(file, pointer, shortened(document), "must be an object");
   const std::vector<std::string> blocks = blocks_of_physics();
-  static const KeyTable keys = scene_keys_with({});
+  static const KeyTable keys = scene_keys_with("");
   Json filled = Json::object();
   for (const auto& [name, block] : document.items()) {
     if (std::find(blocks.begin(), blocks.end(), name) == blocks.end()) {
@@ -234,7 +232,6 @@ Physics read_physics(const Json& document, const std::string& file, const std::s
       throw error.within(file, pointer + '/' + name);
     }
   }
-  fill_lubrication(filled);
   if (!filled.contains("fluid")) throw InputError(file, pointer + "/fluid", "missing", "must be an object");
   try {
     const Reading reading(filled, "");
@@ -269,9 +266,6 @@ double rate_from_peclet(const SceneDocument& scene, double radius, Physics& phys
   for (const char* pointer : {"/flow/shear_rate", "/fluid/thermal_energy"}) {
     if (scene.has(pointer)) scene.refuse(pointer, "must be left out together with /peclet, which sets it");
   }
-  if (!scene.has("/limits")) {
-    scene.miss("/limits", "must be an object with shear_rate and thermal_energy, because /peclet is given");
-  }
   const double peclet = scene.number("/peclet");
   const double scale = 6 * std::numbers::pi * physics.viscosity * radius * radius * radius;
   double rate = scene.number("/limits/shear_rate");
@@ -292,32 +286,25 @@ double rate_from_peclet(const SceneDocument& scene, double radius, Physics& phys
 
 }  // namespace
 
-Keys flow_keys() {
-  Keys keys = {
-      block("/fluid", "The solvent.", required),
-      named(positive("/fluid/viscosity", "mass / (length time)", "Viscosity eta of the solvent.", required),
-            "viscosity of the fluid", "η"),
-      named(not_negative("/fluid/thermal_energy", "energy",
-                         "k_B T; absent (or 0): no Brownian motion. Not together with peclet."),
-            "thermal energy", "k_B T"),
-      block("/flow", fmt::format("The streaming flow (rate y, 0, 0), and waves in it. A scene has "
-                                 "flow.shear_rate, flow.{} or peclet.",
-                                 fmt::join(flows_without_rate(std::string("/flow/").size()), ", flow."))),
-  };
-  const auto append = [&](const Keys& more) { keys.insert(keys.end(), more.begin(), more.end()); };
-  for (const FlowKind& kind : flow_kinds()) append(kind.keys);
-  append(wave_keys());
-  append({
-      named(positive(
-                "/peclet", "",
-                "Pe = 6 pi eta a^3 rate / k_B T, in place of shear_rate and thermal_energy; needs limits."),
-            "Péclet number", "Pe"),
-      block("/limits",
-            "Of the scene with a given peclet: the largest rate and temperature that Pe allows are used."),
-      positive("/limits/shear_rate", "1 / time", "Shear rate that is not exceeded.", required),
-      positive("/limits/thermal_energy", "energy", "k_B T that is not exceeded.", required),
-  });
-  return keys;
+std::string flow_keys() {
+  std::string keys = fmt::format(R"(
+/fluid | object | The solvent.
+/fluid/viscosity | number > 0; in mass / (length time); named viscosity of the fluid, η | Viscosity eta of the
+    solvent.
+/fluid/thermal_energy? | number >= 0; in energy; named thermal energy, k_B T | k_B T; absent (or 0): no
+    Brownian motion. Not together with peclet.
+/flow? | object | The streaming flow (rate y, 0, 0), and waves in it. A scene has flow.shear_rate, flow.{} or
+    peclet.
+)",
+                                 fmt::join(flows_without_rate(std::string("/flow/").size()), ", flow."));
+  for (const FlowKind& kind : flow_kinds()) keys += kind.keys;
+  return keys + wave_keys + R"(
+/peclet? | number > 0; named Péclet number, Pe | Pe = 6 pi eta a^3 rate / k_B T, in place of shear_rate and
+    thermal_energy; needs limits.
+/limits | object; if peclet | With peclet: the largest rate and temperature that Pe allows are used.
+/limits/shear_rate | number > 0; in 1 / time | Shear rate that is not exceeded.
+/limits/thermal_energy | number > 0; in energy | k_B T that is not exceeded.
+)";
 }
 
 void set_flow(const SceneDocument& scene, const Particles& particles, double volume_fraction,
@@ -328,11 +315,7 @@ void set_flow(const SceneDocument& scene, const Particles& particles, double vol
     scene.refuse(pointer, fmt::format("must be left out with {}, whose cell is {}", flow.key, flow.own_cell));
   }
   double rate = scene.number_or("/flow/shear_rate", 0);
-  if (scene.has("/peclet")) {
-    rate = rate_from_peclet(scene, particles.reference_radius, physics);
-  } else if (scene.has("/limits")) {
-    scene.refuse("/limits", "must be left out without /peclet");
-  }
+  if (scene.has("/peclet")) rate = rate_from_peclet(scene, particles.reference_radius, physics);
   physics.flow = read_flow({scene, rate, physics.viscosity, physics.thermal_energy, volume_fraction});
   if (!scene.has(flow.key) && !scene.has("/peclet")) {
     scene.miss(flow.key, fmt::format("must be a number >= 0, or {} or /peclet with /limits must be given",
@@ -344,90 +327,48 @@ void set_flow(const SceneDocument& scene, const Particles& particles, double vol
 
 namespace {
 
-Keys run_keys(const Keys& keys_of_observables) {
-  Keys keys = {
-      with_default(block("/integrator", "How the equations of motion are solved."), Json::object()),
-      choice("/integrator/method",
-             "explicit: velocity Verlet; implicit: steps that solve for the velocities. Unless given, "
-             "implicit with lubrication and explicit without.",
-             {"explicit", "implicit"}),
-      {.pointer = "/integrator/timestep",
-       .kind = KeyKind::number_or_auto,
-       .meaning =
-           "Time step; auto: half of the largest stable explicit one, or the implicit one whose error "
-           "has been measured, and not more than a 32nd of the production window. An oscillation has a "
-           "whole number of steps, 128 at least: the step is shortened to that.",
-       .unit = "time",
-       .default_value = "auto",
-       .minimum = 0,
-       .above_minimum = true},
-      {.pointer = "/integrator/tolerance",
-       .kind = KeyKind::number,
-       .meaning = "Residual of the equations of an implicit step, relative to the motion, in the energy "
-                  "norm; unless given 0.002, with noise 0.004.",
-       .minimum = 0,
-       .maximum = 5e-3,
-       .above_minimum = true},
-      block("/duration", "How long a realisation runs.", required),
-  };
-  const auto append = [&](const Keys& more) { keys.insert(keys.end(), more.begin(), more.end()); };
-  append(duration_keys("/duration/equilibration", "Before anything is measured; a limit of 0 skips it.",
-                       not_negative));
-  append(duration_keys("/duration/production", "The window of all means.", positive));
-  append({
-      {.pointer = "/observables",
-       .kind = KeyKind::array,
-       .meaning = "What is measured.",
-       .default_value = Json::array({"stress"}),
-       .minimum_items = 1},
-  });
-  append(keys_of_observables);
-  append({
-      block("/files", "Files that a realisation leaves beside its result; absent: none."),
-      {.pointer = "/files/final_configuration",
-       .kind = KeyKind::boolean,
-       .meaning =
-           "final.xyz: cell, centres, radii, velocities and spins at the end of a completed realisation, "
-           "as extended XYZ.",
-       .default_value = false},
-      {.pointer = "/files/final_checkpoint",
-       .kind = KeyKind::boolean,
-       .meaning =
-           "final.checkpoint: all that a completed realisation needs to go on, with `peclet-engine run "
-           "--extend`."},
-  });
-  append({
-      with_default(block("/guard", "Limits that end a realisation as failed, or flag its result."),
-                   Json::object()),
-      with_default(positive("/guard/largest_overlap", "", "Overlap over the smaller radius of the pair."),
-                   0.05),
-      positive(
-          "/guard/largest_displacement", "",
-          "Displacement in one step, or in the smallest part of a divided implicit one, relative to rate y, "
-          "over the smallest radius; 0.05 with explicit and 0.3 with implicit steps unless given."),
-      with_default(positive("/guard/energy_imbalance", "",
-                            "Energy that the finite step makes over the work of the flow; beyond it the "
-                            "result has the warning timestep."),
-                   0.3),
-      with_default(positive("/guard/half_step_difference", "",
-                            "Relative difference of the stress between steps and half steps, on samples; "
-                            "beyond it the result has the warning timestep."),
-                   0.03),
-  });
-  return keys;
-}
+// {0}, {1}: rows of the durations, {2}: of the observables.
+constexpr const char* run_rows = R"(
+/integrator | object; default {{}} | How the equations of motion are solved.
+/integrator/method? | one of explicit, implicit | explicit: velocity Verlet; implicit: steps that solve for
+    the velocities. Unless given, implicit with lubrication and explicit without.
+/integrator/timestep | number > 0 or one of auto; in time; default "auto" | Time step; auto: half of the
+    largest stable explicit one, or the implicit one whose error has been measured, and not more than a 32nd
+    of the production window. An oscillation has a whole number of steps, 128 at least: the step is shortened
+    to that.
+/integrator/tolerance? | number > 0 and <= 0.005 | Residual of the equations of an implicit step, relative to
+    the motion, in the energy norm; unless given 0.002, with noise 0.004.
+/duration | object | How long a realisation runs.
+{0}{1}
+/observables | array of 1 or more; default ["stress"] | What is measured.
+{2}
+/files? | object | Files that a realisation leaves beside its result; absent: none.
+/files/final_configuration | true or false; default false | final.xyz: cell, centres, radii, velocities and
+    spins at the end of a completed realisation, as extended XYZ.
+/files/final_checkpoint? | true or false | final.checkpoint: all that a completed realisation needs to go on,
+    with `peclet-engine run --extend`.
+/guard | object; default {{}} | Limits that end a realisation as failed, or flag its result.
+/guard/largest_overlap | number > 0; default 0.05 | Overlap over the smaller radius of the pair.
+/guard/largest_displacement? | number > 0 | Displacement in one step, or in the smallest part of a divided
+    implicit one, relative to rate y, over the smallest radius; 0.05 with explicit and 0.3 with implicit steps
+    unless given.
+/guard/energy_imbalance | number > 0; default 0.3 | Energy that the finite step makes over the work of the
+    flow; beyond it the result has the warning timestep.
+/guard/half_step_difference | number > 0; default 0.03 | Relative difference of the stress between steps and
+    half steps, on samples; beyond it the result has the warning timestep.
+)";
 
 }  // namespace
 
-KeyTable scene_keys_with(const Keys& keys_of_observables) {
-  Keys keys;
-  const auto append = [&](const Keys& more) { keys.insert(keys.end(), more.begin(), more.end()); };
-  append(particle_keys());
-  append(flow_keys());
-  for (const LawBlock& law : law_blocks) append(law.keys());
-  append(start_keys());
-  append(run_keys(keys_of_observables));
-  return KeyTable("Scene of a peclet simulation", std::move(keys));
+KeyTable scene_keys_with(const std::string& keys_of_observables) {
+  std::string all = particle_keys() + flow_keys();
+  for (const LawBlock& law : law_blocks) all += law.keys;
+  all += start_keys;
+  all += fmt::format(
+      run_rows,
+      duration_keys("/duration/equilibration", ">= 0", "Before anything is measured; a limit of 0 skips it."),
+      duration_keys("/duration/production", "> 0", "The window of all means."), keys_of_observables);
+  return KeyTable("Scene of a peclet simulation", all);
 }
 
 }  // namespace peclet::engine

@@ -116,8 +116,8 @@ Vector3 box_lengths(const Scene& scene, double cube_edge);
 // The time, from then on, after which the first of the limits is reached.
 double time_of(const Duration& duration, const Scene& scene, double from = 0);
 
-// All keys of a scene; those of its observables are given.
-KeyTable scene_keys_with(const std::vector<Key>& keys_of_observables);
+// All keys of a scene; the rows of its observables are given.
+KeyTable scene_keys_with(const std::string& keys_of_observables);
 
 // Reads a document whose keys are valid, all but its observables. `file` names it in messages. Throws
 // InputError.
@@ -133,7 +133,7 @@ std::vector<std::string> blocks_of_physics();
 Physics read_physics(const Json& document, const std::string& file, const std::string& pointer);
 
 // The blocks fluid, flow and limits of a scene, and its Peclet number: how the solvent moves.
-Keys flow_keys();
+std::string flow_keys();
 
 // Sets the flow of a scene whose fluid and laws have been read; rate and temperature where they follow from a
 // Peclet number within limits. Throws InputError where no flow is given.

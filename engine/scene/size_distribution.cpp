@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <initializer_list>
 #include <string>
 #include <utility>
 
@@ -131,13 +130,7 @@ class DistributionReading {
       : scene_(scene), pointer_(std::move(pointer)), form_(scene.at(pointer_ + "/form").get<std::string>()) {}
 
   std::vector<SizeClass> classes() const {
-    if (form_ == "histogram") {
-      leave_out({"mean_radius", "relative_width", "classes"});
-      return bins();
-    }
-    leave_out({"radii", "shares"});
-    require("mean_radius", "must be a number > 0");
-    require("relative_width", "must be a number > 0");
+    if (form_ == "histogram") return bins();
     SizeDistribution distribution;
     distribution.form = form_of(form_);
     distribution.mean_radius = scene_.number(pointer_ + "/mean_radius");
@@ -157,21 +150,7 @@ class DistributionReading {
  private:
   bool by_volume() const { return scene_.at(pointer_ + "/by") == "volume"; }
 
-  void leave_out(std::initializer_list<const char*> keys) const {
-    for (const std::string key : keys) {
-      if (scene_.has(pointer_ + '/' + key)) {
-        scene_.refuse(pointer_ + '/' + key, "must be left out with the form " + form_);
-      }
-    }
-  }
-
-  void require(const std::string& key, const std::string& allowed) const {
-    if (!scene_.has(pointer_ + '/' + key)) scene_.miss(pointer_ + '/' + key, allowed);
-  }
-
   std::vector<SizeClass> bins() const {
-    require("radii", "must be an array, because the form is histogram");
-    require("shares", "must be an array, because the form is histogram");
     const Json &radii = scene_.at(pointer_ + "/radii"), &shares = scene_.at(pointer_ + "/shares");
     if (shares.size() != radii.size()) {
       scene_.refuse(pointer_ + "/shares",
@@ -206,64 +185,40 @@ void add_classes(const SceneDocument& scene, const std::string& pointer, const S
   list.distributed = true;
 }
 
-Keys distribution_keys(const std::string& pointer) {
-  Key self = block(pointer, "A distribution of radii, by a few sizes that are the same for all seeds.");
-  self.instead_of = "radius";
-  return {
-      self,
-      must_be_given(
-          choice(pointer + "/form",
-                 "lognormal, uniform, gaussian (cut off at three standard deviations): by mean radius and "
-                 "relative width. histogram: by radii and shares.",
-                 {"lognormal", "uniform", "gaussian", "histogram"})),
-      must_be_given(choice(pointer + "/by",
-                           "What mean, width or shares are of: the number of the spheres, or their volume.",
-                           {"number", "volume"})),
-      positive(pointer + "/mean_radius", "length", "Mean radius; not of a histogram."),
-      fraction_up_to(
-          positive(pointer + "/relative_width", "",
-                   "Standard deviation of the radius over its mean, at most 1 (uniform: 0.55, gaussian: "
-                   "0.32); not of a histogram."),
-          1),
-      {.pointer = pointer + "/classes",
-       .kind = KeyKind::integer,
-       .meaning = "Number of sizes; 16 unless given. Not of a histogram, which has its own.",
-       .minimum = 1,
-       .maximum = static_cast<double>(most_species)},
-      {.pointer = pointer + "/radii",
-       .kind = KeyKind::array,
-       .meaning = "Radii of a histogram.",
-       .minimum_items = 1,
-       .maximum_items = most_species},
-      positive(pointer + "/radii/*", "length", "One radius."),
-      {.pointer = pointer + "/shares",
-       .kind = KeyKind::array,
-       .meaning = "Shares of a histogram, of each radius, relative to each other.",
-       .minimum_items = 1,
-       .maximum_items = most_species},
-      not_negative(pointer + "/shares/*", "", "One share; a radius of share 0 has no sphere."),
-  };
-}
+// {0}: most sizes.
+constexpr const char* species_rows = R"(
+/particles/species/* | object | One size, or one distribution of sizes.
+/particles/species/*/radius | number > 0; in length | Radius.
+/particles/species/*/volume_share? | number > 0 | Share of the particles' volume, relative to the other
+    species (the shares need not add up to 1).
+/particles/species/*/number_share? | number > 0 | Share of the number of particles, relative to the other
+    species (need not add up to 1).
+/particles/species/*/density? | number > 0; in mass / length^3 | Mass density of these spheres; that of all
+    unless given.
+/particles/species/*/distribution | object; instead of radius | A distribution of radii, by a few sizes that
+    are the same for all seeds.
+/particles/species/*/distribution/form | one of lognormal, uniform, gaussian, histogram | lognormal, uniform,
+    gaussian (cut off at three standard deviations): by mean radius and relative width. histogram: by radii
+    and shares.
+/particles/species/*/distribution/by | one of number, volume | What mean, width or shares are of: the number
+    of the spheres, or their volume.
+/particles/species/*/distribution/mean_radius | number > 0; in length; if form lognormal, uniform, gaussian |
+    Mean radius; not of a histogram.
+/particles/species/*/distribution/relative_width | number > 0 and <= 1; if form lognormal, uniform, gaussian |
+    Standard deviation of the radius over its mean, at most 1 (uniform: 0.55, gaussian: 0.32); not of a
+    histogram.
+/particles/species/*/distribution/classes? | integer >= 1 and <= {0}; if form lognormal, uniform, gaussian |
+    Number of sizes; 16 unless given. Not of a histogram, which has its own.
+/particles/species/*/distribution/radii | array of 1 to {0}; if form histogram | Radii of a histogram.
+/particles/species/*/distribution/radii/* | number > 0; in length | One radius.
+/particles/species/*/distribution/shares | array of 1 to {0}; if form histogram | Shares of a histogram, of
+    each radius, relative to each other.
+/particles/species/*/distribution/shares/* | number >= 0 | One share; a radius of share 0 has no sphere.
+)";
 
 }  // namespace
 
-Keys species_keys(const std::string& pointer) {
-  const std::string of = pointer + "/*";
-  Keys keys = {
-      block(of, "One size, or one distribution of sizes."),
-      positive(of + "/radius", "length", "Radius.", required),
-      positive(
-          of + "/volume_share", "",
-          "Share of the particles' volume, relative to the other species (the shares need not add up to 1)."),
-      positive(of + "/number_share", "",
-               "Share of the number of particles, relative to the other species (need not add up to 1)."),
-      positive(of + "/density", "mass / length^3",
-               "Mass density of these spheres; that of all unless given."),
-  };
-  const Keys more = distribution_keys(of + "/distribution");
-  keys.insert(keys.end(), more.begin(), more.end());
-  return keys;
-}
+std::string species_keys() { return fmt::format(species_rows, most_species); }
 
 // Shares are relative: they are divided by their sum.
 SpeciesList read_species(const SceneDocument& scene, const std::string& pointer) {

@@ -46,8 +46,8 @@ std::vector<SizeClass> size_classes(const SizeDistribution& distribution);
 // Each pair of sizes has constants of its own.
 inline constexpr std::size_t most_species = 256;
 
-// Of the elements of the list at `pointer`.
-Keys species_keys(const std::string& pointer);
+// Rows of the elements of /particles/species, which those of a mixture's lists share.
+std::string species_keys();
 
 struct SpeciesList {
   Particles::Shares shares = Particles::Shares::volume;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <system_error>
 
+#include "contract/documents.h"
 #include "contract/durable_file.h"
 #include "contract/errors.h"
 #include "runner/store/blame.h"
@@ -13,6 +14,12 @@
 #include "runner/store/spool.h"
 
 namespace peclet::runner {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(BundledSeed, point, seed)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Manifest, bundle, campaign, engine, engine_folder, engine_identity,
+                                   threads, lease_seconds, checkpoint_seconds, scenes, seeds, tasks)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(AttemptReport, step, message, host, process, started_at, engine)
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -36,49 +43,44 @@ std::optional<int> place_of(const Manifest& manifest, int task, const Realisatio
 
 }  // namespace
 
+const KeyTable& manifest_keys() {
+  static const KeyTable table("Seeds of a campaign that are handed over to a batch system",
+                              fmt::format(R"(
+/schema_version | integer = 1
+/bundle | string | Its name.
+/campaign | string
+/engine | array | Program and arguments, as the nodes find them.
+/engine/* | string
+/engine_folder | string | Folder in which the engine runs.
+/engine_identity | string | Identity that the engine there must have.
+/threads | integer >= 1 and <= 2147483647
+/lease_seconds, /checkpoint_seconds | number > 0
+/scenes | object | By hash of the point.
+/seeds | array | In the order in which tasks take them.
+/seeds/* | object
+/seeds/*/point | string
+/seeds/*/seed | integer >= 0 and < {}
+/tasks | array | Places in seeds, of each task.
+/tasks/* | array
+/tasks/*/* | integer >= 0 and <= 2147483647
+)",
+                                          most_realisations));
+  return table;
+}
+
 Json manifest_json(const Manifest& manifest) {
-  Json seeds = Json::array();
-  for (const BundledSeed& seed : manifest.seeds)
-    seeds.push_back({{"point", seed.point}, {"seed", seed.seed}});
-  return {{"schema_version", 1},
-          {"bundle", manifest.name},
-          {"campaign", manifest.campaign},
-          {"engine", manifest.engine},
-          {"engine_folder", manifest.engine_folder.string()},
-          {"engine_identity", manifest.engine_identity},
-          {"threads", manifest.threads},
-          {"lease_seconds", manifest.lease_seconds},
-          {"checkpoint_seconds", manifest.checkpoint_seconds},
-          {"scenes", manifest.scenes},
-          {"seeds", seeds},
-          {"tasks", manifest.tasks}};
+  Json document = manifest;
+  document["schema_version"] = 1;
+  return document;
 }
 
 Manifest read_manifest(const fs::path& path) {
-  const Json document = read_json(path);
-  try {
-    if (document.at("schema_version") != 1) {
-      throw InputError(path.string(), "/schema_version", document.at("schema_version").dump(),
-                       "this peclet reads version 1: the node needs the owner's version of peclet");
-    }
-    Manifest manifest;
-    document.at("bundle").get_to(manifest.name);
-    document.at("campaign").get_to(manifest.campaign);
-    document.at("engine").get_to(manifest.engine);
-    manifest.engine_folder = document.at("engine_folder").get<std::string>();
-    document.at("engine_identity").get_to(manifest.engine_identity);
-    document.at("threads").get_to(manifest.threads);
-    document.at("lease_seconds").get_to(manifest.lease_seconds);
-    document.at("checkpoint_seconds").get_to(manifest.checkpoint_seconds);
-    manifest.scenes = document.at("scenes");
-    document.at("tasks").get_to(manifest.tasks);
-    for (const Json& seed : document.at("seeds")) {
-      manifest.seeds.push_back({seed.at("point").get<std::string>(), seed.at("seed").get<int>()});
-    }
-    return manifest;
-  } catch (const Json::exception& error) {
-    throw InputError(path.string(), "", "", fmt::format("is no manifest of a bundle: {}", error.what()));
+  Json document = read_json(path);
+  if (document.is_object() && document.value("schema_version", Json(1)) != 1) {
+    throw InputError(path.string(), "/schema_version", shortened(document["schema_version"]),
+                     "this peclet reads version 1: the node needs the owner's version of peclet");
   }
+  return manifest_keys().validate(std::move(document), path.string()).get<Manifest>();
 }
 
 BundleFolder BundleFolder::of_manifest(const fs::path& manifest) {
@@ -130,39 +132,38 @@ std::string result_name(const BundledSeed& seed) {
 }
 
 void write_report(const fs::path& path, int place, const AttemptReport& report) {
-  const Json document{{"schema_version", 1},
-                      {"place", place},
-                      {"outcome", to_string(report.outcome)},
-                      {"step", report.step},
-                      {"exit_status", number_or_null(report.ending.status)},
-                      {"signal", number_or_null(report.ending.signal)},
-                      {"message", report.message},
-                      {"host", report.host},
-                      {"process", report.process},
-                      {"started_at", report.started_at},
-                      {"engine", report.engine}};
+  Json document = report;
+  document["schema_version"] = 1;
+  document["place"] = place;
+  document["outcome"] = to_string(report.outcome);
+  document["exit_status"] = number_or_null(report.ending.status);
+  document["signal"] = number_or_null(report.ending.signal);
   write_durably(path, document.dump(1) + '\n');
+}
+
+const KeyTable& report_keys() {
+  static const KeyTable table("How an attempt at a seed went on a node", R"(
+/schema_version | integer = 1
+/place | integer >= 0 and <= 2147483647 | Place of the seed in the manifest.
+/outcome | one of running, result, crashed, hung, garbled, refused, drained, killed, abandoned
+/step | count | The last one that was reported.
+/exit_status | integer >= -2147483648 and <= 2147483647 or null | Exit status of the engine; null if it had
+    none.
+/signal | integer >= 0 and <= 2147483647 or null | Signal that ended the engine; null if none did.
+/message, /host, /started_at | string
+/process | count
+/engine | anything | As in the result; null if it said none.
+)");
+  return table;
 }
 
 std::optional<PlacedReport> read_report(const fs::path& path) {
   if (!fs::exists(path)) return std::nullopt;
-  const Json document = read_json(path);
-  try {
-    PlacedReport placed;
-    document.at("place").get_to(placed.place);
-    AttemptReport& report = placed.report;
-    report.outcome = attempt_outcome(document.at("outcome").get<std::string>());
-    document.at("step").get_to(report.step);
-    report.ending = {optional_number(document.at("exit_status")), optional_number(document.at("signal"))};
-    document.at("message").get_to(report.message);
-    document.at("host").get_to(report.host);
-    document.at("process").get_to(report.process);
-    document.at("started_at").get_to(report.started_at);
-    report.engine = document.at("engine");
-    return placed;
-  } catch (const Json::exception& error) {
-    throw InputError(path.string(), "", "", fmt::format("is no report of an attempt: {}", error.what()));
-  }
+  const Json document = report_keys().validate(read_json(path), path.string());
+  PlacedReport placed{document["place"], document.get<AttemptReport>()};
+  placed.report.outcome = attempt_outcome(document["outcome"].get<std::string>());
+  placed.report.ending = {optional_number(document["exit_status"]), optional_number(document["signal"])};
+  return placed;
 }
 
 void publish_results(const BundleFolder& folder, const Manifest& manifest, int task) {

@@ -21,7 +21,7 @@
 #include <string>
 #include <vector>
 
-#include "contract/json.h"
+#include "contract/key_table.h"
 #include "runner/store/blame.h"
 #include "runner/store/bundle_store.h"
 #include "runner/store/campaign_directory.h"
@@ -35,7 +35,7 @@ struct BundledSeed {
 };
 
 struct Manifest {
-  std::string name, campaign;
+  std::string bundle, campaign;         // names
   std::vector<std::string> engine;      // program and arguments, as the nodes find them
   std::filesystem::path engine_folder;  // in which it runs, where the node has it
   std::string engine_identity;          // that the engine there must have
@@ -46,6 +46,7 @@ struct Manifest {
   std::vector<std::vector<int>> tasks;  // of places in `seeds`
 };
 
+const KeyTable& manifest_keys();
 Json manifest_json(const Manifest& manifest);
 // Throws InputError for a file that is absent or no manifest.
 Manifest read_manifest(const std::filesystem::path& path);
@@ -82,6 +83,7 @@ struct PlacedReport {
   int place = 0;
   AttemptReport report;
 };
+const KeyTable& report_keys();
 // Nothing when there is none. Throws InputError for a file that is no report.
 std::optional<PlacedReport> read_report(const std::filesystem::path& path);
 

@@ -188,7 +188,6 @@ std::string Bundles::free_name(const fs::path& shared) {
 
 Manifest Bundles::manifest_of(const BundleSettings& settings, const std::vector<SeedId>& seeds) const {
   Manifest manifest;
-  manifest.name = "";
   manifest.campaign = campaign_.name;
   manifest.engine = settings.engine;
   manifest.engine_folder = settings.engine_folder;
@@ -221,7 +220,7 @@ void Bundles::write(const BundleFolder& folder, const Manifest& manifest, const 
     write_durably(there, read_file(here));
   }
   const BatchTemplate scripts =
-      filled_in(settings.scripts, folder, manifest.name, tasks, manifest.threads, settings.program);
+      filled_in(settings.scripts, folder, manifest.bundle, tasks, manifest.threads, settings.program);
   for (const auto& [name, text] : scripts) write_durably(folder.script(name), text);
   write_durably(folder.script("options.json"), Json(settings.options).dump() + '\n');
   write_durably(folder.manifest(), manifest_json(manifest).dump(1) + '\n');
@@ -231,11 +230,11 @@ void Bundles::write(const BundleFolder& folder, const Manifest& manifest, const 
 // job's name, and a folder without a row was never submitted.
 std::string Bundles::make(const BundleSettings& settings, const std::vector<SeedId>& seeds) {
   Manifest manifest = manifest_of(settings, seeds);
-  manifest.name = free_name(settings.shared);
-  write(BundleFolder(settings.shared, manifest.name), manifest, settings);
+  manifest.bundle = free_name(settings.shared);
+  write(BundleFolder(settings.shared, manifest.bundle), manifest, settings);
 
   BundleRecord bundle;
-  bundle.name = manifest.name;
+  bundle.name = manifest.bundle;
   bundle.shared = settings.shared.string();
   bundle.tasks = static_cast<int>(manifest.tasks.size());
   std::vector<BundleSeedRecord> rows;

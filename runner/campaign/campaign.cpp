@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "contract/errors.h"
@@ -25,7 +24,7 @@ std::vector<Criterion> also_of(const Json& target, const std::string& leading, c
   if (!target.contains("also")) return also;
   for (const Json& written : target["also"]) {
     const std::string pointer = fmt::format("/target/also/{}", also.size());
-    Criterion criterion{written.at("observable").get<std::string>(), tolerance_of(written, file, pointer)};
+    Criterion criterion{written.at("observable").get<std::string>(), tolerance_of(written)};
     const auto is_it = [&](const Criterion& other) { return other.observable == criterion.observable; };
     if (criterion.observable == leading || std::any_of(also.begin(), also.end(), is_it)) {
       throw InputError(file, pointer + "/observable", criterion.observable,
@@ -69,16 +68,10 @@ Target aimed_at(const Json& document, const std::string& file) {
   return target_of(target["observable"].get<std::string>(), target, target["confidence"].get<double>(), file);
 }
 
-// Of how many first seeds of each point files are kept.
-int seeds_with_files(const Json& document, const std::string& file) {
+// Returns the number of first seeds of each point whose files are kept.
+int seeds_with_files(const Json& document) {
   const Json rule = document.value("keep_files", Json("all"));
-  if (rule == "all") return most_realisations;
-  if (rule == "none") return 0;
-  if (rule.is_number() && rule >= 0 && rule <= most_realisations && std::trunc(rule.get<double>()) == rule) {
-    return rule.get<int>();
-  }
-  throw InputError(file, "/keep_files", shortened(rule),
-                   fmt::format("must be \"all\", \"none\" or an integer >= 0 and <= {}", most_realisations));
+  return rule == "all" ? most_realisations : rule == "none" ? 0 : rule.get<int>();
 }
 
 // Throws InputError for a file that has a scene alone, as many begin with, and says what belongs around it.
@@ -154,7 +147,7 @@ Json to_json(const Target& target) {
 
 Target target_of(const std::string& observable, const Json& criterion, double confidence,
                  const std::string& file) {
-  Target target{observable, tolerance_of(criterion, file), confidence};
+  Target target{observable, tolerance_of(criterion), confidence};
   target.also = also_of(criterion, observable, file);
   return target;
 }
@@ -199,7 +192,7 @@ Campaign parse_campaign(const Json& written, const std::string& file) {
                     smallest_minimum));
   }
   campaign.engine = document["engine"].get<std::vector<std::string>>();
-  campaign.seeds_with_files = seeds_with_files(document, file);
+  campaign.seeds_with_files = seeds_with_files(document);
   campaign.points = sweep_points(document["scene"], read_sweep(document["sweep"], file), campaign.name, file);
   return campaign;
 }
@@ -209,145 +202,69 @@ Campaign parse_campaign(const Json& written, const std::string& file) {
 namespace {
 
 constexpr std::size_t most_further_targets = 100;
-constexpr std::size_t most_shown = 1 + most_further_targets;
 
-Key relative_tolerance(const char* pointer) {
-  return {.pointer = pointer,
-          .kind = KeyKind::number,
-          .meaning = "Half-width of the confidence interval over |mean| that is good enough; 0.05 is 5 %.",
-          .required = true,
-          .minimum = 0,
-          .maximum = 1,
-          .above_minimum = true,
-          .below_maximum = true};
-}
+// Rows of a tolerance; {0} is the target.
+constexpr const char* tolerance_rows = R"(
+/target{0}/relative_tolerance | number > 0 and < 1 | Half-width of the confidence interval over |mean| that is
+    good enough; 0.05 is 5 %.
+/target{0}/absolute_tolerance | number > 0 and <= 1e100; instead of relative_tolerance | Half-width that is
+    good enough, in the observable's own unit; for what may be zero.
+/target{0}/relative_to? | string; if relative_tolerance | {1}
+/target{0}/absolute_floor? | number > 0 and <= 1e100; if relative_tolerance | Half-width that is good enough
+    however small the mean is that relative_tolerance is a share of.
+)";
 
-Key absolute_tolerance(const char* pointer) {
-  return {.pointer = pointer,
-          .kind = KeyKind::number,
-          .meaning = "Half-width that is good enough, in the observable's own unit; for what may be zero.",
-          .instead_of = "relative_tolerance",
-          .minimum = 0,
-          .maximum = 1e100,
-          .above_minimum = true};
-}
-
-Key absolute_floor(const char* pointer) {
-  return {
-      .pointer = pointer,
-      .kind = KeyKind::number,
-      .meaning =
-          "Half-width that is good enough however small the mean is that relative_tolerance is a share of.",
-      .minimum = 0,
-      .maximum = 1e100,
-      .above_minimum = true};
-}
-
-std::vector<Key> keys() {
-  return {
-      {.pointer = "/name",
-       .kind = KeyKind::string,
-       .meaning = "What people call it: at most 100 letters, digits, dots, underscores and hyphens.",
-       .required = true},
-      {.pointer = "/scene",
-       .kind = KeyKind::object,
-       .meaning = "The scene that all points share; the engine is its judge.",
-       .required = true},
-      {.pointer = "/sweep",
-       .kind = KeyKind::array,
-       .meaning = "What differs between the points. Several entries make a grid; the last varies fastest.",
-       .default_value = Json::array()},
-      {.pointer = "/sweep/*", .kind = KeyKind::object, .meaning = "One direction of the grid."},
-      {.pointer = "/sweep/*/set",
-       .kind = KeyKind::any,
-       .meaning = "JSON pointer into the scene, or an array of pointers that are set in step.",
-       .required = true},
-      {.pointer = "/sweep/*/values",
-       .kind = KeyKind::array,
-       .meaning = "One per point; with several pointers each is an array with a value for every pointer.",
-       .required = true,
-       .minimum_items = 1},
-      {.pointer = "/target",
-       .kind = KeyKind::object,
-       .meaning = "When a point is done. Required, unless the number of realisations is fixed."},
-      {.pointer = "/target/observable",
-       .kind = KeyKind::string,
-       .meaning = "A number in the result's mean.",
-       .default_value = usual_observable},
-      relative_tolerance("/target/relative_tolerance"),
-      absolute_tolerance("/target/absolute_tolerance"),
-      {.pointer = "/target/relative_to",
-       .kind = KeyKind::string,
-       .meaning = "Another number in the result's mean, of whose |mean| relative_tolerance is a share."},
-      absolute_floor("/target/absolute_floor"),
-      {.pointer = "/target/also",
-       .kind = KeyKind::array,
-       .meaning = "Further observables; a point is done when all of them are known well enough.",
-       .maximum_items = most_further_targets},
-      {.pointer = "/target/also/*", .kind = KeyKind::object, .meaning = "One of them."},
-      {.pointer = "/target/also/*/observable",
-       .kind = KeyKind::string,
-       .meaning = "A number in the result's mean.",
-       .required = true},
-      relative_tolerance("/target/also/*/relative_tolerance"),
-      absolute_tolerance("/target/also/*/absolute_tolerance"),
-      {.pointer = "/target/also/*/relative_to", .kind = KeyKind::string, .meaning = "As for the target."},
-      absolute_floor("/target/also/*/absolute_floor"),
-      {.pointer = "/target/confidence",
-       .kind = KeyKind::number,
-       .meaning = "Of the two-sided interval: Student's t, and of shares Clopper and Pearson's.",
-       .default_value = usual_confidence,
-       .minimum = 0.5,
-       .maximum = 1,
-       .above_minimum = true,
-       .below_maximum = true},
-      {.pointer = "/realisations",
-       .kind = KeyKind::integer_or_object,
-       .meaning = "How many seeds a point may take; a number without a target: how many every point gets.",
-       .required = true,
-       .minimum = 1,
-       .maximum = most_realisations},
-      {.pointer = "/realisations/minimum",
-       .kind = KeyKind::integer,
-       .meaning =
-           "Seeds before the first look: 8 or more, because the spread of fewer is itself too uncertain to "
-           "stop by; 2 or more where it equals maximum, so that there is only one look.",
-       .required = true,
-       .minimum = 2,
-       .maximum = most_realisations},
-      {.pointer = "/realisations/maximum",
-       .kind = KeyKind::integer,
-       .meaning = "Seeds after which a point is capped; not below the minimum.",
-       .required = true,
-       .minimum = 2,
-       .maximum = most_realisations},
-      {.pointer = "/show",
-       .kind = KeyKind::array,
-       .meaning = "Where the number of realisations is fixed: numbers in the result's mean that tables show, "
-                  "the first one also charts; relative_viscosity unless given.",
-       .minimum_items = 1,
-       .maximum_items = most_shown},
-      {.pointer = "/show/*", .kind = KeyKind::string, .meaning = "One of them."},
-      {.pointer = "/keep_files",
-       .kind = KeyKind::any,
-       .meaning = "Which of the files are kept that realisations leave beside their results: \"all\" (unless "
-                  "given), \"none\", or those of so many first seeds of each point."},
-      {.pointer = "/engine",
-       .kind = KeyKind::array,
-       .meaning =
-           "Program and arguments. Without a slash it is looked for beside peclet, then on PATH, "
-           "then among peclet's own adapters (lammps_engine.py); a relative path starts at the campaign "
-           "file, in whose folder it runs.",
-       .default_value = Json::array({"peclet-engine", "serve"}),
-       .minimum_items = 1},
-      {.pointer = "/engine/*", .kind = KeyKind::string, .meaning = "A word of the command."},
-  };
-}
+constexpr const char* campaign_rows = R"(
+/name | string | What people call it: at most 100 letters, digits, dots, underscores and hyphens.
+/scene | object | The scene that all points share; the engine is its judge.
+/sweep | array; default [] | What differs between the points. Several entries make a grid; the last varies
+    fastest.
+/sweep/* | object | One direction of the grid.
+/sweep/*/set | anything | JSON pointer into the scene, or an array of pointers that are set in step.
+/sweep/*/values | array of 1 or more | One per point; with several pointers each is an array with a value for
+    every pointer.
+/target? | object | When a point is done. Required, unless the number of realisations is fixed.
+/target/observable | string; default "{observable}" | A number in the result's mean.
+{target}
+/target/also? | array of 0 to {targets} | Further observables; a point is done when all of them are known well
+    enough.
+/target/also/* | object | One of them.
+/target/also/*/observable | string | A number in the result's mean.
+{also}
+/target/confidence | number > 0.5 and < 1; default {confidence} | Of the two-sided interval: Student's t, and
+    of shares Clopper and Pearson's.
+/realisations | integer >= 1 and <= {realisations} or object | How many seeds a point may take; a number
+    without a target: how many every point gets.
+/realisations/minimum | integer >= 2 and <= {realisations} | Seeds before the first look: 8 or more, because
+    the spread of fewer is itself too uncertain to stop by; 2 or more where it equals maximum, so that there
+    is only one look.
+/realisations/maximum | integer >= 2 and <= {realisations} | Seeds after which a point is capped; not below
+    the minimum.
+/show? | array of 1 to {shown} | Where the number of realisations is fixed: numbers in the result's mean that
+    tables show, the first one also charts; relative_viscosity unless given.
+/show/* | string | One of them.
+/keep_files? | integer >= 0 and <= {realisations} or one of all, none | Which of the files are kept that
+    realisations leave beside their results: all (unless given), none, or those of this many first seeds of
+    each point.
+/engine | array of 1 or more; default ["peclet-engine","serve"] | Program and arguments. Without a slash it is
+    looked for beside peclet, then on PATH, then among peclet's own adapters (lammps_engine.py); a relative
+    path starts at the campaign file, in whose folder it runs.
+/engine/* | string | A word of the command.
+)";
 
 }  // namespace
 
 const KeyTable& campaign_keys() {
-  static const KeyTable table("A campaign of peclet", keys());
+  using fmt::arg;
+  static const KeyTable table(
+      "A campaign of peclet",
+      fmt::format(campaign_rows, arg("observable", usual_observable), arg("confidence", usual_confidence),
+                  arg("realisations", most_realisations), arg("targets", most_further_targets),
+                  arg("shown", 1 + most_further_targets),
+                  arg("target", fmt::format(tolerance_rows, "",
+                                            "Another number in the result's mean, of whose |mean| "
+                                            "relative_tolerance is a share.")),
+                  arg("also", fmt::format(tolerance_rows, "/also/*", "As for the target."))));
   return table;
 }
 

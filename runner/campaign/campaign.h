@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "contract/documents.h"
 #include "contract/json.h"
-#include "contract/key_table.h"
 #include "runner/campaign/tolerance.h"
 
 namespace peclet::runner {
@@ -64,8 +64,6 @@ Json criterion_json(const Target& target);
 // A target of these, with the tolerances of `criterion` or none. Throws InputError at /target of `file`.
 Target target_of(const std::string& observable, const Json& criterion, double confidence,
                  const std::string& file = "");
-// The largest maximum that a campaign can have: seeds are below it.
-constexpr int most_realisations = 1'000'000;
 
 struct Campaign {
   std::string name;

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "contract/errors.h"
-#include "contract/key_table.h"
 #include "runner/campaign/number_text.h"
 
 namespace peclet::runner {
@@ -17,10 +15,6 @@ constexpr const char* relative_key = "relative_tolerance";
 constexpr const char* absolute_key = "absolute_tolerance";
 constexpr const char* measure_key = "relative_to";
 constexpr const char* floor_key = "absolute_floor";
-
-bool has_number(const Json& target, const char* key) {
-  return target.contains(key) && target[key].is_number();
-}
 
 }  // namespace
 
@@ -71,24 +65,13 @@ Json to_json(const Tolerance& tolerance) {
   return json;
 }
 
-Tolerance tolerance_of(const Json& target, const std::string& file, const std::string& pointer) {
-  // A file of a campaign with a target must have one of the two; what is stored for a fixed number has
-  // neither.
-  if (!target.contains(relative_key) && !target.contains(absolute_key)) return Tolerance::none();
-  if (has_number(target, relative_key)) {
-    Tolerance tolerance(target[relative_key].get<double>());
-    tolerance.relative_to = target.value(measure_key, "");
-    tolerance.floor = target.value(floor_key, 0.0);
-    return tolerance;
-  }
-  for (const char* const key : {measure_key, floor_key}) {
-    if (!target.contains(key)) continue;
-    throw InputError(file, pointer + '/' + key, shortened(target[key]),
-                     fmt::format("must not be given beside {}", absolute_key));
-  }
-  if (has_number(target, absolute_key)) return Tolerance::absolute(target[absolute_key].get<double>());
-  throw InputError(file, pointer, shortened(target),
-                   fmt::format("must have {} or {}", relative_key, absolute_key));
+Tolerance tolerance_of(const Json& target) {
+  if (target.contains(absolute_key)) return Tolerance::absolute(target[absolute_key].get<double>());
+  if (!target.contains(relative_key)) return Tolerance::none();
+  Tolerance tolerance(target[relative_key].get<double>());
+  tolerance.relative_to = target.value(measure_key, "");
+  tolerance.floor = target.value(floor_key, 0.0);
+  return tolerance;
 }
 
 }  // namespace peclet::runner

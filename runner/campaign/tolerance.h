@@ -50,9 +50,7 @@ std::string width_text(const Tolerance& tolerance, double half_width, double mea
 Json to_json(const Tolerance& tolerance);
 // Requires a tolerance.
 const char* key_of(const Tolerance& tolerance);
-// Reads a tolerance from the keys of to_json(). Throws InputError at its place in the file, /target/also/0,
-// for a value that is no number, or an absolute tolerance that says what it is relative to.
-Tolerance tolerance_of(const Json& target, const std::string& file = "",
-                       const std::string& pointer = "/target");
+// Reads a tolerance from the keys of to_json(), of campaign_keys(). Throws Json::exception for other values.
+Tolerance tolerance_of(const Json& target);
 
 }  // namespace peclet::runner

@@ -10,9 +10,11 @@
 
 #include "contract/frames.h"
 #include "contract/json.h"
+#include "contract/sha256.h"
 #include "runner/campaign/quoting.h"
 #include "runner/engines/stop_signals.h"
 #include "runner/engines/worker_process.h"
+#include "runner/store/realisation_result.h"
 
 namespace peclet::runner {
 namespace {
@@ -57,8 +59,8 @@ class Trial {
     if (const auto* progressed = std::get_if<Progressed>(&event)) return hear(*progressed);
     if (const auto* spooled = std::get_if<ResultSpooled>(&event)) {
       found_.seconds.reset();
-      const Json ending = read_json(spooled->spool).at("ending");
-      const auto cause = ending.at("cause").get<std::string>();
+      const Json ending = checked_part(read_json(spooled->spool), "")["ending"];
+      const auto cause = ending["cause"].get<std::string>();
       if (has_results(cause)) {
         found_.seconds = since_begun();
       } else {
@@ -92,7 +94,7 @@ class Trial {
   Job job(const CampaignDirectory& directory) const {
     Job job;
     job.attempt = 1;
-    job.point = "trial";
+    job.point = sha256(canonical_json(scene_));
     job.scene = scene_;
     job.checkpoint = directory.checkpoint(job.point, 0);
     job.spool = directory.spool_file(job.point, 0, 1);

@@ -9,15 +9,14 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cmath>
 #include <csignal>
 #include <system_error>
 #include <tuple>
 #include <utility>
 
+#include "contract/documents.h"
 #include "contract/errors.h"
 #include "runner/campaign/quoting.h"
-#include "runner/store/realisation_result.h"
 #include "runner/store/result_files.h"
 
 namespace peclet::runner {
@@ -95,36 +94,8 @@ constexpr std::chrono::milliseconds log_interval{100};
 constexpr std::uint64_t largest_log = 1 << 20;
 constexpr int older_logs = 2;
 
-constexpr std::array<const char*, 3> phases{"packing", "equilibration", "production"};
-
-// The most bytes that an engine may say it needs for one file: the state of 10^8 particles.
-constexpr double most_bytes = double{std::uint64_t{1} << 36};
-// Every double below it is whole or not.
-constexpr double most_steps = double{std::int64_t{1} << 53};
-
-// A whole number of a message, at least 0 and below `end`.
-std::int64_t count_in(const Json& message, const char* key, double end) {
-  const Json& value = message.at(key);
-  const double number = value.is_number() ? value.get<double>() : -1;
-  if (!(number >= 0 && number < end) || std::trunc(number) != number) {
-    throw FrameError(
-        fmt::format("\"{}\" of a message must be a whole number, at least 0 and below {:g}", key, end));
-  }
-  return value.get<std::int64_t>();
-}
-
-std::int64_t job_in(const Json& message) { return count_in(message, "job", most_steps); }
-
-double strain_in(const Json& message) {
-  const double strain = message.at("strain").get<double>();
-  if (!(std::abs(strain) <= largest_number)) throw FrameError("\"strain\" of a message is out of range");
-  return strain;
-}
-
 int phase_number(const std::string& name) {
-  const auto found = std::find(phases.begin(), phases.end(), name);
-  if (found == phases.end()) throw FrameError("unknown phase: " + name);
-  return static_cast<int>(found - phases.begin());
+  return static_cast<int>(std::ranges::find(job_phases, name) - job_phases.begin());
 }
 
 Json job_frame(const Job& job) {
@@ -142,43 +113,28 @@ Json job_frame(const Job& job) {
           {"failures", job.failures.string()}};
 }
 
-// Throws FrameError or Json::exception for a message that a worker does not send.
-WorkerEvent as_event(int worker, const Json& message) {
-  const std::string& type = message.at("type").get_ref<const std::string&>();
-  if (type == "hello") {
-    if (message.at("protocol") != 1)
-      throw FrameError("protocol " + message.at("protocol").dump() + ", not 1");
-    if (!message.at("engine").is_object()) throw FrameError("hello without an engine");
-    return Hello{worker, message.at("engine"), message.value("ahead", false)};
-  }
+// Throws FrameError for a message that a worker does not send.
+WorkerEvent as_event(int worker, Json given) {
+  const Json message = checked_frame(std::move(given));
+  const auto text = [&](const char* key) { return message[key].get<std::string>(); };
+  const auto count = [&](const char* key) { return message[key].get<std::int64_t>(); };
+  const std::string type = text("type");
+  if (type == "hello") return Hello{worker, message["engine"], message["ahead"]};
   if (type == "progress") {
-    return Progressed{worker,
-                      job_in(message),
-                      phase_number(message.at("phase").get<std::string>()),
-                      count_in(message, "step", most_steps),
-                      count_in(message, "steps", most_steps),
-                      strain_in(message)};
+    return Progressed{worker,        count("job"),   phase_number(text("phase")),
+                      count("step"), count("steps"), message["strain"].get<double>()};
   }
-  if (type == "result") {
-    return ResultSpooled{worker, job_in(message), message.at("spool").get<std::string>(),
-                         message.at("sha256").get<std::string>()};
-  }
-  if (type == "failed") {
-    return JobFailed{worker, job_in(message), plain(message.at("message").get<std::string>())};
-  }
-  if (type == "drained") {
-    return Drained{worker, job_in(message), count_in(message, "step", most_steps)};
-  }
-  if (type == "no-room") {
-    return ShortOfRoom{worker, job_in(message), message.at("path").get<std::string>(),
-                       static_cast<std::uint64_t>(count_in(message, "bytes", most_bytes))};
-  }
+  if (type == "result") return ResultSpooled{worker, count("job"), text("spool"), text("sha256")};
+  if (type == "failed") return JobFailed{worker, count("job"), plain(text("message"))};
+  if (type == "drained") return Drained{worker, count("job"), count("step")};
+  if (type == "no-room")
+    return ShortOfRoom{worker, count("job"), text("path"), static_cast<std::uint64_t>(count("bytes"))};
   throw FrameError("unexpected message: " + type);
 }
 
 }  // namespace
 
-const char* phase_name(int phase) { return phases.at(static_cast<std::size_t>(phase)); }
+const char* phase_name(int phase) { return job_phases.at(static_cast<std::size_t>(phase)); }
 
 void allow_open_files(int workers) {
   // A socket, a pipe and a log each; the database, its copies and what else there is.
@@ -323,12 +279,10 @@ void ProcessPool::receive(int number, std::vector<WorkerEvent>& events) {
 void ProcessPool::hear(int number, std::vector<WorkerEvent>& events) {
   Worker& worker = *workers_[static_cast<std::size_t>(number)];
   try {
-    while (const std::optional<Json> message = worker.decoder.next())
-      events.push_back(as_event(number, *message));
+    while (std::optional<Json> message = worker.decoder.next())
+      events.push_back(as_event(number, std::move(*message)));
     return;
   } catch (const FrameError& error) {
-    events.emplace_back(Garbled{number, plain(error.what())});
-  } catch (const Json::exception& error) {
     events.emplace_back(Garbled{number, plain(error.what())});
   }
   worker.process.kill();

@@ -72,9 +72,9 @@ std::optional<int> Board::place_of(std::int64_t point_id) const {
   return known == points_.end() ? std::nullopt : known->place;
 }
 
-void Board::add_cost(int place, std::optional<double> wall_seconds, std::optional<double> cpu_seconds) {
-  if (wall_seconds) forecasts_[static_cast<std::size_t>(place)].cost.add(*wall_seconds);
-  if (cpu_seconds) processor_[static_cast<std::size_t>(place)].add(*cpu_seconds);
+void Board::add_cost(int place, double wall_seconds, double cpu_seconds) {
+  forecasts_[static_cast<std::size_t>(place)].cost.add(wall_seconds);
+  processor_[static_cast<std::size_t>(place)].add(cpu_seconds);
   tell_cost(place);
 }
 

@@ -51,7 +51,7 @@ class Board {
   const Scheduler& scheduler() const { return *scheduler_; }
 
   // A seed of the point has ended that took so long; the scheduler hears of the new mean.
-  void add_cost(int place, std::optional<double> wall_seconds, std::optional<double> cpu_seconds);
+  void add_cost(int place, double wall_seconds, double cpu_seconds);
   // Mean wall time of the point's seeds; nothing while there are none.
   std::optional<double> wall_seconds(int place) const;
   // A worker has the seed from now on, and then no more.

@@ -75,7 +75,83 @@ Json json_of(const RunEnded& event) {
           {"message", event.message.empty() ? Json(nullptr) : Json(event.message)}};
 }
 
+// {point}: rows of a point; {look}: of a look.
+constexpr const char* event_rows = R"(
+/at | string | UTC, as 2026-11-27T07:31:15Z.
+/schema_version | integer = 1
+
+-- begin | The first line.
+/campaign, /directory | string
+/process, /points, /workers, /threads | count
+
+-- progress | How far the run is, once in five seconds.
+/points, /decided, /converged, /seeds_ended, /seeds_wanted, /workers, /busy, /results | count
+/elapsed_seconds | number
+/seconds_to_go | object or null
+/seconds_to_go/low, /seconds_to_go/likely, /seconds_to_go/high | number
+
+-- seed-ended | A seed has ended, with a value or without.
+{point}
+/seed | count
+/cause | string
+/value, /cpu_seconds | number or null
+
+-- attempt-failed | An attempt gave no result; the seed is tried again unless it is given up.
+{point}
+/seed | count
+/outcome | one of crashed, hung, garbled, refused, drained, killed, abandoned
+/blamed, /given_up | true or false
+/message | string
+
+-- look | A closed cohort was looked at.
+{point}
+{look}
+
+-- decided | The point needs no more seeds.
+{point}
+/verdict | one of converged, converged-with-losses, capped, failed, complete, complete-with-losses
+{look}
+
+-- shortage-begins | The run pauses: a disk or quota is full or fails, or another program has locked the
+    database. May come again, of something else in its way, before shortage-ends.
+/message | string
+
+-- shortage-ends | Nothing is in the run's way any more.
+
+-- end | The last line.
+/exit_code | count
+/message | string or null
+)";
+
+constexpr const char* point_rows = R"(
+/point | object
+/point/hash | hash
+/point/label | string
+)";
+
+constexpr const char* look_rows = R"(
+/look | object | As in the export.
+/look/count, /look/seeds, /look/lost | count
+/look/mean, /look/standard_error, /look/half_width, /look/skewness | number or null
+/look/transient | true or false or null
+/look/near_maximum | true or false
+/look/repeated_seeds | array
+/look/repeated_seeds/* | count
+/look/verdict | one of more, converged, converged-with-losses, capped, failed, complete, complete-with-losses
+/look/observables? | array | If there are several.
+/look/uncontrolled | object
+/look/uncontrolled/count | count
+/look/uncontrolled/mean, /look/uncontrolled/standard_error, /look/uncontrolled/half_width | number or null
+)";
+
 }  // namespace
+
+const KindTables& event_keys() {
+  static const KindTables tables(
+      "One line of peclet run --jsonl", "event",
+      fmt::format(event_rows, fmt::arg("point", point_rows), fmt::arg("look", look_rows)));
+  return tables;
+}
 
 Json event_json(const RunEvent& event) {
   Json json = std::visit([](const auto& happened) { return json_of(happened); }, event);

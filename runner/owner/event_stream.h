@@ -7,10 +7,13 @@
 #include <cstddef>
 #include <string>
 
-#include "contract/json.h"
+#include "contract/key_table.h"
 #include "runner/owner/run_listener.h"
 
 namespace peclet::runner {
+
+// Keys of a line, by its "event".
+const KindTables& event_keys();
 
 // Without "at". Numbers that do not exist are null.
 Json event_json(const RunEvent& event);

@@ -414,9 +414,8 @@ namespace {
 constexpr std::size_t files_at_a_time = 64;
 constexpr int most_told = 10;
 
-std::optional<double> cost_of(const RealisationResult& result, const char* which) {
-  const Json& seconds = result.document.at("cost").at(which);
-  return seconds.is_number() ? std::optional(seconds.get<double>()) : std::nullopt;
+double cost_of(const RealisationResult& result, const char* which) {
+  return result.document["cost"][which].get<double>();
 }
 
 // Whether it is the result's own fault; what fails for want of room or of a sound disk is not.
@@ -491,7 +490,7 @@ void Ledger::take(const RealisationResult& result, const fs::path& spool) {
   if (result.completed()) note_lacking(result);
   const bool is_lost = stored.outcome.is_lost();
   const std::optional<double> value = is_lost ? std::nullopt : std::optional(stored.outcome.value);
-  const std::optional<double> cpu_seconds = cost_of(result, "cpu_seconds");
+  const double cpu_seconds = cost_of(result, "cpu_seconds");
   changes_.after.tell(SeedEnded{point_name(*place), result.seed, stored.cause, value, cpu_seconds});
   if (!board_.has_seeds()) return;  // load() finds it
   changes_.are_on_board = true;
@@ -564,7 +563,7 @@ bool Ledger::take_result(const GivenSeed& given_seed, const std::string& sha256,
   why = take_whole(given_seed.job.spool, read, [&](const RealisationResult& result) {
     take(result, given_seed.job.spool);
     seeds_.end_attempt(given_seed.job.attempt, {AttemptOutcome::result, step});
-    changes_.spent_seconds += std::min(held_seconds, cost_of(result, "cpu_seconds").value_or(held_seconds));
+    changes_.spent_seconds += std::min(held_seconds, cost_of(result, "cpu_seconds"));
     leave(given_seed);
   });
   return why.empty();

@@ -7,14 +7,20 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
-#include <limits>
 #include <random>
 #include <system_error>
+#include <utility>
 
 #include "contract/durable_file.h"
 #include "contract/guarded_file.h"
 
 namespace peclet::runner {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TakeOver, file, sha256)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Prioritise, points, priority)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Cancel, points, undo)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Retry, points, seeds)
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -32,92 +38,46 @@ std::string new_name() {
                      microsecond, getpid(), std::random_device{}());
 }
 
-Json as_json(const TakeOver& wish) {
-  return {{"verb", "take-over"}, {"file", wish.file.string()}, {"sha256", wish.sha256}};
-}
-Json as_json(const Prioritise& wish) {
-  return {{"verb", "prioritise"}, {"points", wish.points}, {"priority", wish.priority}};
-}
-Json as_json(const Cancel& wish) {
-  return {{"verb", "cancel"}, {"points", wish.points}, {"undo", wish.undo}};
-}
-Json as_json(const Retry& wish) {
-  return {{"verb", "retry"}, {"points", wish.points}, {"seeds", wish.seeds}};
-}
+constexpr const char* verbs[] = {"take-over", "prioritise", "cancel", "retry"};  // in the order of Wish
 
-// Judged before anything is done with it: requests are written by this program, but lie where others may
-// write, too.
-[[noreturn]] void refuse(const std::string& key, const std::string& allowed) {
-  throw RequestError(fmt::format("/{}: must be {}", key, allowed));
-}
-
-const Json& member(const Json& json, const std::string& key) {
-  const auto found = json.find(key);
-  if (found == json.end()) refuse(key, "there");
-  return *found;
-}
-
-std::string text(const Json& json, const std::string& key) {
-  const Json& value = member(json, key);
-  if (!value.is_string()) refuse(key, "a text");
-  return value;
-}
-
-int whole_number(const Json& value, const std::string& key, int least) {
-  const bool is_small = value.is_number_unsigned()
-                            ? value.get<std::uint64_t>() <= std::numeric_limits<int>::max()
-                            : value.is_number_integer() && value.get<std::int64_t>() >= least;
-  if (!is_small) {
-    refuse(key, fmt::format("a whole number from {} to {}", least, std::numeric_limits<int>::max()));
-  }
-  return value.get<int>();
-}
-
-const Json& list(const Json& json, const std::string& key) {
-  const Json& value = member(json, key);
-  if (!value.is_array()) refuse(key, "a list");
-  return value;
-}
-
-std::vector<std::string> names(const Json& json, const std::string& key) {
-  std::vector<std::string> names;
-  for (const Json& value : list(json, key)) {
-    if (!value.is_string()) refuse(key, "a list of texts");
-    names.push_back(value);
-  }
-  return names;
-}
-
-std::vector<int> seeds(const Json& json, const std::string& key) {
-  std::vector<int> seeds;
-  for (const Json& value : list(json, key)) seeds.push_back(whole_number(value, key, 0));
-  return seeds;
-}
-
-bool truth(const Json& json, const std::string& key) {
-  const Json& value = member(json, key);
-  if (!value.is_boolean()) refuse(key, "true or false");
-  return value;
-}
-
+// Requires a document that request_keys() has checked.
 Wish wish_of(const Json& json) {
-  if (!json.is_object()) refuse("", "an object");
-  if (const Json& version = member(json, "version"); version != request_version) {
-    throw RequestError(
-        fmt::format("is of another version than {}, which this peclet knows", request_version));
-  }
-  const std::string verb = text(json, "verb");
-  if (verb == "take-over") return TakeOver{text(json, "file"), text(json, "sha256")};
-  if (verb == "prioritise") {
-    const int priority = whole_number(member(json, "priority"), "priority", std::numeric_limits<int>::min());
-    return Prioritise{names(json, "points"), priority};
-  }
-  if (verb == "cancel") return Cancel{names(json, "points"), truth(json, "undo")};
-  if (verb == "retry") return Retry{names(json, "points"), seeds(json, "seeds")};
-  throw RequestError("/verb: asks for what this peclet does not know");
+  const std::string& verb = json["verb"].get_ref<const std::string&>();
+  if (verb == verbs[0]) return json.get<TakeOver>();
+  if (verb == verbs[1]) return json.get<Prioritise>();
+  if (verb == verbs[2]) return json.get<Cancel>();
+  return json.get<Retry>();
 }
 
 }  // namespace
+
+const KindTables& request_keys() {
+  static const KindTables tables("What a verb asks of the owner of a campaign: a file in requests/", "verb",
+                                 R"(
+/version | integer = 1
+
+-- take-over | The campaign is that of its file from now on.
+/file | string
+/sha256 | string | Of the text whose scenes the engine has been asked about.
+
+-- prioritise | Points come earlier or later.
+/points | array | Labels, or digits of the hash.
+/points/* | string
+/priority | integer >= -2147483648 and <= 2147483647
+
+-- cancel | Points get no more seeds; with undo they do.
+/points | array | Labels, or digits of the hash.
+/points/* | string
+/undo | true or false
+
+-- retry | Seeds that were given up are queued again; all of them if none is named.
+/points | array | Labels, or digits of the hash.
+/points/* | string
+/seeds | array
+/seeds/* | integer >= 0 and <= 2147483647
+)");
+  return tables;
+}
 
 fs::path request_file(const CampaignDirectory& directory, const std::string& name) {
   return directory.requests() / (name + ".json");
@@ -125,7 +85,8 @@ fs::path request_file(const CampaignDirectory& directory, const std::string& nam
 
 Request write_request(const CampaignDirectory& directory, const Wish& wish) {
   Request request{new_name(), wish};
-  Json json = std::visit([](const auto& asked) { return as_json(asked); }, wish);
+  Json json = std::visit([](const auto& asked) { return Json(asked); }, wish);
+  json["verb"] = verbs[wish.index()];
   json["version"] = request_version;
   require_own_folder(directory.requests());
   fs::create_directories(directory.requests());
@@ -135,7 +96,12 @@ Request write_request(const CampaignDirectory& directory, const Wish& wish) {
 
 Request read_request(const fs::path& file) {
   try {
-    return {file.stem().string(), wish_of(parse_json(read_regular(file, largest_request), ""))};
+    Json json = parse_json(read_regular(file, largest_request), "");
+    if (json.is_object() && json.value("version", Json(request_version)) != request_version) {
+      throw RequestError(
+          fmt::format("is of another version than {}, which this peclet knows", request_version));
+    }
+    return {file.stem().string(), wish_of(request_keys().validate(std::move(json), ""))};
   } catch (const UnsuitableFile& error) {
     throw RequestError(fmt::format("{}, and {}", error.value(), error.allowed()));
   } catch (const InputError& error) {

@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "contract/json.h"
+#include "contract/key_table.h"
 #include "runner/store/campaign_directory.h"
 
 namespace peclet::runner {
@@ -38,6 +38,9 @@ struct Request {
   std::string name;  // of the file, without .json: names are in order of time, and no two are equal
   Wish wish;
 };
+
+// Keys of a request, by its "verb".
+const KindTables& request_keys();
 
 // The file is no request that this program can read.
 class RequestError : public std::runtime_error {

@@ -5,18 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
-#include <initializer_list>
 #include <optional>
 #include <set>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "contract/documents.h"
 #include "contract/errors.h"
 #include "contract/frames.h"
 #include "contract/sha256.h"
-#include "runner/campaign/campaign.h"
 #include "runner/campaign/quoting.h"
 #include "runner/statistics/quantities.h"
 #include "runner/store/result_files.h"
@@ -49,150 +47,27 @@ std::string excess_of(std::string_view text) {
 
 namespace {
 
-constexpr std::size_t longest_word = 64;
-constexpr std::size_t longest_name = 120;                          // of a version or an instruction set
-constexpr std::int64_t largest_count = std::int64_t{1} << 53;      // every double below it is whole or not
-constexpr const char* lower_case = "abcdefghijklmnopqrstuvwxyz-";  // of a cause
-constexpr const char* lower_or_digit = "abcdefghijklmnopqrstuvwxyz0123456789-";
-
 [[noreturn]] void refuse(const std::string& pointer, std::string_view allowed) {
   throw ResultError(fmt::format("{}: {}", plain(pointer, longest_name), allowed));
 }
 
-// A place in the document and what is there.
-struct Place {
-  const Json& value;
-  std::string pointer;
-
-  // Nothing is refused that is absent.
-  template <typename Judge>
-  void with(const std::string& key, const Judge& judge) const {
-    const auto found = value.find(key);
-    if (found != value.end()) judge(Place{*found, pointer + '/' + key});
-  }
-  Place at(const std::string& key) const {
-    if (!value.is_object()) refuse(pointer, "must be an object");
-    const auto found = value.find(key);
-    if (found == value.end()) refuse(pointer + '/' + key, "is missing");
-    return {*found, pointer + '/' + key};
-  }
-};
-
-void must_be_object(const Place& place) {
-  if (!place.value.is_object()) refuse(place.pointer, "must be an object");
-}
-
-// How large it may be is judged for all numbers together.
-void must_be_number(const Place& place) {
-  if (!place.value.is_number()) refuse(place.pointer, "must be a number");
-}
-
-void must_be_number_or_null(const Place& place) {
-  if (!place.value.is_null() && !place.value.is_number()) refuse(place.pointer, "must be a number or null");
-}
-
-void must_be_seconds(const Place& place) {
-  must_be_number(place);
-  if (place.value.get<double>() < 0) refuse(place.pointer, "must be a number >= 0");
-}
-
-void must_be_count(const Place& place, std::int64_t end) {
-  const double number = place.value.is_number() ? place.value.get<double>() : -1;
-  if (!(number >= 0 && number < static_cast<double>(end)) || std::trunc(number) != number) {
-    refuse(place.pointer, fmt::format("must be a whole number, at least 0 and below {}", end));
-  }
-}
-
-void must_be_step(const Place& place) { must_be_count(place, largest_count); }
-
-void must_be_text_or_null(const Place& place) {
-  if (!place.value.is_null() && !place.value.is_string()) refuse(place.pointer, "must be text or null");
-}
-
-const std::string& text_at(const Place& place) {
-  if (!place.value.is_string()) refuse(place.pointer, "must be text");
-  return place.value.get_ref<const std::string&>();
-}
-
-void must_be_text(const Place& place) { text_at(place); }
-
-// Each engine has its own words for how a realisation can go wrong, and for what it warns of.
-const std::string& word_at(const Place& place, const char* letters) {
-  const std::string& word = text_at(place);
-  const bool is_word = !word.empty() && word.size() <= longest_word && word.front() != '-' &&
-                       word.find_first_not_of(letters) == std::string::npos;
-  if (!is_word) {
-    refuse(place.pointer,
-           fmt::format("must be a word of at most {} of the characters {}", longest_word, letters));
-  }
-  return word;
-}
-
-void must_be_hash(const Place& place) {
-  const std::string& text = text_at(place);
-  if (text.size() != 64 || text.find_first_not_of("0123456789abcdef") != std::string::npos) {
-    refuse(place.pointer, "must be a SHA-256 in lower-case hexadecimal");
-  }
-}
-
-bool is_name(const std::string& text) { return !text.empty() && plain(text, longest_name) == text; }
-
-void must_be_name(const Place& place) {
-  if (is_name(text_at(place))) return;
-  refuse(place.pointer,
-         fmt::format("must be a name of 1 to {} bytes without control characters", longest_name));
-}
-
-void must_be_warning(const Place& place) {
-  must_be_object(place);
-  word_at(place.at("code"), lower_or_digit);
-  must_be_text(place.at("message"));
-}
-
-void check_warnings(const Place& warnings) {
-  if (!warnings.value.is_array()) refuse(warnings.pointer, "must be a list");
-  for (std::size_t i = 0; i < warnings.value.size(); ++i) {
-    must_be_warning({warnings.value[i], fmt::format("{}/{}", warnings.pointer, i)});
-  }
-}
-
-void check_members(const Place& object, void (*judge)(const Place&)) {
-  must_be_object(object);
-  for (const auto& [key, value] : object.value.items()) judge({value, object.pointer + '/' + key});
+void must_have_name(const std::string& name, const std::string& pointer) {
+  if (is_name(name)) return;
+  refuse(pointer, fmt::format("must have a name of 1 to {} bytes without control characters", longest_name));
 }
 
 // What a mean consists of is the engine's business; the runner takes numbers from it by their paths, and
 // shows these.
-void check_mean(const Place& mean) {
-  for (const auto& [name, value] : mean.value.items()) {
+void check_mean(const Json& mean, const std::string& pointer) {
+  for (const auto& [name, value] : mean.items()) {
     if (value.is_number()) continue;
-    const std::string pointer = mean.pointer + '/' + name;
-    if (!value.is_null() && !value.is_structured()) {
-      refuse(pointer, "must be a number, null, a list or an object");
-    }
-    if (value.is_structured()) check_mean({value, pointer});
+    const std::string below = pointer + '/' + name;
+    if (!value.is_null() && !value.is_structured())
+      refuse(below, "must be a number, null, a list or an object");
+    if (value.is_structured()) check_mean(value, below);
   }
-  if (!mean.value.is_object()) return;
-  for (const auto& [name, value] : mean.value.items()) {
-    if (is_name(name)) continue;
-    refuse(mean.pointer + '/' + name,
-           fmt::format("must have a name of 1 to {} bytes without control characters", longest_name));
-  }
-}
-
-void check_axes(const Place& axes) {
-  if (!axes.value.is_array()) refuse(axes.pointer, "must be a list");
-  for (std::size_t i = 0; i < axes.value.size(); ++i) {
-    const Place axis{axes.value[i], fmt::format("{}/{}", axes.pointer, i)};
-    const Place values = axis.at("values");
-    for (const char* const key : {"name", "unit"}) must_be_name(axis.at(key));
-    if (!values.value.is_array() || values.value.empty())
-      refuse(values.pointer, "must be a list of one or more");
-    for (std::size_t k = 0; k < values.value.size(); ++k) {
-      const Place value{values.value[k], fmt::format("{}/{}", values.pointer, k)};
-      if (!value.value.is_number()) must_be_name(value);
-    }
-  }
+  if (!mean.is_object()) return;
+  for (const auto& [name, value] : mean.items()) must_have_name(name, pointer + '/' + name);
 }
 
 // Lists within lists as long as the axes from `axis` on, of numbers and nulls.
@@ -201,29 +76,6 @@ bool has_shape(const Json& value, const std::vector<QuantityAxis>& axes, std::si
   return value.is_array() && value.size() == axes[axis].values.size() &&
          std::all_of(value.begin(), value.end(),
                      [&](const Json& element) { return has_shape(element, axes, axis + 1); });
-}
-
-void check_description(const Place& about) {
-  must_be_name(about.at("unit"));
-  if (const Place symbol = about.at("symbol"); !text_at(symbol).empty()) must_be_name(symbol);
-  about.with("axes", check_axes);
-  const std::string& estimator = text_at(about.at("estimator"));
-  if (estimator != "mean" && estimator != "ratio" && estimator != "share")
-    refuse(about.pointer + "/estimator", "must be mean, ratio or share");
-  if (estimator == "share") {
-    for (const char* const key : {"axes", "control"}) {
-      about.with(key, [](const Place& place) {
-        refuse(place.pointer, "must not be there beside the estimator share");
-      });
-    }
-  }
-  if (estimator == "ratio") {
-    for (const char* const key : {"numerator", "denominator"}) must_be_name(about.at(key));
-  }
-  about.with("control", [](const Place& control) {
-    text_at(control.at("quantity"));
-    must_be_number(control.at("mean"));
-  });
 }
 
 // Estimates have room for as many numbers as the axes say, whatever the mean has.
@@ -275,52 +127,35 @@ void check_values(const Quantity& quantity, const std::vector<Quantity>& all, co
     for (const QuantityAxis& axis : of.axes) lengths.push_back(axis.values.size());
     return lengths;
   };
-  if (!is_another || control->ratio || quantity.ratio || sizes(*control) != sizes(quantity)) {
+  if (!is_another || control->ratio || sizes(*control) != sizes(quantity)) {
     refuse(fmt::format("/quantities/{}/control/quantity", quantity.name),
            "must be another quantity of the same shape, both of the estimator mean");
   }
 }
 
-void check_quantities(const Place& quantities, const Json& document) {
-  if (quantities.value.is_null()) return;
-  must_be_object(quantities);
-  if (quantities.value.empty()) return;  // the engine does not say
-  if (!document.at("mean").is_object()) refuse(quantities.pointer, "must be null after this ending");
-  for (const auto& [name, value] : quantities.value.items()) {
-    const Place about{value, quantities.pointer + '/' + name};
-    if (!is_name(name)) {
-      refuse(about.pointer,
-             fmt::format("must have a name of 1 to {} bytes without control characters", longest_name));
-    }
-    must_be_object(about);
-    check_description(about);
-  }
+void check_quantities(const Json& document) {
+  const auto quantities = document.find("quantities");
+  if (quantities == document.end() || quantities->empty()) return;  // the engine does not say
+  if (!document["mean"].is_object()) refuse("/quantities", "must be null after this ending");
+  for (const auto& [name, about] : quantities->items()) must_have_name(name, "/quantities/" + name);
   const std::vector<Quantity> all = quantities_of(document);
   check_sizes(all);
-  for (const Quantity& quantity : all) check_values(quantity, all, document.at("mean"));
+  for (const Quantity& quantity : all) check_values(quantity, all, document["mean"]);
 }
 
-void check_ending(const Place& document) {
-  const Place ending = document.at("ending");
-  must_be_object(ending);
-  const bool completed = has_results(word_at(ending.at("cause"), lower_case));
-  must_be_step(ending.at("step"));
-  ending.with("message", must_be_text);
-  ending.with("state", must_be_text_or_null);
-  // A realisation that could not be packed has no final state.
-  const Place state = document.at("final_state_sha256");
-  if (completed || !state.value.is_null()) must_be_hash(state);
+void check_ending(const Json& document) {
+  const bool completed = has_results(document["ending"]["cause"].get<std::string>());
   for (const char* const part : {"mean", "blocks"}) {
-    const Place about = document.at(part);
-    if (completed ? !about.value.is_object() : !about.value.is_null()) {
-      refuse(about.pointer, completed ? "must be an object" : "must be null after this ending");
-    }
+    if (document[part].is_object() == completed) continue;
+    refuse(std::string("/") + part, completed ? "must be an object" : "must be null after this ending");
   }
   if (!completed) return;
-  check_mean(document.at("mean"));
-  const auto descriptions = document.value.find("quantities");
-  if (descriptions == document.value.end() || descriptions->empty())
-    check_paths(quantities_of(document.value));
+  // A realisation that could not be packed has no final state.
+  if (document["final_state_sha256"].is_null())
+    refuse("/final_state_sha256", "must be a SHA-256 after this ending");
+  check_mean(document["mean"], "/mean");
+  const auto descriptions = document.find("quantities");
+  if (descriptions == document.end() || descriptions->empty()) check_paths(quantities_of(document));
 }
 
 // The pointer of a number that is too large; the reader has refused those that are not finite. It is put
@@ -342,44 +177,30 @@ std::optional<std::string> too_large(const Json& value) {
 
 ResultError::ResultError(const std::string& message) : std::runtime_error(plain(message)) {}
 
-std::string check_shape(const Json& document) {
-  const Place whole{document, ""};
-  if (!document.is_object()) throw ResultError("must be an object");
-  if (whole.at("schema_version").value != 1) refuse("/schema_version", "must be 1");
-  must_be_hash(whole.at("point"));
-  must_be_count(whole.at("seed"), most_realisations);
-  check_ending(whole);
-  for (const char* const which : {"cpu_seconds", "wall_seconds"}) must_be_seconds(whole.at("cost").at(which));
-  whole.with("steps", [](const Place& steps) { check_members(steps, must_be_step); });
-  for (const char* const part : {"strain", "time", "derived"}) {
-    whole.with(part, [](const Place& members) { check_members(members, must_be_number_or_null); });
+Json checked_part(Json part, const std::string& root) {
+  try {
+    return result_keys().validate(std::move(part), "", root);
+  } catch (const InputError& error) {
+    throw ResultError(error.within("", root).what());
   }
-  for (const char* const key : {"timestep", "statistical_inefficiency", "largest_overlap"}) {
-    whole.with(key, must_be_number_or_null);
-  }
-  whole.with("method", must_be_text_or_null);
-  whole.with("units", must_be_text);
-  whole.with("warnings", check_warnings);
-  whole.with("files", [](const Place& files) { check_left_files(files.value); });
-  whole.with("quantities", [&](const Place& quantities) { check_quantities(quantities, document); });
-  whole.with("gate", [](const Place& gate) {
-    if (!gate.value.is_null()) must_be_object(gate);
-  });
-  const std::string engine = engine_identity(whole.at("engine").value);
+}
+
+std::string check_shape(Json& document) {
+  document = checked_part(std::move(document), "");
+  check_ending(document);
+  check_left_files(document.value("files", Json::array()));
+  check_quantities(document);
   if (const std::optional<std::string> pointer = too_large(document)) {
     refuse(*pointer, fmt::format("must be a number between -{0:g} and {0:g}", largest_number));
   }
-  return engine;
+  return engine_identity(document["engine"]);
 }
 
 std::string engine_identity(const Json& engine) {
-  const Place place{engine, "/engine"};
-  const Place version = place.at("version"), set = place.at("instruction_set");
-  const Place hash = place.at("binary_sha256");
-  must_be_name(version);
-  must_be_name(set);
-  must_be_hash(hash);
-  return fmt::format("{} ({}) sha256 {}", text_at(version), text_at(set), text_at(hash));
+  const Json checked = checked_part(engine, "/engine");
+  return fmt::format("{} ({}) sha256 {}", checked["version"].get<std::string>(),
+                     checked["instruction_set"].get<std::string>(),
+                     checked["binary_sha256"].get<std::string>());
 }
 
 namespace {

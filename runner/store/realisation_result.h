@@ -24,8 +24,7 @@ constexpr int deepest_result = 200;
 // "" when the text keeps within these bounds, otherwise what it exceeds. It need not be JSON.
 std::string excess_of(std::string_view text);
 
-// What a result must be before anything of it is stored: schema/result.schema.json, as far as the runner
-// reads it.
+// Checks of a result before anything of it is stored: result_keys(), and what no table of keys can say.
 //
 // Results come from outside: an engine may lie, and a file may have been put where results are looked for.
 // Whatever is wrong with one is found here, in one go and without a trace; who takes a result that has passed
@@ -37,13 +36,13 @@ class ResultError : public std::runtime_error {
   explicit ResultError(const std::string& message);
 };
 
-// No number of a result is larger: so no sum, square or cube of a campaign's values overflows.
-constexpr double largest_number = 1e100;
+// Returns the part of a result at the pointer `root`, such as "/engine". Throws ResultError if it does not
+// match its keys.
+Json checked_part(Json part, const std::string& root);
 
 // Throws ResultError naming the first value that is not as it must be, and what is allowed. Realisations
-// with results have means, others none. Members that engines did not always write may be absent. Returns
-// engine_identity().
-std::string check_shape(const Json& document);
+// with results have means, others none. Returns engine_identity().
+std::string check_shape(Json& document);
 
 // Engine version, instruction set and hash of the binary: results of one point share it.
 // Throws ResultError when one of the three is missing or none.

@@ -33,43 +33,20 @@ bool is_plain_file_name(const std::string& name) {
          name.find("..") == std::string::npos && !name.ends_with(".tmp");
 }
 
-[[noreturn]] void refuse(std::size_t place, const char* key, const std::string& allowed) {
-  throw ResultError(fmt::format("/files/{}{}: {}", place, key, allowed));
-}
-
-const Json& member(const Json& file, std::size_t place, const char* key) {
-  if (!file.is_object()) refuse(place, "", "must be an object");
-  const auto found = file.find(key);
-  if (found == file.end()) refuse(place, fmt::format("/{}", key).c_str(), "is missing");
-  return *found;
-}
-
 }  // namespace
 
 void check_left_files(const Json& files) {
-  if (!files.is_array() || files.size() > most_left_files) {
-    throw ResultError(fmt::format("/files: must be a list of at most {}", most_left_files));
-  }
   std::set<std::string> names;
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    const Json& name = member(files[i], i, "name");
-    if (!name.is_string() || !is_plain_file_name(name.get_ref<const std::string&>())) {
-      refuse(
-          i, "/name",
-          fmt::format("must be a name of 1 to {} letters, digits, dots, underscores and hyphens that begins "
-                      "with a letter or digit, has no two dots in a row and does not end in .tmp",
-                      longest_left_name));
+  for (const Json& file : checked_part(files, "/files")) {
+    const std::string& name = file["name"].get_ref<const std::string&>();
+    const std::string pointer = fmt::format("/files/{}/name", names.size());
+    if (!is_plain_file_name(name)) {
+      throw ResultError(fmt::format(
+          "{}: must be a name of 1 to {} letters, digits, dots, underscores and hyphens that begins with a "
+          "letter or digit, has no two dots in a row and does not end in .tmp",
+          pointer, longest_left_name));
     }
-    if (!names.insert(name.get<std::string>()).second) refuse(i, "/name", "must not be there twice");
-    const Json& bytes = member(files[i], i, "bytes");
-    if (!bytes.is_number_integer() || bytes < 0 || bytes > largest_left_file) {
-      refuse(i, "/bytes", fmt::format("must be a whole number from 0 to {}", largest_left_file));
-    }
-    const Json& hash = member(files[i], i, "sha256");
-    const bool is_hash =
-        hash.is_string() && hash.get_ref<const std::string&>().size() == 64 &&
-        hash.get_ref<const std::string&>().find_first_not_of("0123456789abcdef") == std::string::npos;
-    if (!is_hash) refuse(i, "/sha256", "must be a SHA-256 in lower-case hexadecimal");
+    if (!names.insert(name).second) throw ResultError(pointer + ": must not be there twice");
   }
 }
 

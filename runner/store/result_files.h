@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "contract/documents.h"
 #include "contract/durable_file.h"
 #include "contract/json.h"
 #include "runner/store/campaign_directory.h"
@@ -25,9 +26,7 @@ struct LeftFile {
   std::string sha256;
 };
 
-constexpr std::size_t most_left_files = 16;
 constexpr std::size_t longest_left_name = 64;
-constexpr std::uint64_t largest_left_file = std::uint64_t{1} << 32;
 
 // Throws ResultError for the first thing in the member "files" of a result that is not as it must be.
 void check_left_files(const Json& files);

@@ -2,9 +2,6 @@
 
 #include <algorithm>
 
-#include "contract/frames.h"
-#include "runner/campaign/quoting.h"
-
 namespace peclet::runner {
 namespace {
 
@@ -12,21 +9,6 @@ namespace {
 std::string text_in(const Json& object, const char* member) {
   const auto found = object.find(member);
   return found != object.end() && found->is_string() ? found->get<std::string>() : "";
-}
-
-// A number with all of its members. Throws FrameError unless they are texts that a terminal can show.
-Json checked(const Json& number) {
-  if (!number.is_object() || text_in(number, "name").empty()) {
-    throw FrameError("\"derived\" of hello must be a list of numbers, each with its name");
-  }
-  Json made;
-  for (const char* const member : {"name", "words", "symbol", "unit"}) {
-    made[member] = text_in(number, member);
-    if (plain(text_in(number, member)) != text_in(number, member)) {
-      throw FrameError("\"derived\" of hello must be without control characters");
-    }
-  }
-  return made;
 }
 
 // The schema of what lies one step below; null unless it is described.
@@ -41,13 +23,8 @@ const Json* below(const Json& schema, const std::string& step) {
 }  // namespace
 
 Vocabulary::Vocabulary(const Json& hello) {
-  if (const auto schema = hello.find("scene_schema"); schema != hello.end()) {
-    if (!schema->is_object()) throw FrameError("\"scene_schema\" of hello must be an object");
-    document_["scene_schema"] = *schema;
-  }
-  if (const auto derived = hello.find("derived"); derived != hello.end()) {
-    document_["derived"] = Json::array();
-    for (const Json& number : *derived) document_["derived"].push_back(checked(number));
+  for (const char* const member : {"scene_schema", "derived"}) {
+    if (hello.contains(member)) document_[member] = hello[member];
   }
 }
 

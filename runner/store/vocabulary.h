@@ -12,8 +12,8 @@ class Vocabulary {
  public:
   // Knows no names.
   Vocabulary() = default;
-  // From the members "scene_schema" and "derived" of a hello, both optional; other members are left out.
-  // Throws FrameError if one has another form.
+  // From the members "scene_schema" and "derived" of a checked_frame(), both optional; other members are left
+  // out.
   explicit Vocabulary(const Json& hello);
 
   // {"pointer", "words", "symbol", "unit", "meaning"}: texts, "" where the engine says nothing.

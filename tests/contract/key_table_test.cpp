@@ -8,49 +8,22 @@ namespace peclet {
 namespace {
 
 const KeyTable& table() {
-  static const KeyTable keys(
-      "Example",
-      {
-          {.pointer = "/box", .kind = KeyKind::object, .meaning = "It.", .required = true},
-          {.pointer = "/box/length",
-           .kind = KeyKind::number,
-           .meaning = "It.",
-           .required = true,
-           .minimum = 0,
-           .above_minimum = true},
-          {.pointer = "/box/cells",
-           .kind = KeyKind::integer,
-           .meaning = "It.",
-           .default_value = 4,
-           .minimum = 1,
-           .maximum = 64},
-          {.pointer = "/box/shape",
-           .kind = KeyKind::choice,
-           .meaning = "It.",
-           .default_value = "cubic",
-           .choices = {"cubic", "flat"}},
-          {.pointer = "/balls", .kind = KeyKind::array, .meaning = "It.", .minimum_items = 1},
-          {.pointer = "/balls/*", .kind = KeyKind::object, .meaning = "It."},
-          {.pointer = "/balls/*/radius",
-           .kind = KeyKind::number,
-           .meaning = "Radius.",
-           .unit = "length",
-           .required = true,
-           .minimum = 0,
-           .maximum = 1,
-           .below_maximum = true},
-          {.pointer = "/balls/*/heavy", .kind = KeyKind::boolean, .meaning = "It.", .default_value = false},
-          {.pointer = "/step",
-           .kind = KeyKind::number_or_auto,
-           .meaning = "It.",
-           .minimum = 0,
-           .above_minimum = true},
-          {.pointer = "/guard", .kind = KeyKind::object, .meaning = "It.", .default_value = Json::object()},
-          {.pointer = "/guard/limit", .kind = KeyKind::number, .meaning = "It.", .default_value = 0.05},
-          {.pointer = "/name", .kind = KeyKind::string, .meaning = "It."},
-          {.pointer = "/extra", .kind = KeyKind::any, .meaning = "It."},
-          {.pointer = "/free", .kind = KeyKind::object, .meaning = "It."},
-      });
+  static const KeyTable keys("Example", R"(
+/box | object | It.
+/box/length | number > 0 | It.
+/box/cells | integer >= 1 and <= 64; default 4 | It.
+/box/shape | one of cubic, flat; default "cubic" | It.
+/balls? | array of 1 or more | It.
+/balls/* | object | It.
+/balls/*/radius | number >= 0 and < 1; in length | Radius.
+/balls/*/heavy | true or false; default false | It.
+/step? | number > 0 or one of auto | It.
+/guard | object; default {} | It.
+/guard/limit | number; default 0.05 | It.
+/name? | string | It.
+/extra? | anything | It.
+/free? | object | It.
+)");
   return keys;
 }
 
@@ -88,7 +61,7 @@ TEST(KeyTable, EachFaultIsNamedWithPointerValueAndWhatIsAllowed) {
        "must be a number >= 0 and < 1; 45 % is written 0.45"},
       {R"({"box": {"length": 1}, "balls": [{"radius": 0.5, "heavy": 1}]})", "/balls/0/heavy", "1",
        "must be true or false"},
-      {R"({"box": {"length": 1}, "step": "fast"})", "/step", "\"fast\"", "must be a number > 0 or \"auto\""},
+      {R"({"box": {"length": 1}, "step": "fast"})", "/step", "\"fast\"", "must be a number > 0, or \"auto\""},
       {R"({"box": {"length": 1}, "name": 1})", "/name", "1", "must be a string"},
       {R"({"box": {"length": 1, "lenght": 1}})", "/box/lenght", "unknown key",
        "allowed keys: length, cells, shape; did you mean length?"},
@@ -161,17 +134,13 @@ TEST(KeyTable, SchemaSaysTheSameAsTheTable) {
       Json::parse(
           R"({"type": "number", "minimum": 0, "exclusiveMaximum": 1, "description": "Radius.", "unit": "length"})"));
   EXPECT_EQ(schema["properties"]["step"]["anyOf"],
-            Json::parse(R"([{"const": "auto"}, {"type": "number", "exclusiveMinimum": 0}])"));
+            Json::parse(R"([{"type": "number", "exclusiveMinimum": 0}, {"enum": ["auto"]}])"));
   EXPECT_FALSE(schema["properties"]["free"].contains("additionalProperties"));
   EXPECT_EQ(schema["properties"]["extra"], Json::parse(R"({"description": "It."})"));
 }
 
 TEST(KeyTable, SchemaSaysWhatPeopleCallAKey) {
-  const KeyTable table("T", {{.pointer = "/friction",
-                              .kind = KeyKind::number,
-                              .meaning = "Sliding.",
-                              .words = "coefficient of friction",
-                              .symbol = "μ"}});
+  const KeyTable table("T", "/friction? | number; named coefficient of friction, μ | Sliding.");
   EXPECT_EQ(table.json_schema("t")["properties"]["friction"], Json::parse(R"({"type": "number", "title":
       "coefficient of friction", "symbol": "μ", "description": "Sliding."})"));
 }
@@ -184,11 +153,7 @@ TEST(KeyTable, ManualHasOneRowForEachKey) {
 }
 
 TEST(KeyTable, AnArrayMayHaveAMostNumberOfItems) {
-  const KeyTable table("T", {{.pointer = "/sizes",
-                              .kind = KeyKind::array,
-                              .meaning = "They.",
-                              .minimum_items = 1,
-                              .maximum_items = 3}});
+  const KeyTable table("T", "/sizes | array of 1 to 3 | They.");
   EXPECT_NO_THROW(table.validate({{"sizes", {1, 2, 3}}}, "f.json"));
   for (const Json& sizes : {Json::array(), Json{1, 2, 3, 4}}) {
     try {
@@ -199,6 +164,160 @@ TEST(KeyTable, AnArrayMayHaveAMostNumberOfItems) {
     }
   }
   EXPECT_EQ(table.json_schema("t")["properties"]["sizes"]["maxItems"], 3);
+}
+
+const KeyTable& words() {
+  static const KeyTable table("T", R"(
+/hash? | hash or null
+/word? | word
+/name? | name
+/symbol? | name or empty
+/when? | integer >= 0 or one of now, never
+/one? | integer = 1
+/three? | array of 3
+/count? | count
+/by_name? | object
+/by_name/* | number or null
+/first? | object
+/first/size | number
+/second? | object; as /first
+)",
+                              Unknown::ignored);
+  return table;
+}
+
+TEST(KeyTable, ValuesOfEachKindAreTakenOrRefused) {
+  const std::string hash(64, 'a'), longest_of_words(64, 'w'), longest_of_names(120, 'N');
+  for (const Json& good : std::vector<Json>{{{"hash", hash}},
+                                            {{"hash", nullptr}},
+                                            {{"word", "timestep-2"}},
+                                            {{"word", longest_of_words}},
+                                            {{"name", "P/P0 \u00b5"}},
+                                            {{"name", longest_of_names}},
+                                            {{"symbol", ""}},
+                                            {{"one", 1}},
+                                            {{"three", {1, 2, 3}}},
+                                            {{"count", 9007199254740991}},
+                                            {{"by_name", {{"a/b", 1.5}, {"*", nullptr}}}},
+                                            {{"first", {{"size", 1}}}, {"second", {{"size", 2}}}},
+                                            {{"when", 0}},
+                                            {{"when", "never"}},
+                                            {{"unknown", true}}})
+    EXPECT_NO_THROW(words().validate(good, "f")) << good;
+  for (const Json& bad : std::vector<Json>{{{"hash", std::string(63, 'a')}},
+                                           {{"hash", std::string(64, 'A')}},
+                                           {{"word", ""}},
+                                           {{"word", "-a"}},
+                                           {{"word", "A"}},
+                                           {{"word", longest_of_words + "w"}},
+                                           {{"word", nullptr}},
+                                           {{"name", ""}},
+                                           {{"name", "a\nb"}},
+                                           {{"name", longest_of_names + "N"}},
+                                           {{"when", -1}},
+                                           {{"when", "soon"}},
+                                           {{"one", 2}},
+                                           {{"three", {1, 2, 3, 4}}},
+                                           {{"count", 9007199254740992.0}},
+                                           {{"count", -1}},
+                                           {{"by_name", {{"a", "1"}}}},
+                                           {{"second", Json::object()}},
+                                           {{"second", {{"size", "1"}}}}})
+    EXPECT_THROW(words().validate(bad, "f"), InputError) << bad;
+}
+
+TEST(KeyTable, SchemaSaysWhatTheKindsAllow) {
+  const Json keys = words().json_schema("t")["properties"];
+  EXPECT_EQ(keys["hash"]["type"], (Json{"string", "null"}));
+  EXPECT_EQ(keys["one"]["const"], 1);
+  EXPECT_EQ(keys["when"]["anyOf"][1]["enum"], (Json{"now", "never"}));
+  EXPECT_EQ(keys["by_name"]["additionalProperties"]["type"], (Json{"number", "null"}));
+  EXPECT_EQ(keys["second"]["required"], Json::array({"size"}));
+  EXPECT_FALSE(words().json_schema("t").contains("additionalProperties"));
+  EXPECT_NE(words().markdown().find("| an object, with the keys of `/first` |"), std::string::npos);
+}
+
+TEST(KindTables, ADocumentIsJudgedByTheTableOfItsKind) {
+  const KindTables tables("T", "verb", R"(
+/at | string
+-- go | Goes.
+/far | number
+-- stay | Stays.
+)");
+  EXPECT_EQ(tables.validate({{"verb", "go"}, {"at", "x"}, {"far", 2}}, "f")["far"], 2);
+  EXPECT_NO_THROW(tables.validate({{"verb", "stay"}, {"at", "x"}}, "f"));
+  for (const auto& [document, message] : std::vector<std::pair<Json, std::string>>{
+           {Json::array(), "f: []: must be an object"},
+           {{{"at", "x"}}, "f: /verb: missing: must be one of: go, stay"},
+           {{{"verb", "run"}, {"at", "x"}}, "f: /verb: \"run\": must be one of: go, stay"},
+           {{{"verb", "go"}, {"at", "x"}}, "f: /far: missing: must be a number"},
+           {{{"verb", "stay"}, {"at", "x"}, {"far", 1}}, "f: /far: unknown key: allowed keys: verb, at"}}) {
+    try {
+      tables.validate(document, "f");
+      ADD_FAILURE() << document;
+    } catch (const InputError& error) {
+      EXPECT_EQ(std::string(error.what()), message);
+    }
+  }
+  const Json kinds = tables.json_schema("t")["oneOf"];
+  EXPECT_EQ(kinds[0]["required"], (Json{"verb", "at", "far"}));
+  EXPECT_EQ(kinds[1]["description"], "Stays.");
+}
+
+TEST(KeyTable, SomeKeysAreOnlyGivenBesideOthers) {
+  const KeyTable table("T", R"(
+/form | one of round, flat, oval
+/radius | number; if form round, oval
+/depth | number; default 2; if form flat
+/friction? | number
+/load? | number; if friction
+/slip | object; if friction
+/slip/low, /slip/high | number
+/slip/width | number; instead of high
+/slip/steps? | count
+)");
+  const Json slip = {{"low", 0}, {"high", 1}};
+  EXPECT_EQ(table.validate({{"form", "oval"}, {"radius", 1}}, "f").size(), 2);
+  EXPECT_EQ(table.validate({{"form", "flat"}, {"friction", 1}, {"load", 1}, {"slip", slip}}, "f")["depth"],
+            2);
+  for (const auto& [document, message] : std::vector<std::pair<Json, std::string>>{
+           {{{"form", "round"}}, "f: /radius: missing: must be a number, because form is round"},
+           {{{"radius", 1}}, "f: /form: missing: must be one of: round, flat, oval"},
+           {{{"form", "flat"}, {"radius", 1}},
+            "f: /radius: 1: must be left out unless form is round or oval"},
+           {{{"form", "flat"}, {"friction", 1}},
+            "f: /slip: missing: must be an object with low, high or width, because friction is given"},
+           {{{"form", "flat"}, {"load", 1}}, "f: /load: 1: must be left out without friction"}}) {
+    try {
+      table.validate(document, "f");
+      ADD_FAILURE() << document;
+    } catch (const InputError& error) {
+      EXPECT_EQ(std::string(error.what()), message);
+    }
+  }
+  const Json schema = table.json_schema("t");
+  EXPECT_EQ(schema["dependentRequired"],
+            (Json::parse(R"({"load": ["friction"], "slip": ["friction"], "friction": ["slip"]})")));
+  EXPECT_EQ(schema["dependentSchemas"]["depth"]["properties"]["form"]["enum"], Json::array({"flat"}));
+  EXPECT_EQ(schema["allOf"].size(), 1);
+}
+
+TEST(KeyTable, ARowSaysWhatItsKeyIs) {
+  const Key key = keys_of(R"(
+/a/b | number > 0 and <= 1e3 or null; default 2; in length; instead of c | Over | two lines, not
+    /three.
+)")
+                      .at(0);
+  EXPECT_EQ(key.pointer, "/a/b");
+  EXPECT_EQ(allowed_values(key), "must be a number > 0 and <= 1000, or null");
+  EXPECT_EQ(key.default_value, 2);
+  EXPECT_EQ(key.unit, "length");
+  EXPECT_EQ(key.instead_of, "c");
+  EXPECT_EQ(key.meaning, "Over | two lines, not /three.");
+  EXPECT_FALSE(key.required);
+  for (const char* row :
+       {"no slash", "/a | nombre", "/a | number >", "/a | number > x", "/a | number; unit m"})
+    EXPECT_THROW(keys_of(row), std::logic_error) << row;
 }
 
 }  // namespace

@@ -84,7 +84,7 @@ REQUESTS = [
         "requests/0.json",
         things.text('{"version": 1, "verb": "prioritise", "points": ["peclet=1"], "priority": 1e300}'),
         GOES_ON,
-        "/priority: must be a whole number",
+        "must be an integer >= -2147483648",
         quick=True,
         name="requests: a priority of 1e300",
     ),

@@ -157,7 +157,7 @@ TEST_F(StartedJob, ThatDoesNotFitItsFileIsRefused) {
   changed["sha256"] = std::string(64, 'a');
   expect(scene(changed), "/start/sha256: " + std::string(64, 'a').substr(0, 20));
   changed["sha256"] = "ABC";
-  expect(scene(changed), "/start/sha256: \"ABC\": must be 64 digits");
+  expect(scene(changed), "/start/sha256: \"ABC\": must be a SHA-256");
   changed = start_;
   changed["file"] = "a.final.xyz";
   expect(scene(changed), "/start/file: \"a.final.xyz\": must be an absolute path");

@@ -75,7 +75,7 @@ const FlowFault flow_faults[] = {
     {R"({"shear_rate": 1})", stress_times, "/duration/equilibration/stress_times", "1",
      "must be left out without /flow/stress"},
     {R"({"shear_rate": 1, "jammed_viscosity": 100})", "{}", "/flow/jammed_viscosity", "100",
-     "must be left out without /flow/stress"},
+     "must be left out without stress"},
     {R"({"stress": 1})", R"({"observables": ["transient"]})", "/observables", R"(["transient"])",
      "must not list transient with /flow/stress"},
     {R"({"stress": 1})",

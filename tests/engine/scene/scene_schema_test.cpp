@@ -14,24 +14,6 @@ namespace fs = std::filesystem;
 
 const fs::path source = PECLET_SOURCE_DIR;
 
-TEST(SceneSchema, CommittedFileIsTheTablesOwn) {
-  EXPECT_EQ(read_json(source / "schema/scene.schema.json"), scene_keys().json_schema("scene.schema.json"))
-      << "build the target `schemas`";
-}
-
-TEST(SceneSchema, CommittedManualIsTheTablesOwn) {
-  EXPECT_NE(read_file(source / "schema/README.md").find(scene_keys().markdown()), std::string::npos)
-      << "build the target `schemas`";
-}
-
-TEST(ConfigurationSchema, CommittedFileAndManualAreTheTablesOwn) {
-  EXPECT_EQ(read_json(source / "schema/configuration.schema.json"),
-            configuration_keys().json_schema("configuration.schema.json"))
-      << "build the target `schemas`";
-  EXPECT_NE(read_file(source / "schema/README.md").find(configuration_keys().markdown()), std::string::npos)
-      << "build the target `schemas`";
-}
-
 TEST(SceneSchema, TheExampleInTheManualIsValid) {
   const std::string page = read_file(source / "schema/README.md");
   const auto begin = page.find("```json\n", page.find("## Scene")) + 8;

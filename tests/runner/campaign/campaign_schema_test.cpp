@@ -15,17 +15,6 @@ namespace fs = std::filesystem;
 
 const fs::path source = PECLET_SOURCE_DIR;
 
-TEST(CampaignSchema, CommittedFileIsTheTablesOwn) {
-  EXPECT_EQ(read_json(source / "schema/campaign.schema.json"),
-            campaign_keys().json_schema("campaign.schema.json"))
-      << "build the target `schemas`";
-}
-
-TEST(CampaignSchema, CommittedManualIsTheTablesOwn) {
-  EXPECT_NE(read_file(source / "schema/README.md").find(campaign_keys().markdown()), std::string::npos)
-      << "build the target `schemas`";
-}
-
 TEST(CampaignSchema, TheExampleInTheManualMakesTheGridThatItSays) {
   const std::string page = read_file(source / "schema/README.md");
   const auto begin = page.find("```json\n", page.find("## Campaign")) + 8;

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
+#include "contract/documents.h"
 #include "contract/sha256.h"
 #include "runner/campaign/number_text.h"
 #include "runner/campaign/quoting.h"
@@ -206,10 +207,10 @@ TEST_F(CampaignPage, CallsAKeyOfASceneWhatTheEngineCallsIt) {
   complete_widely(0);
   EXPECT_EQ(data()["parameters"], Json::parse(R"([{"pointer": "/point", "words": "", "symbol": "", "unit": "",
                                                    "meaning": ""}])"));
-  const Json hello =
-      Json::parse(R"({"type": "hello", "derived": [{"name": "peclet", "symbol": "Pe"}], "scene_schema":
+  const Json hello = Json::parse(
+      R"({"type": "hello", "protocol": 1, "engine": {}, "derived": [{"name": "peclet", "symbol": "Pe"}], "scene_schema":
       {"properties": {"point": {"title": "place in a row", "symbol": "p_0", "description": "Where.", "unit": "1"}}}})");
-  keep_vocabulary(campaign_.database(), Vocabulary(hello));
+  keep_vocabulary(campaign_.database(), Vocabulary(checked_frame(hello)));
   const Json page = data();
   EXPECT_EQ(page["parameters"],
             Json::parse(R"([{"pointer": "/point", "words": "place in a row", "symbol": "p_0",

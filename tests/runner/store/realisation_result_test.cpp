@@ -136,7 +136,8 @@ TEST(RealisationResult, SaysWhereTheFaultIsInOneShortLine) {
   };
   Json result = plain_result(point, 3, 12.5);
   result["warnings"] = {{{"code", "overlap"}, {"message", ""}}, {{"message", "x"}}};
-  EXPECT_EQ(complaint(result), "/warnings/1/code: is missing");
+  EXPECT_EQ(complaint(result),
+            "/warnings/1/code: missing: must be a word of at most 64 letters a-z, digits and hyphens");
   result = plain_result(point, 3, 12.5);
   result["mean"]["stress"] = {{"total", {1, 2, 1e200, 4, 5, 6}}};
   EXPECT_EQ(complaint(result), "/mean/stress/total/2: must be a number between -1e+100 and 1e+100");
@@ -184,7 +185,7 @@ TEST(RealisationResult, AnotherEngineHasItsOwnEndingsAndLacksOthersNumbers) {
 
 TEST(RealisationResult, IsKeptAsItIsWrittenButForWhiteSpace) {
   Json result = plain_result(point, 3, 12.5);
-  result["method"] = R"(a \ " and a \" , : [)";
+  result["ending"]["message"] = R"(a \ " and a \" , : [)";
   const std::string compact = result.dump();
   for (const int indent : {0, 1, 8})
     EXPECT_EQ(parse_result(result.dump(indent) + "\r\n\t").text, compact) << indent;

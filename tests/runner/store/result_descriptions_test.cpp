@@ -93,12 +93,13 @@ TEST(RealisationResult, ItsDescriptionsAreThoseOfItsNumbers) {
     const char* complaint;
   };
   const std::vector<Fault> faults{
-      {"/quantities", Json::array(), "/quantities: must be an object"},
-      {"/quantities/alone/unit", "", "/quantities/alone/unit: must be a name"},
-      {"/quantities/alone/symbol", 3, "/quantities/alone/symbol: must be text"},
-      {"/quantities/alone/estimator", "median", "/quantities/alone/estimator: must be mean, ratio or share"},
-      {"/quantities/noise/estimator", "share", "/quantities/noise/axes: must not be there beside the"},
-      {"/quantities/g/denominator", nullptr, "/quantities/g/denominator: must be text"},
+      {"/quantities", Json::array(), "/quantities: []: must be an object"},
+      {"/quantities/alone/unit", "", "/quantities/alone/unit: \"\": must be a name"},
+      {"/quantities/alone/symbol", 3, "/quantities/alone/symbol: 3: must be a name"},
+      {"/quantities/alone/estimator", "median",
+       "/quantities/alone/estimator: \"median\": must be one of: mean, ratio, share"},
+      {"/quantities/noise/estimator", "share", "must be left out unless estimator is mean"},
+      {"/quantities/g/denominator", nullptr, "/quantities/g/denominator: null: must be a name"},
       {"/quantities/g/denominator", "more", "/mean/g/more: is missing"},
       {"/mean/g/ideal", {1, 2, 3}, "/mean/g/ideal: must be a number, or lists"},
       {"/mean/profile/velocity", {1, 2}, "/mean/profile/velocity: must be a number, or lists"},
@@ -106,14 +107,15 @@ TEST(RealisationResult, ItsDescriptionsAreThoseOfItsNumbers) {
       {"/mean/alone", "7", "/mean/alone: must be a number, null, a list or an object"},
       {"/mean/noise/0", "7", "/mean/noise/0: must be a number, null, a list or an object"},
       {"/quantities/noise/axes/0/values", Json::array(),
-       "/quantities/noise/axes/0/values: must be a list of one"},
-      {"/quantities/noise/axes/0/values/1", true, "/quantities/noise/axes/0/values/1: must be text"},
+       "/quantities/noise/axes/0/values: []: must be an array of 1 or more"},
+      {"/quantities/noise/axes/0/values/1", true,
+       "/quantities/noise/axes/0/values/1: true: must be a number, or a name"},
       {"/quantities/alone/control",
        {{"quantity", "noise"}, {"mean", 0}},
        "/quantities/alone/control/quantity"},
       {"/quantities/noise/control", {{"quantity", "nothing"}, {"mean", 0}}, "must be another quantity"},
       {"/quantities/alone/control", {{"quantity", "alone"}, {"mean", 0}}, "must be another quantity"},
-      {"/quantities/alone/symbol", "a\nb", "/quantities/alone/symbol: must be a name of 1 to 120 bytes"}};
+      {"/quantities/alone/symbol", "a\nb", "must be a name of 1 to 120 bytes"}};
   for (const Fault& fault : faults) {
     Json result = described_result();
     result[Json::json_pointer(fault.place)] = fault.value;

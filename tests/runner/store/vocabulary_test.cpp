@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "contract/documents.h"
 #include "contract/frames.h"
 
 namespace peclet::runner {
@@ -34,10 +35,14 @@ TEST(Vocabulary, HasOnlyTheNameOfWhatTheEngineDoesNotDescribe) {
 }
 
 TEST(Vocabulary, TakesNothingThatATerminalCannotShow) {
-  for (const char* const hello :
+  const Json good = {{"type", "hello"}, {"protocol", 1}, {"engine", Json::object()}};
+  EXPECT_NO_THROW(checked_frame(good));
+  for (const char* const bad :
        {R"({"scene_schema": 3})", R"({"derived": [3]})", R"({"derived": [{}]})",
         R"({"derived": [{"name": "a\u001b[2J"}]})", R"({"derived": [{"name": "a", "symbol": "\n"}]})"}) {
-    EXPECT_THROW(Vocabulary(Json::parse(hello)), FrameError) << hello;
+    Json hello = good;
+    hello.update(Json::parse(bad));
+    EXPECT_THROW(checked_frame(hello), FrameError) << bad;
   }
 }
 
