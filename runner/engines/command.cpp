@@ -30,8 +30,7 @@ class Pipe {
     close_end(0);
     close_end(1);
   }
-  Pipe(const Pipe&) = delete;
-  Pipe& operator=(const Pipe&) = delete;
+  Pipe& operator=(Pipe&&) = delete;
 
   int reading() const { return ends_[0]; }
   int writing() const { return ends_[1]; }
@@ -64,8 +63,7 @@ class TextFile {
     }
   }
   ~TextFile() { close(file_); }
-  TextFile(const TextFile&) = delete;
-  TextFile& operator=(const TextFile&) = delete;
+  TextFile& operator=(TextFile&&) = delete;
 
   int reading() const { return file_; }
 

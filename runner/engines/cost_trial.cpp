@@ -37,8 +37,7 @@ class TrialFolder {
     std::error_code ignored;  // what is left of it lies where temporary files are
     fs::remove_all(path_, ignored);
   }
-  TrialFolder(const TrialFolder&) = delete;
-  TrialFolder& operator=(const TrialFolder&) = delete;
+  TrialFolder& operator=(TrialFolder&&) = delete;
   CampaignDirectory directory() const { return CampaignDirectory(path_); }
 
  private:

@@ -62,8 +62,7 @@ constexpr int pipe_size = 1 << 18;
 struct Pair {
   std::array<int, 2> ends{-1, -1};
   Pair() = default;
-  Pair(const Pair&) = delete;
-  Pair& operator=(const Pair&) = delete;
+  Pair& operator=(Pair&&) = delete;
   ~Pair() {
     for (const int end : ends) {
       if (end >= 0) close(end);
@@ -112,8 +111,7 @@ class SpawnSettings {
     posix_spawn_file_actions_destroy(&actions_);
     posix_spawnattr_destroy(&attributes_);
   }
-  SpawnSettings(const SpawnSettings&) = delete;
-  SpawnSettings& operator=(const SpawnSettings&) = delete;
+  SpawnSettings& operator=(SpawnSettings&&) = delete;
 
   const posix_spawn_file_actions_t* actions() const { return &actions_; }
   const posix_spawnattr_t* attributes() const { return &attributes_; }

@@ -44,8 +44,7 @@ class Printed {
     if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), "memfd_create");
   }
   ~Printed() { close(descriptor_); }
-  Printed(const Printed&) = delete;
-  Printed& operator=(const Printed&) = delete;
+  Printed& operator=(Printed&&) = delete;
 
   // A name that the child can open too, until it becomes the engine.
   std::string path() const { return fmt::format("/proc/self/fd/{}", descriptor_); }

@@ -13,8 +13,7 @@ class StopSignals {
  public:
   explicit StopSignals(int one_more = SIGTERM);
   ~StopSignals();
-  StopSignals(const StopSignals&) = delete;
-  StopSignals& operator=(const StopSignals&) = delete;
+  StopSignals& operator=(StopSignals&&) = delete;
   int descriptor() const { return descriptor_; }
   // Takes one signal that has come, if any.
   bool take();

@@ -83,8 +83,7 @@ class PeriodicBackup {
                  Time now);
   // Waits for a backup that is being made.
   ~PeriodicBackup();
-  PeriodicBackup(const PeriodicBackup&) = delete;
-  PeriodicBackup& operator=(const PeriodicBackup&) = delete;
+  PeriodicBackup& operator=(PeriodicBackup&&) = delete;
 
   // Starts a backup when one is due, and tells what became of the last one.
   void attend(Time now);

@@ -26,8 +26,7 @@ class EventStream : public RunListener {
   EventStream(int descriptor, RunListener& audience);
   // Waits while the reader takes what is left, until it has taken nothing for ten seconds.
   ~EventStream() override;
-  EventStream(const EventStream&) = delete;
-  EventStream& operator=(const EventStream&) = delete;
+  EventStream& operator=(EventStream&&) = delete;
 
   void note(const std::string& message) override { audience_.note(message); }
   void warn(const std::string& message) override { audience_.warn(message); }

@@ -22,8 +22,7 @@ class Progress : public RunListener {
 
   explicit Progress(Style style);
   ~Progress() override;
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
+  Progress& operator=(Progress&&) = delete;
 
   void note(const std::string& message) override;
   void warn(const std::string& message) override;  // also when quiet

@@ -8,29 +8,17 @@
 namespace peclet::runner {
 namespace {
 
-constexpr std::array<std::pair<Verdict, const char*>, 7> verdict_names{
-    {{Verdict::more, "more"},
-     {Verdict::converged, "converged"},
-     {Verdict::converged_with_losses, "converged-with-losses"},
-     {Verdict::capped, "capped"},
-     {Verdict::failed, "failed"},
-     {Verdict::complete, "complete"},
-     {Verdict::complete_with_losses, "complete-with-losses"}}};
+constexpr std::array verdict_names{"more",   "converged", "converged-with-losses", "capped",
+                                   "failed", "complete",  "complete-with-losses"};  // as Verdict
 
 }  // namespace
 
-const char* to_string(Verdict verdict) {
-  for (const auto& [known, name] : verdict_names) {
-    if (known == verdict) return name;
-  }
-  return "?";
-}
+const char* to_string(Verdict verdict) { return verdict_names.at(static_cast<std::size_t>(verdict)); }
 
 std::optional<Verdict> verdict_of(std::string_view word) {
-  for (const auto& [known, name] : verdict_names) {
-    if (name == word) return known;
-  }
-  return std::nullopt;
+  const auto known = std::ranges::find(verdict_names, word);
+  return known == verdict_names.end() ? std::nullopt
+                                      : std::optional(static_cast<Verdict>(known - verdict_names.begin()));
 }
 
 bool is_reached(Verdict verdict) {

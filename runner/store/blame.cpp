@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <csignal>
-#include <utility>
 
 #include "contract/errors.h"
 
@@ -12,16 +11,8 @@ namespace {
 
 constexpr int most_kills_in_a_row = 20;
 
-constexpr std::array<std::pair<AttemptOutcome, const char*>, 9> names{
-    {{AttemptOutcome::running, "running"},
-     {AttemptOutcome::result, "result"},
-     {AttemptOutcome::crashed, "crashed"},
-     {AttemptOutcome::hung, "hung"},
-     {AttemptOutcome::garbled, "garbled"},
-     {AttemptOutcome::refused, "refused"},
-     {AttemptOutcome::drained, "drained"},
-     {AttemptOutcome::killed, "killed"},
-     {AttemptOutcome::abandoned, "abandoned"}}};
+constexpr std::array names{"running", "result",  "crashed", "hung",     "garbled",
+                           "refused", "drained", "killed",  "abandoned"};  // as AttemptOutcome
 
 // Kills since the seed last came further than it had ever been.
 int kills_without_progress(std::span<const PastAttempt> attempts) {
@@ -39,18 +30,14 @@ int kills_without_progress(std::span<const PastAttempt> attempts) {
 
 }  // namespace
 
-const char* to_string(AttemptOutcome outcome) {
-  for (const auto& [known, name] : names) {
-    if (known == outcome) return name;
-  }
-  return "?";
-}
+const char* to_string(AttemptOutcome outcome) { return names.at(static_cast<std::size_t>(outcome)); }
 
 AttemptOutcome attempt_outcome(const std::string& text) {
-  for (const auto& [known, name] : names) {
-    if (name == text) return known;
+  const auto known = std::ranges::find(names, text);
+  if (known == names.end()) {
+    throw IntegrityError("the database holds an unknown outcome of an attempt: " + text);
   }
-  throw IntegrityError("the database holds an unknown outcome of an attempt: " + text);
+  return static_cast<AttemptOutcome>(known - names.begin());
 }
 
 bool is_blamed(AttemptOutcome outcome) {
@@ -78,13 +65,8 @@ SeedFate judge(std::span<const PastAttempt> attempts, int retries) {
 }
 
 ExitStatus exit_status(int wait_status) {
-  ExitStatus ending;
-  if (WIFSIGNALED(wait_status)) {
-    ending.signal = WTERMSIG(wait_status);
-  } else {
-    ending.status = WEXITSTATUS(wait_status);
-  }
-  return ending;
+  if (WIFSIGNALED(wait_status)) return {std::nullopt, WTERMSIG(wait_status)};
+  return {WEXITSTATUS(wait_status), std::nullopt};
 }
 
 std::string to_string(const ExitStatus& ending) {

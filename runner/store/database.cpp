@@ -29,8 +29,7 @@ namespace {
 using Tables = std::map<std::string, std::set<std::string>>;
 
 std::set<std::string> columns_of(Connection& connection, const std::string& table) {
-  Statement query(connection, "SELECT name, type, hidden FROM pragma_table_xinfo(?)");
-  query.bind(table);
+  Statement query(connection, "SELECT name, type, hidden FROM pragma_table_xinfo(?)", table);
   std::set<std::string> columns;
   while (query.step()) {
     columns.insert(
@@ -57,28 +56,7 @@ Tables make_tables() {
 constexpr std::int64_t our_application = 1346587724;
 constexpr std::int64_t our_version = 1;
 
-constexpr std::array<std::pair<SeedState, const char*>, 5> state_names{
-    {{SeedState::queued, "queued"},
-     {SeedState::running, "running"},
-     {SeedState::done, "done"},
-     {SeedState::failed, "failed"},
-     {SeedState::quarantined, "quarantined"}}};
-
-template <typename Names, typename Value>
-const char* name_of(const Names& names, Value value) {
-  for (const auto& [known, name] : names) {
-    if (known == value) return name;
-  }
-  return "?";
-}
-
-template <typename Value, typename Names>
-Value value_of(const Names& names, const std::string& text) {
-  for (const auto& [known, name] : names) {
-    if (name == text) return known;
-  }
-  throw IntegrityError("the database holds an unknown state: " + text);
-}
+constexpr std::array state_names{"queued", "running", "done", "failed", "quarantined"};  // as SeedState
 
 // An owner that died between creating the file and filling it leaves nothing in it.
 bool is_empty(Connection& connection) {
@@ -185,9 +163,13 @@ void check_tables(Connection& connection) {
   }
 }
 
-const char* to_string(SeedState state) { return name_of(state_names, state); }
+const char* to_string(SeedState state) { return state_names.at(static_cast<std::size_t>(state)); }
 
-SeedState seed_state(const std::string& text) { return value_of<SeedState>(state_names, text); }
+SeedState seed_state(const std::string& text) {
+  const auto known = std::ranges::find(state_names, text);
+  if (known == state_names.end()) throw IntegrityError("the database holds an unknown state: " + text);
+  return static_cast<SeedState>(known - state_names.begin());
+}
 
 Database::Database(std::unique_ptr<Connection> connection) : connection_(std::move(connection)) {}
 
@@ -252,32 +234,25 @@ Verdict stored_verdict(const std::string& word) {
 
 std::vector<PointRecord> read_points(Connection& connection, const std::string& which) {
   Statement query(connection, point_columns + which);
-  std::vector<PointRecord> points;
-  while (query.step()) {
-    PointRecord point;
-    point.id = query.integer(0);
-    if (!query.is_null(1)) point.place = static_cast<int>(query.integer(1));
-    point.hash = query.text(2);
-    point.scene = Json::parse(query.text(3));
-    point.settings = Json::parse(query.text(4));
-    point.label = query.text(5);
-    point.engine_identity = query.text(6);
-    point.suspect = query.integer(7) != 0;
-    point.priority = static_cast<int>(query.integer(8));
-    point.cancelled = query.integer(9) != 0;
-    point.kept_apart = query.integer(10) != 0;
-    points.push_back(std::move(point));
-  }
-  return points;
+  return query.rows([](const Statement& row) {
+    return PointRecord{row.integer(0),
+                       row.optional_number(1),
+                       row.text(2),
+                       Json::parse(row.text(3)),
+                       Json::parse(row.text(4)),
+                       row.text(5),
+                       row.text(6),
+                       row.integer(7) != 0,
+                       row.number(8),
+                       row.integer(9) != 0,
+                       row.integer(10) != 0};
+  });
 }
 
-TargetRecord read_target(const Statement& query, int column) {
-  TargetRecord record;
-  record.id = query.integer(column);
-  record.target = stored_target(query.text(column + 1), query.text(column + 2), query.real(column + 3));
-  record.minimum = static_cast<int>(query.integer(column + 4));
-  record.maximum = static_cast<int>(query.integer(column + 5));
-  return record;
+TargetRecord read_target(const Statement& row, int column) {
+  return {row.integer(column),
+          stored_target(row.text(column + 1), row.text(column + 2), row.real(column + 3)),
+          row.number(column + 4), row.number(column + 5)};
 }
 
 std::vector<ObservableLook> stored_observables(const std::string& text) {
@@ -296,9 +271,9 @@ constexpr const char* look_columns =
 // Of a query of look_columns.
 Look read_look(const Statement& query) {
   Look look;
-  look.seeds = static_cast<int>(query.integer(0));
-  look.lost = static_cast<int>(query.integer(1));
-  const int count = static_cast<int>(query.integer(2));
+  look.seeds = query.number(0);
+  look.lost = query.number(1);
+  const int count = query.number(2);
   look.controlled = {count, query.real(3), query.real(4)};
   look.controlled_half_width = query.real(5);
   look.estimate = {count, query.real(6), query.real(7)};
@@ -314,19 +289,6 @@ Look read_look(const Statement& query) {
   return look;
 }
 
-std::vector<LookRecord> read_looks(Connection& connection, std::int64_t point) {
-  Statement query(
-      connection,
-      std::string("SELECT ") + look_columns +
-          ", made_at, target_id, observable, criterion, confidence, minimum, maximum FROM look JOIN "
-          "target USING (target_id) WHERE point_id = ? AND target_id = (SELECT target_id FROM campaign) "
-          "ORDER BY seeds");
-  query.bind(point);
-  std::vector<LookRecord> looks;
-  while (query.step()) looks.push_back({read_target(query, 14), read_look(query), query.text(13)});
-  return looks;
-}
-
 // Of a query of result_columns.
 std::string read_text(const Statement& query) {
   try {
@@ -337,10 +299,8 @@ std::string read_text(const Statement& query) {
   }
 }
 
-EventRecord read_event(const Statement& query) {
-  EventRecord record{query.text(0), query.text(1), query.optional_integer(2), std::nullopt, query.text(4)};
-  if (!query.is_null(3)) record.seed = static_cast<int>(query.integer(3));
-  return record;
+EventRecord read_event(const Statement& row) {
+  return {row.text(0), row.text(1), row.optional_integer(2), row.optional_number(3), row.text(4)};
 }
 
 constexpr const char* result_columns =
@@ -353,13 +313,7 @@ CampaignRecord Database::campaign() {
                   "SELECT target_id, observable, criterion, confidence, minimum, maximum, name, "
                   "document, created_at, updated_at FROM campaign JOIN target USING (target_id)");
   if (!query.step()) throw IntegrityError(connection_->path() + ": holds no campaign");
-  CampaignRecord record;
-  record.target = read_target(query, 0);
-  record.name = query.text(6);
-  record.document = Json::parse(query.text(7));
-  record.created_at = query.text(8);
-  record.updated_at = query.text(9);
-  return record;
+  return {query.text(6), Json::parse(query.text(7)), read_target(query, 0), query.text(8), query.text(9)};
 }
 
 std::map<std::int64_t, std::vector<Look>> Database::looks_by_point() {
@@ -382,29 +336,12 @@ std::vector<PointRecord> Database::inactive_points() {
 StateCounts Database::counts(std::int64_t point) {
   Statement query(*connection_,
                   "SELECT state, count(*), total(cpu_seconds) FROM realisation WHERE point_id = ? "
-                  "GROUP BY state");
-  query.bind(point);
+                  "GROUP BY state",
+                  point);
   StateCounts counts;
   while (query.step()) {
-    const int count = static_cast<int>(query.integer(1));
+    counts.of(seed_state(query.text(0))) = query.number(1);
     counts.cpu_seconds += query.real(2);
-    switch (seed_state(query.text(0))) {
-      case SeedState::queued:
-        counts.queued = count;
-        break;
-      case SeedState::running:
-        counts.running = count;
-        break;
-      case SeedState::done:
-        counts.done = count;
-        break;
-      case SeedState::failed:
-        counts.failed = count;
-        break;
-      case SeedState::quarantined:
-        counts.quarantined = count;
-        break;
-    }
   }
   return counts;
 }
@@ -413,24 +350,14 @@ std::vector<RealisationRecord> Database::realisations(std::int64_t point) {
   Statement query(
       *connection_,
       "SELECT seed, state, cause, statistical_inefficiency, largest_overlap, cpu_seconds, wall_seconds, "
-      "final_state_sha256, content_sha256, engine_id FROM realisation WHERE point_id = ? ORDER BY seed");
-  query.bind(point);
-  std::vector<RealisationRecord> realisations;
-  while (query.step()) {
-    RealisationRecord record;
-    record.seed = static_cast<int>(query.integer(0));
-    record.state = seed_state(query.text(1));
-    record.cause = query.text(2);
-    record.statistical_inefficiency = query.optional_real(3);
-    record.largest_overlap = query.optional_real(4);
-    record.cpu_seconds = query.optional_real(5);
-    record.wall_seconds = query.optional_real(6);
-    record.final_state_sha256 = query.text(7);
-    record.content_sha256 = query.text(8);
-    record.engine = query.optional_integer(9);
-    realisations.push_back(std::move(record));
-  }
-  return realisations;
+      "final_state_sha256, content_sha256, engine_id FROM realisation WHERE point_id = ? ORDER BY seed",
+      point);
+  return query.rows([](const Statement& row) {
+    return RealisationRecord{
+        row.number(0),        seed_state(row.text(1)), row.text(2),          row.optional_real(3),
+        row.optional_real(4), row.optional_real(5),    row.optional_real(6), row.text(7),
+        row.text(8),          row.optional_integer(9)};
+  });
 }
 
 std::vector<std::optional<Outcome>> Database::outcomes(std::int64_t point) {
@@ -438,56 +365,47 @@ std::vector<std::optional<Outcome>> Database::outcomes(std::int64_t point) {
 }
 
 std::optional<std::string> Database::result_text(std::int64_t point, int seed) {
-  Statement query(*connection_, std::string(result_columns) + "AND seed = ?");
-  query.bind(point).bind(seed);
-  if (!query.step()) return std::nullopt;
-  return read_text(query);
+  Statement query(*connection_, std::string(result_columns) + "AND seed = ?", point, seed);
+  return query.step() ? std::optional(read_text(query)) : std::nullopt;
 }
 
 std::optional<Json> Database::result(std::int64_t point, int seed) {
   const std::optional<std::string> text = result_text(point, seed);
-  if (!text) return std::nullopt;
-  return Json::parse(*text);
+  return text ? std::optional(Json::parse(*text)) : std::nullopt;
 }
 
 void Database::for_each_result(std::int64_t point, int end,
                                const std::function<void(int seed, const Json&)>& visit) {
-  Statement query(*connection_, std::string(result_columns) + "AND seed < ? ORDER BY seed");
-  query.bind(point).bind(end);
-  while (query.step()) visit(static_cast<int>(query.integer(0)), Json::parse(read_text(query)));
+  Statement query(*connection_, std::string(result_columns) + "AND seed < ? ORDER BY seed", point, end);
+  while (query.step()) visit(query.number(0), Json::parse(read_text(query)));
 }
 
 std::vector<AttemptRecord> Database::attempts(std::int64_t point) {
   Statement query(
       *connection_,
-      "SELECT seed, worker, process, host, started_at, ended_at, outcome, blamed, step, exit_status, signal,"
-      " message, pardoned FROM attempt WHERE point_id = ? ORDER BY seed, attempt_id");
-  query.bind(point);
-  std::vector<AttemptRecord> attempts;
-  while (query.step()) {
-    AttemptRecord record;
-    record.seed = static_cast<int>(query.integer(0));
-    record.worker = static_cast<int>(query.integer(1));
-    record.process = query.integer(2);
-    record.host = query.text(3);
-    record.started_at = query.text(4);
-    record.ended_at = query.text(5);
-    record.outcome = query.text(6);
-    record.blamed = query.integer(7) != 0;
-    record.step = query.integer(8);
-    record.exit_status = query.optional_integer(9);
-    record.signal = query.optional_integer(10);
-    record.message = query.text(11);
-    record.pardoned = query.integer(12) != 0;
-    attempts.push_back(std::move(record));
-  }
-  return attempts;
+      "SELECT seed, worker, process, host, started_at, ended_at, outcome, blamed, pardoned, step, "
+      "exit_status, signal, message FROM attempt WHERE point_id = ? ORDER BY seed, attempt_id",
+      point);
+  return query.rows([](const Statement& row) {
+    return AttemptRecord{row.number(0),
+                         row.number(1),
+                         row.integer(2),
+                         row.text(3),
+                         row.text(4),
+                         row.text(5),
+                         row.text(6),
+                         row.integer(7) != 0,
+                         row.integer(8) != 0,
+                         row.integer(9),
+                         row.optional_integer(10),
+                         row.optional_integer(11),
+                         row.text(12)};
+  });
 }
 
 std::optional<std::int64_t> Database::process_of(std::int64_t attempt) {
-  Statement query(*connection_, "SELECT process FROM attempt WHERE attempt_id = ?");
-  if (!query.bind(attempt).step()) return std::nullopt;
-  return query.integer(0);
+  Statement query(*connection_, "SELECT process FROM attempt WHERE attempt_id = ?", attempt);
+  return query.step() ? std::optional(query.integer(0)) : std::nullopt;
 }
 
 std::vector<AttemptSpan> Database::last_attempts(int limit) {
@@ -495,23 +413,19 @@ std::vector<AttemptSpan> Database::last_attempts(int limit) {
       *connection_,
       "SELECT a.point_id, a.seed, a.worker, a.host, a.started_at, coalesce(a.ended_at, l.renewed_at, "
       "a.started_at), a.outcome FROM attempt a LEFT JOIN lease l USING (attempt_id) ORDER BY a.attempt_id "
-      "DESC "
-      "LIMIT ?");
-  query.bind(limit);
-  std::vector<AttemptSpan> spans;
-  while (query.step()) {
-    spans.push_back({query.integer(0), static_cast<int>(query.integer(1)), static_cast<int>(query.integer(2)),
-                     query.text(3), query.text(4), query.text(5), query.text(6)});
-  }
+      "DESC LIMIT ?",
+      limit);
+  std::vector<AttemptSpan> spans = query.rows([](const Statement& row) {
+    return AttemptSpan{row.integer(0), row.number(1), row.number(2), row.text(3),
+                       row.text(4),    row.text(5),   row.text(6)};
+  });
   std::reverse(spans.begin(), spans.end());
   return spans;
 }
 
 std::vector<std::string> Database::hosts() {
   Statement query(*connection_, "SELECT DISTINCT host FROM attempt WHERE host != '' ORDER BY host");
-  std::vector<std::string> hosts;
-  while (query.step()) hosts.push_back(query.text(0));
-  return hosts;
+  return query.rows([](const Statement& row) { return row.text(0); });
 }
 
 std::string Database::last_end() {
@@ -519,33 +433,30 @@ std::string Database::last_end() {
 }
 
 std::vector<int> Database::completed(std::int64_t point, int end) {
-  Statement query(*connection_, "SELECT seed FROM numbers WHERE point_id = ? AND seed < ? ORDER BY seed");
-  query.bind(point).bind(end);
-  std::vector<int> seeds;
-  while (query.step()) seeds.push_back(static_cast<int>(query.integer(0)));
-  return seeds;
+  Statement query(*connection_, "SELECT seed FROM numbers WHERE point_id = ? AND seed < ? ORDER BY seed",
+                  point, end);
+  return query.rows([](const Statement& row) { return row.number(0); });
 }
 
 MeanSteps Database::mean_steps(std::int64_t point) {
   Statement query(
       *connection_,
       "SELECT avg(equilibration_steps), avg(production_steps) FROM realisation WHERE point_id = ? "
-      "AND state = 'done'");
-  query.bind(point).step();
+      "AND state = 'done'",
+      point);
+  query.step();
   return {query.real(0), query.real(1)};
 }
 
 std::vector<LeaseRecord> Database::leases(std::int64_t point) {
   Statement query(*connection_,
                   "SELECT seed, worker, phase, step, steps, strain, renewed_at FROM lease "
-                  "WHERE point_id = ? ORDER BY seed");
-  query.bind(point);
-  std::vector<LeaseRecord> leases;
-  while (query.step()) {
-    leases.push_back({static_cast<int>(query.integer(0)), static_cast<int>(query.integer(1)), query.text(2),
-                      query.integer(3), query.integer(4), query.real(5), query.text(6)});
-  }
-  return leases;
+                  "WHERE point_id = ? ORDER BY seed",
+                  point);
+  return query.rows([](const Statement& row) {
+    return LeaseRecord{row.number(0),  row.number(1), row.text(2), row.integer(3),
+                       row.integer(4), row.real(5),   row.text(6)};
+  });
 }
 
 std::map<std::int64_t, std::vector<Unfinished>> Database::unfinished() {
@@ -584,36 +495,44 @@ std::map<std::int64_t, StoredPrediction> Database::predictions() {
                   "target_id = (SELECT target_id FROM campaign)");
   std::map<std::int64_t, StoredPrediction> stored;
   while (query.step()) {
-    const auto number = [&](int column) { return static_cast<int>(query.integer(column)); };
-    stored[query.integer(0)] = {number(1), {number(2), number(3), number(4)}, query.real(5), query.text(6)};
+    const Expected<int> seeds{query.number(2), query.number(3), query.number(4)};
+    stored[query.integer(0)] = {query.number(1), seeds, query.real(5), query.text(6)};
   }
   return stored;
 }
 
-std::vector<LookRecord> Database::looks(std::int64_t point) { return read_looks(*connection_, point); }
+std::vector<LookRecord> Database::looks(std::int64_t point) {
+  Statement query(
+      *connection_,
+      std::string("SELECT ") + look_columns +
+          ", made_at, target_id, observable, criterion, confidence, minimum, maximum FROM look JOIN "
+          "target USING (target_id) WHERE point_id = ? AND target_id = (SELECT target_id FROM campaign) "
+          "ORDER BY seeds",
+      point);
+  return query.rows([](const Statement& row) {
+    return LookRecord{read_target(row, 14), read_look(row), row.text(13)};
+  });
+}
 
 std::vector<EventRecord> Database::events(int limit) {
   Statement query(*connection_,
                   "SELECT at, kind, point_id, seed, message FROM (SELECT * FROM event ORDER BY event_id "
-                  "DESC LIMIT ?) ORDER BY event_id");
-  query.bind(limit);
-  std::vector<EventRecord> events;
-  while (query.step()) events.push_back(read_event(query));
-  return events;
+                  "DESC LIMIT ?) ORDER BY event_id",
+                  limit);
+  return query.rows(read_event);
 }
 
 std::optional<EventRecord> Database::event_of(const std::string& request) {
-  Statement query(*connection_, "SELECT at, kind, point_id, seed, message FROM event WHERE request = ?");
-  query.bind(request);
-  if (!query.step()) return std::nullopt;
-  return read_event(query);
+  Statement query(*connection_, "SELECT at, kind, point_id, seed, message FROM event WHERE request = ?",
+                  request);
+  return query.step() ? std::optional(read_event(query)) : std::nullopt;
 }
 
 std::vector<EngineRecord> Database::engines() {
   Statement query(*connection_, "SELECT engine_id, identity, provenance FROM engine ORDER BY engine_id");
-  std::vector<EngineRecord> engines;
-  while (query.step()) engines.push_back({query.integer(0), query.text(1), Json::parse(query.text(2))});
-  return engines;
+  return query.rows([](const Statement& row) {
+    return EngineRecord{row.integer(0), row.text(1), Json::parse(row.text(2))};
+  });
 }
 
 std::vector<KeptApart> Database::kept_apart(const std::string& hash) {
@@ -621,11 +540,9 @@ std::vector<KeptApart> Database::kept_apart(const std::string& hash) {
       *connection_,
       "SELECT engine_identity, count(content_sha256) FROM point LEFT JOIN realisation USING (point_id) "
       "WHERE hash = ? AND kept_apart = 1 GROUP BY point_id HAVING count(content_sha256) > 0 ORDER BY "
-      "point_id");
-  query.bind(hash);
-  std::vector<KeptApart> kept;
-  while (query.step()) kept.push_back({query.text(0), static_cast<int>(query.integer(1))});
-  return kept;
+      "point_id",
+      hash);
+  return query.rows([](const Statement& row) { return KeptApart{row.text(0), row.number(1)}; });
 }
 
 }  // namespace peclet::runner

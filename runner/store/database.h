@@ -5,6 +5,7 @@
 // of schema/campaign.sql; no other folder has SQL.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -57,6 +58,9 @@ struct RealisationRecord {
 struct StateCounts {
   int queued = 0, running = 0, done = 0, failed = 0, quarantined = 0;
   double cpu_seconds = 0;  // of done and failed together
+  int& of(SeedState state) {
+    return *std::array{&queued, &running, &done, &failed, &quarantined}.at(static_cast<std::size_t>(state));
+  }
   int terminal() const { return done + failed + quarantined; }
 };
 

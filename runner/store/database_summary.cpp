@@ -27,23 +27,8 @@ struct Aggregate {
   std::vector<int> jammed, lost;  // those of these that have jammed, or have no value for another reason
 
   void count(SeedState state, int seed, const std::string& cause, double cpu_seconds) {
-    switch (state) {
-      case SeedState::queued:
-        ++counts.queued;
-        return;
-      case SeedState::running:
-        ++counts.running;
-        return;
-      case SeedState::done:
-        ++counts.done;
-        break;
-      case SeedState::failed:
-        ++counts.failed;
-        break;
-      case SeedState::quarantined:
-        ++counts.quarantined;
-        break;
-    }
+    ++counts.of(state);
+    if (state == SeedState::queued || state == SeedState::running) return;
     if (is_jam(cause)) {
       jammed.push_back(seed);
     } else if (state != SeedState::done) {
@@ -80,7 +65,7 @@ std::map<std::int64_t, Aggregate> read_aggregates(Connection& connection) {
   std::map<std::int64_t, Aggregate> aggregates;
   while (query.step()) {
     Aggregate& aggregate = aggregates[query.integer(0)];
-    const int seed = static_cast<int>(query.integer(1));
+    const int seed = query.number(1);
     aggregate.count(seed_state(query.text(2)), seed, query.text(5), query.optional_real(4).value_or(0));
     const Observation observed = leading_observation(query.text(3));
     if (!observed.has_value()) continue;
@@ -97,7 +82,7 @@ using CountsByPoint = std::map<std::int64_t, std::map<std::string, int>>;
 CountsByPoint counts_by_point(Connection& connection, const char* sql) {
   Statement query(connection, sql);
   CountsByPoint counts;
-  while (query.step()) counts[query.integer(0)][query.text(1)] = static_cast<int>(query.integer(2));
+  while (query.step()) counts[query.integer(0)][query.text(1)] = query.number(2);
   return counts;
 }
 
@@ -139,7 +124,7 @@ std::map<std::int64_t, int> read_largest_earlier_looks(Connection& connection) {
       "SELECT point_id, max(seeds) FROM look WHERE target_id != (SELECT target_id FROM campaign) GROUP BY "
       "point_id");
   std::map<std::int64_t, int> largest;
-  while (query.step()) largest[query.integer(0)] = static_cast<int>(query.integer(1));
+  while (query.step()) largest[query.integer(0)] = query.number(1);
   return largest;
 }
 
@@ -283,8 +268,7 @@ std::optional<Look> checked_look(Database& database, const PointRecord& point, c
 int unreadable_results(Database& database, std::int64_t point) {
   Statement stored(
       database.connection(),
-      "SELECT document, text FROM result LEFT JOIN dictionary USING (point_id) WHERE point_id = ?");
-  stored.bind(point);
+      "SELECT document, text FROM result LEFT JOIN dictionary USING (point_id) WHERE point_id = ?", point);
   int unreadable = 0;
   while (stored.step()) {
     if (!was_deflated_with(stored.text(0), stored.text(1))) ++unreadable;
@@ -296,8 +280,9 @@ std::string readable_result(Database& database, std::int64_t point, int seed) {
   Statement stored(
       database.connection(),
       "SELECT document, text FROM result LEFT JOIN dictionary USING (point_id) WHERE point_id = ? "
-      "AND seed = ?");
-  if (!stored.bind(point).bind(seed).step()) return "";
+      "AND seed = ?",
+      point, seed);
+  if (!stored.step()) return "";
   try {
     return result_text(stored, 0, 1);
   } catch (const IntegrityError&) {
@@ -319,13 +304,13 @@ StateFaults state_faults(Database& database) {
 
 ClockFaults clock_faults(Database& database, const std::string& now) {
   Connection& connection = database.connection();
-  Statement future(connection,
-                   "SELECT (SELECT count(*) FROM event WHERE at > ?1) + (SELECT count(*) FROM attempt WHERE "
-                   "started_at > ?1)");
-  future.bind(now).step();
   return {connection.integer(
               "SELECT count(*) FROM event a JOIN event b ON b.event_id = a.event_id + 1 WHERE b.at < a.at"),
-          connection.integer("SELECT count(*) FROM attempt WHERE ended_at < started_at"), future.integer(0)};
+          connection.integer("SELECT count(*) FROM attempt WHERE ended_at < started_at"),
+          connection.integer(
+              "SELECT (SELECT count(*) FROM event WHERE at > ?1) + (SELECT count(*) FROM attempt WHERE "
+              "started_at > ?1)",
+              now)};
 }
 
 }  // namespace peclet::runner

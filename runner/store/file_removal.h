@@ -19,8 +19,7 @@ class FileRemoval {
   FileRemoval();
   // Returns when all removals have been tried. Files that could not be removed stay, without a message.
   ~FileRemoval();
-  FileRemoval(const FileRemoval&) = delete;
-  FileRemoval& operator=(const FileRemoval&) = delete;
+  FileRemoval& operator=(FileRemoval&&) = delete;
 
   // Removes the files soon, in this order; one that is not there is no matter. Throws std::system_error for
   // an earlier one that could not be removed.

@@ -27,8 +27,7 @@ class FolderLock {
   // Throws std::system_error naming the folder.
   explicit FolderLock(const std::filesystem::path& folder);
   ~FolderLock();
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
+  FolderLock& operator=(FolderLock&&) = delete;
 
  private:
   int descriptor_;
@@ -39,8 +38,7 @@ class FileLock {
  public:
   explicit FileLock(const std::filesystem::path& file);
   ~FileLock();
-  FileLock(const FileLock&) = delete;
-  FileLock& operator=(const FileLock&) = delete;
+  FileLock& operator=(FileLock&&) = delete;
 
  private:
   int descriptor_;
@@ -61,8 +59,7 @@ class OwnerLock {
   // require_own_folders() or when the lock is no regular file, std::system_error.
   explicit OwnerLock(const CampaignDirectory& directory);
   ~OwnerLock();
-  OwnerLock(const OwnerLock&) = delete;
-  OwnerLock& operator=(const OwnerLock&) = delete;
+  OwnerLock& operator=(OwnerLock&&) = delete;
 
   // Where the folder is now: another place when it was moved; nothing when it was deleted.
   std::optional<std::filesystem::path> folder() const;

@@ -46,13 +46,9 @@ bool read_numbers(std::string_view text, std::size_t most, std::vector<double>& 
 }
 
 std::int64_t layout_row(Connection& connection, const std::string& text) {
-  Statement known(connection, "SELECT layout_id FROM number_layout WHERE layout = ?");
-  if (known.bind(text).step()) {
-    const std::int64_t id = known.integer(0);
-    known.step();
-    return id;
-  }
-  Statement(connection, "INSERT INTO number_layout (layout) VALUES (?)").bind(text).run();
+  Statement known(connection, "SELECT layout_id FROM number_layout WHERE layout = ?", text);
+  if (known.step()) return known.integer(0);
+  connection.run("INSERT INTO number_layout (layout) VALUES (?)", text);
   return connection.last_insert_id();
 }
 
@@ -69,13 +65,8 @@ ResultNumbers numbers_of(const Json& result, const std::vector<std::string>& obs
 
 void store_numbers(Connection& connection, std::int64_t point, int seed, const ResultNumbers& numbers) {
   if (numbers.numbers.empty()) return;
-  Statement(connection,
-            "INSERT OR REPLACE INTO numbers (point_id, seed, layout_id, numbers) VALUES (?, ?, ?, ?)")
-      .bind(point)
-      .bind(seed)
-      .bind(layout_row(connection, numbers.layout))
-      .bind(numbers.numbers)
-      .run();
+  connection.run("INSERT OR REPLACE INTO numbers (point_id, seed, layout_id, numbers) VALUES (?, ?, ?, ?)",
+                 point, seed, layout_row(connection, numbers.layout), numbers.numbers);
 }
 
 Observation leading_observation(std::string_view text) {
@@ -89,8 +80,8 @@ Observation leading_observation(std::string_view text) {
 
 const NumberLayout& NumberStore::layout(std::int64_t id) {
   if (const auto known = layouts_.find(id); known != layouts_.end()) return known->second;
-  Statement query(connection_, "SELECT layout FROM number_layout WHERE layout_id = ?");
-  if (!query.bind(id).step()) throw IntegrityError("the database holds numbers without their layout");
+  Statement query(connection_, "SELECT layout FROM number_layout WHERE layout_id = ?", id);
+  if (!query.step()) throw IntegrityError("the database holds numbers without their layout");
   return layouts_.emplace(id, NumberLayout::of_text(query.text(0))).first->second;
 }
 
@@ -104,10 +95,10 @@ void NumberStore::for_each(std::int64_t point, int end, const Visit& visit) {
   Statement query(
       connection_,
       "SELECT seed, layout_id, numbers, cause FROM numbers JOIN realisation USING (point_id, seed) "
-      "WHERE point_id = ? AND seed < ? ORDER BY seed");
-  query.bind(point).bind(end);
+      "WHERE point_id = ? AND seed < ? ORDER BY seed",
+      point, end);
   while (query.step()) {
-    const int seed = static_cast<int>(query.integer(0));
+    const int seed = query.number(0);
     const NumberLayout& about = layout(query.integer(1));
     read(about, seed, query.text(2));
     visit({seed, is_jam(query.text(3)), about, numbers_});
@@ -119,11 +110,11 @@ std::vector<std::optional<Outcome>> NumberStore::outcomes(std::int64_t point) {
       connection_,
       "SELECT seed, layout_id, numbers, final_state_sha256 FROM realisation LEFT JOIN numbers USING "
       "(point_id, "
-      "seed) WHERE point_id = ? AND seed < ? AND state IN ('done', 'failed', 'quarantined') ORDER BY seed");
-  query.bind(point).bind(most_realisations);
+      "seed) WHERE point_id = ? AND seed < ? AND state IN ('done', 'failed', 'quarantined') ORDER BY seed",
+      point, most_realisations);
   std::vector<std::optional<Outcome>> outcomes;
   while (query.step()) {
-    const int seed = static_cast<int>(query.integer(0));
+    const int seed = query.number(0);
     outcomes.resize(static_cast<std::size_t>(seed) + 1);
     outcomes.back() = Outcome{};
     if (query.is_null(1)) continue;
@@ -138,8 +129,8 @@ bool NumberStore::agrees(std::int64_t point, int seed, const Json& result,
                          const std::vector<std::string>& observables) {
   Statement query(connection_,
                   "SELECT layout, numbers FROM numbers JOIN number_layout USING (layout_id) WHERE point_id = "
-                  "? AND seed = ?");
-  query.bind(point).bind(seed);
+                  "? AND seed = ?",
+                  point, seed);
   const bool has_numbers = query.step();
   const ResultNumbers numbers = numbers_of(result, observables);
   return has_numbers ? query.text(0) == numbers.layout && query.text(1) == numbers.numbers

@@ -14,20 +14,12 @@ namespace peclet::runner {
 
 void EventStore::write(const std::string& kind, std::optional<std::int64_t> point, std::optional<int> seed,
                        const std::string& message, const std::string& request) {
-  Statement(connection_,
-            "INSERT INTO event (at, kind, point_id, seed, message, request) VALUES (?, ?, ?, ?, ?, ?)")
-      .bind(utc_now())
-      .bind(kind)
-      .bind(point)
-      .bind(seed)
-      .bind(message)
-      .bind(request.empty() ? std::nullopt : std::optional<std::string>(request))
-      .run();
+  connection_.run("INSERT INTO event (at, kind, point_id, seed, message, request) VALUES (?, ?, ?, ?, ?, ?)",
+                  utc_now(), kind, point, seed, message, unless_empty(request));
 }
 
 bool EventStore::has_answered(const std::string& request) {
-  Statement query(connection_, "SELECT 1 FROM event WHERE request = ?");
-  return query.bind(request).step();
+  return Statement(connection_, "SELECT 1 FROM event WHERE request = ?", request).step();
 }
 
 namespace {
@@ -58,15 +50,12 @@ void PointStore::take_over(const Campaign& campaign) {
 
   const std::string document = campaign.document.dump();
   const bool unchanged = connection_.text("SELECT document FROM campaign") == document;
-  Statement(connection_,
-            "INSERT INTO campaign (campaign_id, name, document, target_id, created_at, updated_at) "
-            "VALUES (1, ?1, ?2, ?3, strftime('%Y-%m-%dT%H:%M:%SZ'), strftime('%Y-%m-%dT%H:%M:%SZ')) "
-            "ON CONFLICT DO UPDATE SET name = ?1, document = ?2, target_id = ?3, updated_at = "
-            "strftime('%Y-%m-%dT%H:%M:%SZ')")
-      .bind(campaign.name)
-      .bind(document)
-      .bind(target)
-      .run();
+  connection_.run(
+      "INSERT INTO campaign (campaign_id, name, document, target_id, created_at, updated_at) "
+      "VALUES (1, ?1, ?2, ?3, strftime('%Y-%m-%dT%H:%M:%SZ'), strftime('%Y-%m-%dT%H:%M:%SZ')) "
+      "ON CONFLICT DO UPDATE SET name = ?1, document = ?2, target_id = ?3, updated_at = "
+      "strftime('%Y-%m-%dT%H:%M:%SZ')",
+      campaign.name, document, target);
   if (!unchanged) events_.write("campaign", std::nullopt, std::nullopt, describe(campaign));
 }
 
@@ -79,12 +68,8 @@ std::int64_t PointStore::adopt_target(const Campaign& campaign) {
       "minimum = ? AND maximum = ?"};
   std::int64_t id = 0;
   for (const char* const sql : parts) {
-    Statement statement(connection_, sql);
-    statement.bind(target.observable)
-        .bind(canonical_json(criterion_json(target)))
-        .bind(target.confidence)
-        .bind(campaign.minimum_realisations)
-        .bind(campaign.maximum_realisations);
+    Statement statement(connection_, sql, target.observable, canonical_json(criterion_json(target)),
+                        target.confidence, campaign.minimum_realisations, campaign.maximum_realisations);
     if (statement.step()) id = statement.integer(0);
   }
   return id;
@@ -98,12 +83,7 @@ void PointStore::adopt_points(const Campaign& campaign) {
       "ON CONFLICT (hash) WHERE kept_apart = 0 DO UPDATE SET settings = ?3, label = ?4, place = ?5");
   int number = 0;
   for (const StatePoint& point : campaign.points) {
-    place.bind(point.hash)
-        .bind(canonical_json(point.scene))
-        .bind(canonical_json(point.settings))
-        .bind(point.label)
-        .bind(number++)
-        .run();
+    place.run(point.hash, canonical_json(point.scene), canonical_json(point.settings), point.label, number++);
   }
 }
 
@@ -113,8 +93,8 @@ void PointStore::observe_again(const Campaign& campaign) {
       connection_,
       "SELECT point_id, seed, document, dictionary.text, place FROM result JOIN realisation USING (point_id, "
       "seed) JOIN point USING (point_id) LEFT JOIN dictionary USING (point_id) WHERE state = 'done' OR cause "
-      "= ?");
-  done.bind(no_value);
+      "= ?",
+      no_value);
   Statement change(connection_,
                    "UPDATE realisation SET state = ?, cause = ? WHERE point_id = ? AND seed = ?");
   const std::vector<std::string> observables = campaign.target.observables();
@@ -126,59 +106,40 @@ void PointStore::observe_again(const Campaign& campaign) {
           "must be a number that the results have: " + plain(names_of_targets(document), longest_list));
     }
     const ResultNumbers numbers = numbers_of(document, observables);
-    store_numbers(connection_, done.integer(0), static_cast<int>(done.integer(1)), numbers);
-    change.bind(state_of(numbers.outcome))
-        .bind(cause_of(document.at("/ending/cause"_json_pointer), numbers.outcome))
-        .bind(done.integer(0))
-        .bind(done.integer(1))
-        .run();
+    store_numbers(connection_, done.integer(0), done.number(1), numbers);
+    change.run(state_of(numbers.outcome),
+               cause_of(document.at("/ending/cause"_json_pointer), numbers.outcome), done.integer(0),
+               done.number(1));
   }
 }
 
 void PointStore::set_priority(std::int64_t point, int priority) {
-  Statement(connection_, "UPDATE point SET priority = ? WHERE point_id = ?").bind(priority).bind(point).run();
+  connection_.run("UPDATE point SET priority = ? WHERE point_id = ?", priority, point);
 }
 
 void PointStore::set_cancelled(std::int64_t point, bool cancelled) {
-  Statement(connection_, "UPDATE point SET cancelled = ? WHERE point_id = ?")
-      .bind(cancelled)
-      .bind(point)
-      .run();
+  connection_.run("UPDATE point SET cancelled = ? WHERE point_id = ?", cancelled, point);
 }
 
 void PointStore::store_prediction(std::int64_t point, const Prediction& prediction, double cpu_seconds) {
-  Statement(connection_,
-            "INSERT OR IGNORE INTO prediction (point_id, target_id, made_at, pilot, seeds, lower, upper, "
-            "cpu_seconds) SELECT ?, target_id, strftime('%Y-%m-%dT%H:%M:%SZ', 'now'), ?, ?, ?, ?, ? FROM "
-            "campaign")
-      .bind(point)
-      .bind(prediction.pilot)
-      .bind(prediction.seeds.likely)
-      .bind(prediction.seeds.lower)
-      .bind(prediction.seeds.upper)
-      .bind(cpu_seconds)
-      .run();
+  connection_.run(
+      "INSERT OR IGNORE INTO prediction (point_id, target_id, made_at, pilot, seeds, lower, upper, "
+      "cpu_seconds) SELECT ?, target_id, strftime('%Y-%m-%dT%H:%M:%SZ', 'now'), ?, ?, ?, ?, ? FROM "
+      "campaign",
+      point, prediction.pilot, prediction.seeds.likely, prediction.seeds.lower, prediction.seeds.upper,
+      cpu_seconds);
 }
 
 void PointStore::keep_apart(const PointRecord& point, const std::string& engine) {
-  Statement(connection_, "UPDATE point SET place = NULL, kept_apart = 1 WHERE point_id = ?")
-      .bind(point.id)
-      .run();
+  connection_.run("UPDATE point SET place = NULL, kept_apart = 1 WHERE point_id = ?", point.id);
   // What the engine did for the scene before, if it did, is the campaign's again. The row is the engine's
   // from now on, not only from its first result on: the one that was replaced must not take it up.
-  Statement(connection_,
-            "INSERT INTO point (hash, scene, settings, label, place, engine_identity, priority, cancelled) "
-            "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8) ON CONFLICT (hash, engine_identity) DO UPDATE SET "
-            "kept_apart = 0, settings = ?3, label = ?4, place = ?5, priority = ?7, cancelled = ?8")
-      .bind(point.hash)
-      .bind(canonical_json(point.scene))
-      .bind(canonical_json(point.settings))
-      .bind(point.label)
-      .bind(*point.place)
-      .bind(engine)
-      .bind(point.priority)
-      .bind(point.cancelled)
-      .run();
+  connection_.run(
+      "INSERT INTO point (hash, scene, settings, label, place, engine_identity, priority, cancelled) "
+      "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8) ON CONFLICT (hash, engine_identity) DO UPDATE SET "
+      "kept_apart = 0, settings = ?3, label = ?4, place = ?5, priority = ?7, cancelled = ?8",
+      point.hash, canonical_json(point.scene), canonical_json(point.settings), point.label, *point.place,
+      engine, point.priority, point.cancelled);
   events_.write("engine-accepted", point.id, std::nullopt,
                 fmt::format("results of engine {} are kept apart; engine {} takes the point up",
                             point.engine_identity, engine));

@@ -140,31 +140,19 @@ std::vector<FileRecord> files_where(Connection& connection, const char* conditio
       connection,
       fmt::format("SELECT hash, point_id, seed, name, bytes, sha256, kept FROM file JOIN point USING "
                   "(point_id) WHERE {} ORDER BY point_id, seed, name",
-                  condition));
-  query.bind(point_id).bind(seed);
-  std::vector<FileRecord> files;
-  while (query.step()) {
-    files.push_back(checked({query.text(0),
-                             query.integer(1),
-                             static_cast<int>(query.integer(2)),
-                             {query.text(3), static_cast<std::uint64_t>(query.integer(4)), query.text(5)},
-                             query.integer(6) != 0}));
-  }
-  return files;
+                  condition),
+      point_id, seed);
+  return query.rows([](const Statement& row) {
+    const LeftFile file{row.text(3), static_cast<std::uint64_t>(row.integer(4)), row.text(5)};
+    return checked({row.text(0), row.integer(1), row.number(2), file, row.integer(6) != 0});
+  });
 }
 
 }  // namespace
 
 void store_file(Connection& connection, std::int64_t point_id, int seed, const LeftFile& file, bool kept) {
-  Statement(connection,
-            "INSERT INTO file (point_id, seed, name, bytes, sha256, kept) VALUES (?, ?, ?, ?, ?, ?)")
-      .bind(point_id)
-      .bind(seed)
-      .bind(file.name)
-      .bind(static_cast<std::int64_t>(file.bytes))
-      .bind(file.sha256)
-      .bind(kept)
-      .run();
+  connection.run("INSERT INTO file (point_id, seed, name, bytes, sha256, kept) VALUES (?, ?, ?, ?, ?, ?)",
+                 point_id, seed, file.name, static_cast<std::int64_t>(file.bytes), file.sha256, kept);
 }
 
 std::vector<FileRecord> files_in(Connection& connection) { return files_where(connection, "?1 = ?2", 0, 0); }

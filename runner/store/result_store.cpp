@@ -33,8 +33,7 @@ class Deflation {
     }
   }
   ~Deflation() { deflateEnd(&stream_); }
-  Deflation(const Deflation&) = delete;
-  Deflation& operator=(const Deflation&) = delete;
+  Deflation& operator=(Deflation&&) = delete;
 
   // As if it had never run before.
   std::string run(std::string_view text, std::string_view dictionary) {
@@ -65,8 +64,7 @@ class Inflation {
     if (inflateInit(&stream_) != Z_OK) throw std::bad_alloc();
   }
   ~Inflation() { inflateEnd(&stream_); }
-  Inflation(const Inflation&) = delete;
-  Inflation& operator=(const Inflation&) = delete;
+  Inflation& operator=(Inflation&&) = delete;
 
   std::string run(std::string_view bytes, std::string_view dictionary) {
     std::string text;
@@ -127,22 +125,17 @@ bool was_deflated_with(std::string_view bytes, std::string_view dictionary) {
 
 void store_result_text(Connection& connection, std::int64_t point, int seed, std::string_view text,
                        bool completed) {
-  Statement known(connection, "SELECT text FROM dictionary WHERE point_id = ?");
+  Statement known(connection, "SELECT text FROM dictionary WHERE point_id = ?", point);
   std::string dictionary;
-  if (known.bind(point).step()) {
+  if (known.step()) {
     dictionary = known.text(0);
     known.step();
   } else if (completed) {
     dictionary = text;
-    Statement(connection, "INSERT INTO dictionary (point_id, text) VALUES (?, ?)")
-        .bind(point)
-        .bind(text)
-        .run();
+    connection.run("INSERT INTO dictionary (point_id, text) VALUES (?, ?)", point, text);
   }
   const std::string bytes = deflated(text, dictionary);
-  Statement(connection, "INSERT INTO result (point_id, seed, document) VALUES (?, ?, ?)")
-      .bind(point)
-      .bind(seed)
+  Statement(connection, "INSERT INTO result (point_id, seed, document) VALUES (?, ?, ?)", point, seed)
       .bind_blob(bytes)
       .run();
 }
@@ -167,13 +160,13 @@ std::optional<Number> number_at(const Json& document, const char* pointer) {
 }  // namespace
 
 StoredResult ResultStore::store(const RealisationResult& result, const Target& target) {
+  const std::string& identity = result.engine;
   Statement known(
       connection_,
       "SELECT point.point_id, coalesce(engine_identity, ''), content_sha256, state, kept_apart FROM point "
       "LEFT JOIN realisation ON realisation.point_id = point.point_id AND seed = ? WHERE hash = ? AND "
-      "(kept_apart = 0 OR engine_identity = ?) ORDER BY kept_apart DESC");
-  const std::string& identity = result.engine;
-  known.bind(result.seed).bind(result.point).bind(identity);
+      "(kept_apart = 0 OR engine_identity = ?) ORDER BY kept_apart DESC",
+      result.seed, result.point, identity);
   if (!known.step()) return {Stored::unknown_point};
   const std::int64_t point = known.integer(0);
   const bool apart = known.integer(4) != 0;
@@ -187,7 +180,7 @@ StoredResult ResultStore::store(const RealisationResult& result, const Target& t
   if (!known.is_null(2)) {
     if (known.text(2) == result.content_sha256)
       return {apart ? Stored::stored_apart : Stored::duplicate, {}, "", point};
-    Statement(connection_, "UPDATE point SET suspect = 1 WHERE point_id = ?").bind(point).run();
+    connection_.run("UPDATE point SET suspect = 1 WHERE point_id = ?", point);
     events_.write("suspect", point, result.seed, "two runs of the same seed gave different results");
     return {Stored::conflict};
   }
@@ -204,10 +197,7 @@ StoredResult ResultStore::store(const RealisationResult& result, const Target& t
     if (!stored.reason.empty()) events_.write("lost", point, result.seed, stored.reason);
   }
   for (const std::string& code : flags_of(result)) events_.write("flag", point, result.seed, code);
-  Statement(connection_, "UPDATE point SET engine_identity = ? WHERE point_id = ?")
-      .bind(identity)
-      .bind(point)
-      .run();
+  connection_.run("UPDATE point SET engine_identity = ? WHERE point_id = ?", identity, point);
   return stored;
 }
 
@@ -215,28 +205,20 @@ void ResultStore::store_columns(std::int64_t point, const RealisationResult& res
                                 const StoredResult& stored) {
   const Json& document = result.document;
   const Json& final_state = document.at("final_state_sha256");
-  Statement(
-      connection_,
+  connection_.run(
       "INSERT OR REPLACE INTO realisation (point_id, seed, state, cause, timestep, equilibration_steps, "
       "production_steps, production_strain, statistical_inefficiency, largest_overlap, cpu_seconds, "
       "wall_seconds, final_state_sha256, content_sha256, engine_id) VALUES (?, ?, ?, ?, ?, ?, ?, ?, "
-      "?, ?, ?, ?, ?, ?, ?)")
-      .bind(point)
-      .bind(result.seed)
-      .bind(state_of(stored.outcome))
-      .bind(stored.cause)
-      .bind(number_at<double>(document, "/timestep"))
-      .bind(number_at<std::int64_t>(document, "/steps/equilibration"))
-      .bind(number_at<std::int64_t>(document, "/steps/production"))
-      .bind(number_at<double>(document, "/strain/production"))
-      .bind(number_at<double>(document, "/statistical_inefficiency"))
-      .bind(number_at<double>(document, "/largest_overlap"))
-      .bind(number_at<double>(document, "/cost/cpu_seconds"))
-      .bind(number_at<double>(document, "/cost/wall_seconds"))
-      .bind(final_state.is_string() ? std::optional(final_state.get<std::string>()) : std::nullopt)
-      .bind(result.content_sha256)
-      .bind(engine_row(database_, document.at("engine")))
-      .run();
+      "?, ?, ?, ?, ?, ?, ?)",
+      point, result.seed, state_of(stored.outcome), stored.cause, number_at<double>(document, "/timestep"),
+      number_at<std::int64_t>(document, "/steps/equilibration"),
+      number_at<std::int64_t>(document, "/steps/production"),
+      number_at<double>(document, "/strain/production"),
+      number_at<double>(document, "/statistical_inefficiency"),
+      number_at<double>(document, "/largest_overlap"), number_at<double>(document, "/cost/cpu_seconds"),
+      number_at<double>(document, "/cost/wall_seconds"),
+      final_state.is_string() ? std::optional(final_state.get<std::string>()) : std::nullopt,
+      result.content_sha256, engine_row(database_, document.at("engine")));
 }
 
 void ResultStore::withdraw(std::int64_t point, int seed) {
@@ -246,18 +228,16 @@ void ResultStore::withdraw(std::int64_t point, int seed) {
         "DELETE FROM file WHERE point_id = ? AND seed = ?",
         "UPDATE realisation SET state = 'queued', cause = NULL, content_sha256 = NULL, "
         "final_state_sha256 = NULL WHERE point_id = ? AND seed = ?"}) {
-    Statement(connection_, sql).bind(point).bind(seed).run();
+    connection_.run(sql, point, seed);
   }
 }
 
 void ResultStore::store_looks(std::int64_t point, const std::vector<Look>& looks) {
   // Looks only ever grow, except when a late result replaces a quarantined seed: then they are made again.
-  Statement(connection_,
-            "DELETE FROM look WHERE point_id = ? AND target_id = (SELECT target_id FROM campaign) AND "
-            "seeds > ?")
-      .bind(point)
-      .bind(looks.empty() ? 0 : looks.back().seeds)
-      .run();
+  connection_.run(
+      "DELETE FROM look WHERE point_id = ? AND target_id = (SELECT target_id FROM campaign) AND "
+      "seeds > ?",
+      point, looks.empty() ? 0 : looks.back().seeds);
   Statement insert(
       connection_,
       "INSERT INTO look (point_id, target_id, seeds, lost, count, mean, standard_error, half_width, "
@@ -272,34 +252,21 @@ void ResultStore::store_looks(std::int64_t point, const std::vector<Look>& looks
       "NOT ?10 OR verdict != ?11 OR skewness IS NOT ?13 OR transient != ?14 OR observables IS NOT ?15");
   const std::string now = utc_now();
   for (const Look& look : looks) {
-    insert.bind(point)
-        .bind(look.seeds)
-        .bind(look.lost)
-        .bind(look.estimate.count)
-        .bind(look.controlled.mean)
-        .bind(look.controlled.standard_error)
-        .bind(look.controlled_half_width)
-        .bind(look.estimate.mean)
-        .bind(look.estimate.standard_error)
-        .bind(look.half_width)
-        .bind(to_string(look.verdict))
-        .bind(now)
-        .bind(look.skewness)
-        .bind(look.transient)
-        .bind(look.each.empty() ? std::nullopt : std::optional(observables_json(look).dump()))
-        .run();
+    insert.run(point, look.seeds, look.lost, look.estimate.count, look.controlled.mean,
+               look.controlled.standard_error, look.controlled_half_width, look.estimate.mean,
+               look.estimate.standard_error, look.half_width, to_string(look.verdict), now, look.skewness,
+               look.transient,
+               look.each.empty() ? std::nullopt : std::optional(observables_json(look).dump()));
   }
 }
 
 std::int64_t engine_row(Database& database, const Json& provenance) {
   Connection& connection = database.connection();
   const std::string text = canonical_json(provenance);
-  Statement known(connection, "SELECT engine_id FROM engine WHERE provenance = ?");
-  if (known.bind(text).step()) return known.integer(0);
-  Statement(connection, "INSERT INTO engine (identity, provenance) VALUES (?, ?)")
-      .bind(engine_identity(provenance))
-      .bind(text)
-      .run();
+  Statement known(connection, "SELECT engine_id FROM engine WHERE provenance = ?", text);
+  if (known.step()) return known.integer(0);
+  connection.run("INSERT INTO engine (identity, provenance) VALUES (?, ?)", engine_identity(provenance),
+                 text);
   return connection.last_insert_id();
 }
 

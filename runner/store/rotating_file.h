@@ -15,8 +15,7 @@ class RotatingFile {
   // Each file has at most `limit` bytes; `older` of them are kept beside the one that is written.
   RotatingFile(std::filesystem::path path, std::uint64_t limit, int older);
   ~RotatingFile();
-  RotatingFile(const RotatingFile&) = delete;
-  RotatingFile& operator=(const RotatingFile&) = delete;
+  RotatingFile& operator=(RotatingFile&&) = delete;
 
   // Appends the bytes; a piece is not divided between two files unless it is longer than one.
   void append(std::string_view bytes);

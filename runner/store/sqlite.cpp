@@ -190,18 +190,6 @@ void Connection::execute(const std::string& sql) {
   if (code != SQLITE_OK) complain(path_, handle_, code, sql, errno);
 }
 
-std::int64_t Connection::integer(const std::string& sql) {
-  Statement query(*this, sql);
-  query.step();
-  return query.integer(0);
-}
-
-std::string Connection::text(const std::string& sql) {
-  Statement query(*this, sql);
-  query.step();
-  return query.text(0);
-}
-
 std::int64_t Connection::last_insert_id() const { return sqlite3_last_insert_rowid(handle_); }
 
 // Without waiting for a reader: it is only tried.
@@ -217,7 +205,7 @@ void Connection::empty_log() {
   if (!error.no_room()) throw error;
 }
 
-int Connection::changes() const { return sqlite3_changes(handle_); }
+int Connection::rows_changed() const { return sqlite3_changes(handle_); }
 
 void Connection::fail(const std::string& doing, int code) const {
   const int system_error = errno;
@@ -286,11 +274,6 @@ bool Statement::step() {
   return false;
 }
 
-void Statement::run() {
-  while (step()) {
-  }
-}
-
 bool Statement::is_null(int column) const { return sqlite3_column_type(statement_, column) == SQLITE_NULL; }
 
 std::int64_t Statement::integer(int column) const { return sqlite3_column_int64(statement_, column); }
@@ -308,13 +291,15 @@ std::string Statement::text(int column) const {
 }
 
 std::optional<double> Statement::optional_real(int column) const {
-  if (is_null(column)) return std::nullopt;
-  return real(column);
+  return is_null(column) ? std::nullopt : std::optional(real(column));
 }
 
 std::optional<std::int64_t> Statement::optional_integer(int column) const {
-  if (is_null(column)) return std::nullopt;
-  return integer(column);
+  return is_null(column) ? std::nullopt : std::optional(integer(column));
+}
+
+std::optional<int> Statement::optional_number(int column) const {
+  return is_null(column) ? std::nullopt : std::optional(number(column));
 }
 
 Transaction::Transaction(Connection& connection, Kind kind) : connection_(connection) {

@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <vector>
 
 struct sqlite3;
 struct sqlite3_stmt;
@@ -54,20 +55,23 @@ class Connection {
   // when the database or a file of SQLite's beside it is no regular file.
   Connection(const std::string& path, Access access, int busy_milliseconds);
   ~Connection();
-  Connection(const Connection&) = delete;
-  Connection& operator=(const Connection&) = delete;
+  Connection& operator=(Connection&&) = delete;
 
   // Waits so long for other connections' locks from now on.
   void wait_for_locks(int busy_milliseconds);
 
   // Runs any number of statements and ignores their rows.
   void execute(const std::string& sql);
-  // The single integer (text) that a query gives.
-  std::int64_t integer(const std::string& sql);
-  std::string text(const std::string& sql);
+  // Runs one statement with these values in the places of its question marks. Returns how many rows it
+  // changed.
+  template <typename... Values>
+  int run(std::string_view sql, const Values&... values);
+  // The single integer (text) that a query with these values gives.
+  template <typename... Values>
+  std::int64_t integer(std::string_view sql, const Values&... values);
+  template <typename... Values>
+  std::string text(std::string_view sql, const Values&... values);
   std::int64_t last_insert_id() const;
-  // Rows changed by the last statement.
-  int changes() const;
   // Brings what is in the write-ahead log into the database and gives its room back, unless a reader or a
   // full disk stands in the way. Outside of transactions. Throws DatabaseError.
   void empty_log();
@@ -83,6 +87,8 @@ class Connection {
   void put_back(sqlite3_stmt* statement) noexcept;
 
  private:
+  int rows_changed() const;
+
   std::string path_;
   int busy_milliseconds_;
   sqlite3* handle_ = nullptr;
@@ -93,9 +99,13 @@ class Connection {
 class Statement {
  public:
   Statement(Connection& connection, std::string_view sql);
+  template <typename... Values>
+  Statement(Connection& connection, std::string_view sql, const Values&... values)
+      : Statement(connection, sql) {
+    (bind(values), ...);
+  }
   ~Statement();
-  Statement(const Statement&) = delete;
-  Statement& operator=(const Statement&) = delete;
+  Statement& operator=(Statement&&) = delete;
 
   Statement& bind(std::int64_t value);
   Statement& bind(int value) { return bind(std::int64_t{value}); }
@@ -112,15 +122,29 @@ class Statement {
 
   // True when there is a row to read. After the last row the statement is ready to be bound again.
   bool step();
-  // Runs a statement that gives no rows.
-  void run();
+  // Runs a statement that gives no rows, with these values.
+  template <typename... Values>
+  void run(const Values&... values) {
+    (bind(values), ...);
+    while (step()) {
+    }
+  }
+  // What read(*this) returns for each row.
+  template <typename Read>
+  auto rows(const Read& read) {
+    std::vector<decltype(read(*this))> rows;
+    while (step()) rows.push_back(read(*this));
+    return rows;
+  }
 
   bool is_null(int column) const;
   std::int64_t integer(int column) const;
+  int number(int column) const { return static_cast<int>(integer(column)); }
   double real(int column) const;       // NULL is NaN
   std::string text(int column) const;  // or the bytes of a blob; NULL is empty
   std::optional<double> optional_real(int column) const;
   std::optional<std::int64_t> optional_integer(int column) const;
+  std::optional<int> optional_number(int column) const;
 
  private:
   void check(int code) const;
@@ -130,14 +154,38 @@ class Statement {
   int next_parameter_ = 1;
 };
 
+template <typename... Values>
+int Connection::run(std::string_view sql, const Values&... values) {
+  Statement(*this, sql).run(values...);
+  return rows_changed();
+}
+
+template <typename... Values>
+std::int64_t Connection::integer(std::string_view sql, const Values&... values) {
+  Statement query(*this, sql, values...);
+  query.step();
+  return query.integer(0);
+}
+
+template <typename... Values>
+std::string Connection::text(std::string_view sql, const Values&... values) {
+  Statement query(*this, sql, values...);
+  query.step();
+  return query.text(0);
+}
+
+// To be bound: NULL if the text is empty.
+inline std::optional<std::string_view> unless_empty(std::string_view text) {
+  return text.empty() ? std::nullopt : std::optional(text);
+}
+
 // BEGIN IMMEDIATE for a writer, BEGIN for a reader's snapshot; rolled back unless committed.
 class Transaction {
  public:
   enum class Kind { write, snapshot };
   explicit Transaction(Connection& connection, Kind kind = Kind::write);
   ~Transaction();
-  Transaction(const Transaction&) = delete;
-  Transaction& operator=(const Transaction&) = delete;
+  Transaction& operator=(Transaction&&) = delete;
   void commit();
 
  private:
@@ -150,8 +198,7 @@ class Savepoint {
  public:
   explicit Savepoint(Connection& connection);
   ~Savepoint();
-  Savepoint(const Savepoint&) = delete;
-  Savepoint& operator=(const Savepoint&) = delete;
+  Savepoint& operator=(Savepoint&&) = delete;
   void keep();
 
  private:

@@ -48,10 +48,8 @@ Json Vocabulary::key(const std::string& pointer) const {
 void keep_vocabulary(Database& database, const Vocabulary& vocabulary) {
   Connection& connection = database.connection();
   Transaction transaction(connection);
-  Statement(connection, "DELETE FROM vocabulary").run();
-  Statement(connection, "INSERT INTO vocabulary (document) VALUES (?)")
-      .bind(vocabulary.document().dump())
-      .run();
+  connection.run("DELETE FROM vocabulary");
+  connection.run("INSERT INTO vocabulary (document) VALUES (?)", vocabulary.document().dump());
   transaction.commit();
 }
 
