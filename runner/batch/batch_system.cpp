@@ -4,14 +4,14 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <sstream>
 #include <system_error>
 
 #include "contract/durable_file.h"
 #include "contract/errors.h"
+#include "contract/text.h"
 #include "runner/campaign/quoting.h"
-#include "runner/engines/command.h"
+#include "runner/engines/engine_process.h"
 
 namespace peclet::runner {
 namespace {
@@ -27,13 +27,6 @@ constexpr const char* letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZ_";
 std::string one_line(std::string text) {
   while (!text.empty() && text.back() == '\n') text.pop_back();
   return text.find('\n') == std::string::npos ? text : "";
-}
-
-std::optional<int> whole_number(const std::string& text) {
-  int number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return number;
 }
 
 std::optional<TaskState> task_state(const std::string& word) {
@@ -170,7 +163,7 @@ std::optional<QueryAnswer> query_job(const fs::path& folder, const std::string& 
     std::istringstream words(line);
     std::string job, index, state, rest;
     words >> job >> index >> state >> rest;
-    const std::optional<int> task = whole_number(index);
+    const std::optional<int> task = number_in<int>(index);
     const std::optional<TaskState> known = task_state(state);
     if (!task || !known || !rest.empty()) {
       why = "an answer of another form: " + line;
@@ -189,7 +182,7 @@ bool cancel_job(const fs::path& folder, const std::string& name, std::string& wh
 
 int largest_array(const BatchTemplate& scripts, int otherwise) {
   const CommandAnswer said = run_command({"sh", "-c", scripts.at("largest.sh")}, patience);
-  const std::optional<int> number = said.succeeded() ? whole_number(one_line(said.output)) : std::nullopt;
+  const std::optional<int> number = said.succeeded() ? number_in<int>(one_line(said.output)) : std::nullopt;
   return number && *number > 0 ? *number : otherwise;
 }
 

@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <csignal>
 #include <random>
 #include <utility>
@@ -14,7 +13,6 @@
 #include "runner/batch/bundle_files.h"
 #include "runner/campaign/number_text.h"
 #include "runner/engines/engine_process.h"
-#include "runner/engines/worker_pool.h"
 #include "runner/engines/worker_process.h"
 #include "runner/store/blame.h"
 #include "runner/store/disk_room.h"

@@ -1,15 +1,12 @@
 #include "runner/batch/bundle_files.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <algorithm>
 #include <system_error>
 
 #include "contract/documents.h"
 #include "contract/durable_file.h"
 #include "contract/errors.h"
-#include "runner/store/blame.h"
 #include "runner/store/result_files.h"
 #include "runner/store/spool.h"
 

@@ -15,7 +15,6 @@
 // Every file is written whole (temporary file, fsync, rename) by one process at a time.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>

@@ -14,7 +14,7 @@
 #include "runner/campaign/campaign_file.h"
 #include "runner/engines/engine_process.h"
 #include "runner/engines/scene_check.h"
-#include "runner/maintenance/restore.h"
+#include "runner/maintenance/backup.h"
 #include "runner/owner/open_campaign.h"
 #include "runner/owner/owned_campaign.h"
 #include "runner/owner/progress.h"

@@ -9,7 +9,6 @@
 #include "runner/command_line/verb_set.h"
 #include "runner/maintenance/backup.h"
 #include "runner/maintenance/doctor.h"
-#include "runner/maintenance/restore.h"
 
 namespace peclet::runner {
 namespace {

@@ -16,7 +16,7 @@
 #include "runner/campaign/campaign_file.h"
 #include "runner/campaign/number_text.h"
 #include "runner/command_line/print.h"
-#include "runner/engines/command.h"
+#include "runner/engines/engine_process.h"
 #include "runner/engines/usable_cores.h"
 #include "runner/engines/worker_process.h"
 #include "runner/maintenance/backup.h"
@@ -28,7 +28,7 @@
 #include "runner/owner/request_handler.h"
 #include "runner/owner/run_log.h"
 #include "runner/reports/status.h"
-#include "runner/statistics/budget.h"
+#include "runner/statistics/scheduler.h"
 #include "runner/store/disk_room.h"
 #include "runner/store/sqlite.h"
 

@@ -3,9 +3,6 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <cstdlib>
-#include <string>
-#include <system_error>
 #include <variant>
 
 #include "contract/frames.h"
@@ -19,30 +16,7 @@
 namespace peclet::runner {
 namespace {
 
-namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
-
-// A folder that looks like a campaign's to the engine.
-class TrialFolder {
- public:
-  TrialFolder() {
-    std::string name = (fs::temp_directory_path() / "peclet-trial-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) {
-      throw std::system_error(errno, std::generic_category(), name);
-    }
-    path_ = name;
-    create_folders(CampaignDirectory(path_));
-  }
-  ~TrialFolder() {
-    std::error_code ignored;  // what is left of it lies where temporary files are
-    fs::remove_all(path_, ignored);
-  }
-  TrialFolder& operator=(TrialFolder&&) = delete;
-  CampaignDirectory directory() const { return CampaignDirectory(path_); }
-
- private:
-  fs::path path_;
-};
 
 class Trial {
  public:
@@ -112,15 +86,17 @@ class Trial {
 }  // namespace
 
 CostTrial try_cost(const Json& scene, const EngineCommand& command) {
-  const TrialFolder folder;
+  const ScratchFolder folder("peclet-trial");
+  const CampaignDirectory directory(folder.path());
+  create_folders(directory);
   StopSignals signals;
-  ProcessPool pool(1, command, folder.directory(), signals);
+  ProcessPool pool(1, command, directory, signals);
   Trial trial(scene);
   pool.start(0);
   bool goes_on = true;
   while (goes_on && !trial.is_late()) {
     for (const WorkerEvent& event : pool.wait(std::chrono::milliseconds(100))) {
-      goes_on = goes_on && trial.hear(event, pool, folder.directory());
+      goes_on = goes_on && trial.hear(event, pool, directory);
     }
   }
   pool.kill(0);

@@ -1,11 +1,9 @@
 // What a realisation may cost, from two seconds of it, where nothing is known yet.
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
 
-#include "runner/campaign/campaign.h"
 #include "runner/engines/engine_process.h"
 
 namespace peclet::runner {

@@ -2,17 +2,19 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <spawn.h>
+#include <sys/mman.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
-#include <chrono>
 #include <csignal>
 #include <cstdlib>
-#include <cstring>
+#include <string_view>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -25,6 +27,7 @@ namespace peclet::runner {
 namespace {
 
 namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
 
 bool is_file(const fs::path& path) {
   std::error_code impossible;  // a loop of links, a name that is too long
@@ -55,20 +58,33 @@ std::vector<fs::path> search_path() {
   return folders;
 }
 
-// Of the pipe that an engine prints into, and the most that is read of it at a time.
+// Throws std::system_error, which names what was being done, unless `error` is 0.
+void check(int error, const std::string& doing) {
+  if (error != 0) throw std::system_error(error, std::generic_category(), doing);
+}
+
+// The size of the pipe that an engine prints into, and the most that is read of it at a time [bytes].
 constexpr int pipe_size = 1 << 18;
 
-// Two descriptors that belong together; those that are left are closed.
-struct Pair {
-  std::array<int, 2> ends{-1, -1};
-  Pair() = default;
-  Pair& operator=(Pair&&) = delete;
-  ~Pair() {
-    for (const int end : ends) {
-      if (end >= 0) close(end);
-    }
-  }
+struct Ends {
+  Descriptor first, second;
 };
+
+Ends make_pipe() {
+  std::array<int, 2> ends{};
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) check(errno, "pipe");
+  return {Descriptor(ends[0]), Descriptor(ends[1])};
+}
+
+// A file in memory that holds the text, to be read from its beginning. A pipe might fill up before the
+// program reads.
+Descriptor file_with(const std::string& text) {
+  Descriptor file(memfd_create("input", MFD_CLOEXEC));
+  if (file.number() < 0) check(errno, "memfd_create");
+  write_all(file.number(), text, "memfd_create");
+  lseek(file.number(), 0, SEEK_SET);
+  return file;
+}
 
 // As exec(3) wants them; valid as long as the words are.
 std::vector<char*> pointers(std::vector<std::string>& words) {
@@ -79,29 +95,20 @@ std::vector<char*> pointers(std::vector<std::string>& words) {
   return pointers;
 }
 
-// The settings of posix_spawn(3), which own memory.
+// The settings of posix_spawn(3), which own memory: a process group of its own, and signals as usual, which
+// this process may have blocked.
 class SpawnSettings {
  public:
-  // What the engine prints goes to `output`.
-  SpawnSettings(int socket, int output, const EngineCommand& command) {
+  SpawnSettings(int input, int output, int errors) {
     check(posix_spawn_file_actions_init(&actions_), "posix_spawn");
     check(posix_spawnattr_init(&attributes_), "posix_spawn");
-    check(posix_spawn_file_actions_adddup2(&actions_, socket, 0), "posix_spawn");
-    check(posix_spawn_file_actions_adddup2(&actions_, output, 1), "posix_spawn");
-    check(posix_spawn_file_actions_adddup2(&actions_, 1, 2), "posix_spawn");
-    if (!command.folder.empty()) {
-      check(posix_spawn_file_actions_addchdir_np(&actions_, command.folder.c_str()), command.folder.c_str());
+    const std::array streams{input, output, errors};
+    for (int stream = 0; stream < 3; ++stream) {
+      check(posix_spawn_file_actions_adddup2(&actions_, streams.at(static_cast<std::size_t>(stream)), stream),
+            "posix_spawn");
     }
-
-    // The owner takes signals from a descriptor and has them blocked; the engine starts with the usual ones,
-    // but for SIGPIPE: an engine that prints when its owner is gone must live to write its checkpoint.
-    sigset_t blocked, all;
-    sigemptyset(&blocked);
-    for (const int number : command.blocked_signals) sigaddset(&blocked, number);
-    sigfillset(&all);
-    sigdelset(&all, SIGPIPE);
-    check(posix_spawnattr_setsigmask(&attributes_, &blocked), "posix_spawn");
-    check(posix_spawnattr_setsigdefault(&attributes_, &all), "posix_spawn");
+    sigemptyset(&blocked_);
+    sigfillset(&usual_);
     check(posix_spawnattr_setpgroup(&attributes_, 0), "posix_spawn");
     check(posix_spawnattr_setflags(&attributes_,
                                    POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF),
@@ -113,13 +120,64 @@ class SpawnSettings {
   }
   SpawnSettings& operator=(SpawnSettings&&) = delete;
 
-  const posix_spawn_file_actions_t* actions() const { return &actions_; }
-  const posix_spawnattr_t* attributes() const { return &attributes_; }
+  void run_in(const fs::path& folder) {
+    check(posix_spawn_file_actions_addchdir_np(&actions_, folder.c_str()), folder.string());
+  }
+  void block(int signal) { sigaddset(&blocked_, signal); }
+  // Leaves the signal ignored if this process ignores it.
+  void inherit(int signal) { sigdelset(&usual_, signal); }
+
+  // Starts the program, found on PATH, with these variables beside those of this process.
+  pid_t spawn(std::vector<std::string> words, std::vector<std::string> variables = {}) {
+    check(posix_spawnattr_setsigmask(&attributes_, &blocked_), "posix_spawn");
+    check(posix_spawnattr_setsigdefault(&attributes_, &usual_), "posix_spawn");
+    for (char** variable = environ; *variable != nullptr; ++variable) variables.emplace_back(*variable);
+    pid_t process = -1;
+    check(posix_spawnp(&process, words.at(0).c_str(), &actions_, &attributes_, pointers(words).data(),
+                       pointers(variables).data()),
+          words[0]);
+    return process;
+  }
 
  private:
   posix_spawn_file_actions_t actions_;
   posix_spawnattr_t attributes_;
+  sigset_t blocked_, usual_;
 };
+
+// Returns false at the end of the stream.
+bool read_into(std::string& text, int descriptor) {
+  std::array<char, 4096> bytes{};
+  const ssize_t count = read(descriptor, bytes.data(), bytes.size());
+  if (count > 0) text.append(bytes.data(), static_cast<std::size_t>(count));
+  return count > 0 || (count < 0 && errno == EINTR);
+}
+
+// Reads both streams until they end; false when that takes longer than until `deadline`.
+bool read_to_end(int output, int errors, CommandAnswer& answer, Clock::time_point deadline) {
+  std::array<pollfd, 2> watched{{{output, POLLIN, 0}, {errors, POLLIN, 0}}};
+  while (watched[0].fd >= 0 || watched[1].fd >= 0) {
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
+    if (left <= 0) return false;
+    if (poll(watched.data(), watched.size(), static_cast<int>(left)) < 0 && errno != EINTR) {
+      check(errno, "poll");
+    }
+    if (watched[0].revents != 0 && !read_into(answer.output, output)) watched[0].fd = -1;
+    if (watched[1].revents != 0 && !read_into(answer.errors, errors)) watched[1].fd = -1;
+  }
+  return true;
+}
+
+// Returns how the process ended, nothing while it has not; `options` as of waitpid(2).
+std::optional<ExitStatus> wait_for(pid_t process, int options) {
+  int status = 0;
+  pid_t ended = -1;
+  do {
+    ended = waitpid(process, &status, options);
+  } while (ended < 0 && errno == EINTR);
+  if (ended < 0) check(errno, "waitpid");
+  return ended == 0 ? std::nullopt : std::optional(exit_status(status));
+}
 
 }  // namespace
 
@@ -141,33 +199,31 @@ EngineCommand resolve_engine(const Campaign& campaign, const fs::path& campaign_
 }
 
 EngineProcess::EngineProcess(const EngineCommand& command) {
-  Pair pipe;
-  if (pipe2(pipe.ends.data(), O_CLOEXEC) != 0) check(errno, "pipe");
-  fcntl(pipe.ends[0], F_SETFL, O_NONBLOCK);
-  fcntl(pipe.ends[0], F_SETPIPE_SZ, pipe_size);  // a smaller one does it, too
-  start(command, pipe.ends[1]);
-  output_ = std::exchange(pipe.ends[0], -1);
+  Ends pipe = make_pipe();
+  fcntl(pipe.first.number(), F_SETFL, O_NONBLOCK);
+  fcntl(pipe.first.number(), F_SETPIPE_SZ, pipe_size);  // a smaller one does it, too
+  start(command, pipe.second.number());
+  output_ = pipe.first.take();
 }
 
-EngineProcess::EngineProcess(const EngineCommand& command, const fs::path& log) {
-  Pair file;
-  file.ends[0] = open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
-  if (file.ends[0] < 0) check(errno, log.c_str());
-  start(command, file.ends[0]);
+EngineProcess::EngineProcess(const EngineCommand& command, const Descriptor& output) {
+  start(command, output.number());
 }
 
 void EngineProcess::start(const EngineCommand& command, int output) {
-  Pair socket;
-  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, socket.ends.data()) != 0) check(errno, "socketpair");
-  const SpawnSettings settings(socket.ends[1], output, command);
+  std::array<int, 2> ends{};
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) check(errno, "socketpair");
+  Descriptor ours(ends[0]);
+  const Descriptor its(ends[1]);
+  SpawnSettings settings(its.number(), output, output);
+  if (!command.folder.empty()) settings.run_in(command.folder);
+  for (const int number : command.blocked_signals) settings.block(number);
+  settings.inherit(
+      SIGPIPE);  // an engine that prints when its owner is gone must live to write its checkpoint
   std::vector<std::string> words{command.program.string()};
   words.insert(words.end(), command.arguments.begin(), command.arguments.end());
-  std::vector<std::string> variables = command.environment;
-  for (char** variable = environ; *variable != nullptr; ++variable) variables.emplace_back(*variable);
-  const int error = posix_spawn(&process_, command.program.c_str(), settings.actions(), settings.attributes(),
-                                pointers(words).data(), pointers(variables).data());
-  if (error != 0) throw std::system_error(error, std::generic_category(), command.program.string());
-  descriptor_ = std::exchange(socket.ends[0], -1);
+  process_ = settings.spawn(std::move(words), command.environment);
+  descriptor_ = ours.take();
 }
 
 EngineProcess::EngineProcess(EngineProcess&& other) noexcept
@@ -183,8 +239,8 @@ EngineProcess::~EngineProcess() {
 
 void EngineProcess::leave_or_be_killed() {
   if (process_ < 0) return;
-  const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(5);
-  while (std::chrono::steady_clock::now() < patience) {
+  const auto patience = Clock::now() + std::chrono::seconds(5);
+  while (Clock::now() < patience) {
     if (reap()) return;
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
@@ -217,15 +273,34 @@ bool EngineProcess::is_stopped() const {
 }
 
 std::optional<ExitStatus> EngineProcess::reap() {
-  int status = 0;
-  pid_t ended = 0;
-  do {
-    ended = waitpid(process_, &status, WNOHANG);
-  } while (ended < 0 && errno == EINTR);
-  if (ended == 0) return std::nullopt;
-  if (ended < 0) check(errno, "waitpid");
-  process_ = -1;
-  return exit_status(status);
+  const std::optional<ExitStatus> ending = wait_for(process_, WNOHANG);
+  if (ending) process_ = -1;
+  return ending;
+}
+
+std::string CommandAnswer::complaint() const {
+  std::string said = errors.empty() ? output : errors;
+  while (!said.empty() && said.back() == '\n') said.pop_back();
+  std::replace(said.begin(), said.end(), '\n', ' ');
+  const std::string how = timed_out ? "no answer in time" : to_string(ending);
+  return said.empty() ? how : fmt::format("{}: {}", how, said);
+}
+
+CommandAnswer run_command(const std::vector<std::string>& words, std::chrono::seconds patience,
+                          const std::string& input) {
+  const Descriptor text = file_with(input);
+  Ends output = make_pipe(), errors = make_pipe();
+  SpawnSettings settings(text.number(), output.second.number(), errors.second.number());
+  const pid_t process = settings.spawn(words);
+  output.second.close();
+  errors.second.close();
+  CommandAnswer answer;
+  if (!read_to_end(output.first.number(), errors.first.number(), answer, Clock::now() + patience)) {
+    answer.timed_out = true;
+    kill(-process, SIGKILL);
+  }
+  answer.ending = *wait_for(process, 0);
+  return answer;
 }
 
 }  // namespace peclet::runner

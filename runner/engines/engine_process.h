@@ -1,34 +1,27 @@
-// One running engine: a child process whose standard input is one end of a socket pair.
+// Child processes: one running engine, whose standard input is one end of a socket pair, and outside commands
+// that are run to their end.
 #pragma once
 
 #include <sys/types.h>
 
+#include <chrono>
 #include <filesystem>
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <system_error>
 #include <vector>
 
+#include "contract/durable_file.h"
 #include "runner/campaign/campaign.h"
 #include "runner/store/blame.h"
 
 namespace peclet::runner {
 
-// An engine that is of no use.
-//
-// An engine that does not start, or does not live until it is given work. Exit code 1.
+// An engine does not start, or does not live until it is given work. Exit code 1.
 class EngineError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
-
-// What calls of the system give back.
-//
-// Throws std::system_error, which names what was being done, unless `error` is 0.
-inline void check(int error, const char* doing) {
-  if (error != 0) throw std::system_error(error, std::generic_category(), doing);
-}
 
 struct EngineCommand {
   std::filesystem::path program;
@@ -50,11 +43,11 @@ EngineCommand resolve_engine(const Campaign& campaign, const std::filesystem::pa
 class EngineProcess {
  public:
   // Starts the engine in a process group of its own, so that a Ctrl-C at the terminal reaches only its owner.
-  // What it prints goes into a pipe, to be read with printed(), or is appended to `log`. Our end of the
+  // What it prints goes into a pipe, to be read with printed(), or into the file `output`. Our end of the
   // socket is close-on-exec, so an owner's death is the end of file that tells the engine to checkpoint and
   // leave. Throws std::system_error.
   explicit EngineProcess(const EngineCommand& command);
-  EngineProcess(const EngineCommand& command, const std::filesystem::path& log);
+  EngineProcess(const EngineCommand& command, const Descriptor& output);
   // Closes the socket, waits briefly for the engine to leave by itself, then kills it.
   ~EngineProcess();
   EngineProcess(EngineProcess&& other) noexcept;
@@ -78,11 +71,29 @@ class EngineProcess {
 
  private:
   void start(const EngineCommand& command, int output);
+
   void leave_or_be_killed();
 
   int descriptor_ = -1;
   int output_ = -1;     // our end of the pipe
   pid_t process_ = -1;  // -1: reaped
 };
+
+// An outside command, run to its end: what it printed and how it left.
+
+struct CommandAnswer {
+  ExitStatus ending;
+  bool timed_out = false;  // it was killed with its children, and what it did is unknown
+  std::string output, errors;
+  bool succeeded() const { return !timed_out && ending.status == 0; }
+  // Why it did not succeed, on one line: "exit status 1: Unable to contact slurm controller".
+  std::string complaint() const;
+};
+
+// Runs a program (found on PATH) in a process group of its own, so that a Ctrl-C at the terminal does not cut
+// it off between doing something and saying so. Its standard input is `input`. Throws std::system_error if
+// the program cannot be started.
+CommandAnswer run_command(const std::vector<std::string>& words, std::chrono::seconds patience,
+                          const std::string& input = "");
 
 }  // namespace peclet::runner

@@ -1,5 +1,6 @@
 #include "runner/engines/scene_check.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <sys/mman.h>
@@ -10,13 +11,13 @@
 #include <cerrno>
 #include <chrono>
 #include <cstdint>
-#include <optional>
 #include <string_view>
 #include <system_error>
 #include <thread>
 #include <utility>
 
 #include "contract/documents.h"
+#include "contract/durable_file.h"
 #include "contract/errors.h"
 #include "contract/frames.h"
 #include "contract/text.h"
@@ -40,20 +41,18 @@ struct KilledFromOutside {};
 // be sound.
 class Printed {
  public:
-  Printed() : descriptor_(memfd_create("peclet engine", MFD_CLOEXEC)) {
-    if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), "memfd_create");
+  Printed() : file_(memfd_create("peclet engine", MFD_CLOEXEC)) {
+    if (file_.number() < 0 || fcntl(file_.number(), F_SETFL, O_APPEND) != 0)
+      throw std::system_error(errno, std::generic_category(), "memfd_create");
   }
-  ~Printed() { close(descriptor_); }
-  Printed& operator=(Printed&&) = delete;
 
-  // A name that the child can open too, until it becomes the engine.
-  std::string path() const { return fmt::format("/proc/self/fd/{}", descriptor_); }
+  const Descriptor& file() const { return file_; }
 
   // An engine that prints without end must not take all memory: its first words go.
   void keep_short() const {
     struct stat about {};
     constexpr off_t longest = 1 << 20;
-    if (fstat(descriptor_, &about) == 0 && about.st_size > longest && ftruncate(descriptor_, 0) != 0) {
+    if (fstat(file_.number(), &about) == 0 && about.st_size > longest && ftruncate(file_.number(), 0) != 0) {
       throw std::system_error(errno, std::generic_category(), "ftruncate");
     }
   }
@@ -77,14 +76,14 @@ class Printed {
   std::string end() const {
     std::string text(4096, '\0');
     struct stat about {};
-    if (fstat(descriptor_, &about) != 0) return "";
+    if (fstat(file_.number(), &about) != 0) return "";
     const off_t begin = std::max<off_t>(0, about.st_size - static_cast<off_t>(text.size()));
-    const ssize_t count = pread(descriptor_, text.data(), text.size(), begin);
+    const ssize_t count = pread(file_.number(), text.data(), text.size(), begin);
     text.resize(count < 0 ? 0 : static_cast<std::size_t>(count));
     return text;
   }
 
-  int descriptor_;
+  Descriptor file_;
 };
 
 // One engine that is asked questions.
@@ -92,7 +91,7 @@ class Conversation {
  public:
   explicit Conversation(const EngineCommand& command)
       : command_(command),
-        process_(command, printed_.path()),
+        process_(command, printed_.file()),
         channel_(process_.descriptor(), largest_answer) {
     Json hello = receive();
     if (hello.at("type") != "hello" || hello.value("protocol", Json()) != 1) {

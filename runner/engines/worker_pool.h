@@ -3,11 +3,9 @@
 // The real pool (worker_process.h) runs engines; tests put a scripted one in its place.
 #pragma once
 
-#include <array>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -101,12 +99,5 @@ class WorkerPool {
   // What happened, in order for each worker; waits for the first event, at most for `patience`.
   virtual std::vector<WorkerEvent> wait(std::chrono::milliseconds patience) = 0;
 };
-
-// Folders into which an engine writes for its job.
-std::array<std::filesystem::path, 4> folders_of(const Job& job);
-
-// The first of them that is not there or has no room; nothing if an engine can write in all of them. One that
-// does not know how to wait for room may crash or give up instead, which is not its fault.
-std::optional<std::filesystem::path> unwritable_folder(const Job& job);
 
 }  // namespace peclet::runner

@@ -17,6 +17,7 @@
 #include "contract/documents.h"
 #include "contract/errors.h"
 #include "runner/campaign/quoting.h"
+#include "runner/store/disk_room.h"
 #include "runner/store/result_files.h"
 
 namespace peclet::runner {
@@ -135,6 +136,14 @@ WorkerEvent as_event(int worker, Json given) {
 }  // namespace
 
 const char* phase_name(int phase) { return job_phases.at(static_cast<std::size_t>(phase)); }
+
+std::optional<std::filesystem::path> unwritable_folder(const Job& job) {
+  for (const std::filesystem::path& folder :
+       {job.spool.parent_path(), left_folder(job.spool), job.checkpoint.parent_path(), job.failures}) {
+    if (!std::filesystem::exists(folder) || !has_room(folder, 0)) return folder;
+  }
+  return std::nullopt;
+}
 
 void allow_open_files(int workers) {
   // A socket, a pipe and a log each; the database, its copies and what else there is.

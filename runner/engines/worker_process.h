@@ -3,7 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
-#include <deque>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -19,12 +19,6 @@
 
 namespace peclet::runner {
 
-// One worker as its owner sees it: started, greeted, busy with a job; and when the owner's patience with it
-// ends.
-//
-// Pure: it is told what happened and at what time, and says what follows. The dispatcher and the task of a
-// batch system judge their workers by it.
-//
 // Time during which this process ran. Leases and patience are measured in it: an owner that was stopped, or
 // frozen together with its workers, has heard nothing meanwhile and must not hold that against them.
 using Awake = std::chrono::duration<double>;
@@ -61,6 +55,9 @@ struct JobProgress {
   double strain = 0;
 };
 
+// One worker as its owner sees it: started, greeted, busy with a job; and when the owner's patience with it
+// ends. Pure: it is told what happened and at what time, and says what follows. The dispatcher and the task
+// of a batch system judge their workers by it.
 class WorkerWatch {
  public:
   bool is_there() const { return stage_ != Stage::absent; }
@@ -108,6 +105,11 @@ class WorkerWatch {
   bool is_recalled_ = false;
   std::optional<AttemptReason> condemned_;
 };
+
+// Returns the first folder into which an engine writes for its job that is not there or has no room; nothing
+// if it can write in all of them. An engine that does not know how to wait for room may crash or give up
+// instead, which is not its fault.
+std::optional<std::filesystem::path> unwritable_folder(const Job& job);
 
 // Allows this process as many open files as so many workers take. Throws InputError when the system does not.
 void allow_open_files(int workers);

@@ -13,7 +13,7 @@
 #include "contract/guarded_file.h"
 #include "runner/batch/bundle_files.h"
 #include "runner/campaign/number_text.h"
-#include "runner/maintenance/restore.h"
+#include "runner/maintenance/backup.h"
 #include "runner/owner/open_campaign.h"
 #include "runner/statistics/cohorts.h"
 #include "runner/store/backups.h"

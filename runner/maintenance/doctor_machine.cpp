@@ -8,7 +8,6 @@
 #include <fstream>
 #include <iterator>
 #include <sstream>
-#include <utility>
 
 #include "runner/campaign/quoting.h"
 #include "runner/engines/usable_cores.h"

@@ -1,11 +1,19 @@
 #include "runner/owner/after_commit.h"
 
-#include <algorithm>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
 #include <iterator>
-#include <utility>
+#include <optional>
+#include <system_error>
 
 #include "contract/durable_file.h"
-#include "runner/store/campaign_directory.h"
+#include "contract/guarded_file.h"
+#include "contract/text.h"
+#include "runner/store/result_files.h"
 #include "runner/store/spool.h"
 
 namespace peclet::runner {
@@ -49,6 +57,92 @@ void AfterCommit::carry_out(RunListener& listener, FileRemoval& removal) {
     if (const auto* const note = std::get_if<Note>(&told)) listener.note(note->text);
     if (const auto* const warning = std::get_if<Warning>(&told)) listener.warn(warning->text);
     if (const auto* const event = std::get_if<RunEvent>(&told)) listener.happened(*event);
+  }
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// Gives the file that is open the further name `name`, on the same file system; elsewhere copies it. What has
+// lost its own name since it was checked, or has another file in its place, is the file that was checked all
+// the same.
+void link_or_copy(const Descriptor& file, std::uint64_t bytes, const fs::path& name) {
+  fs::remove_all(name);
+  const std::string open_file = fmt::format("/proc/self/fd/{}", file.number());
+  if (linkat(AT_FDCWD, open_file.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0) return;
+  if (lseek(file.number(), 0, SEEK_SET) != 0) fail_to("cannot read what becomes", name);
+  copy_durably(file.number(), bytes, name);
+}
+
+// After the commit the file only changes its name, which needs no room. Until then it has a name that no file
+// of a result has.
+void bring_home(const Descriptor& file, const FileRecord& record, const CampaignDirectory& directory,
+                AfterCommit& after) {
+  const fs::path place = record.place(directory), seed = place.parent_path();
+  for (const fs::path& folder : {seed.parent_path(), seed}) {
+    if (const std::string text = make_way(folder, "a folder"); !text.empty()) after.warn(text);
+  }
+  create_folders_durably(seed);
+  const fs::path waiting = seed / ('@' + record.file.name);
+  link_or_copy(file, record.file.bytes, waiting);
+  after.keep(waiting, place);
+}
+
+// Brings the file of a known result that is not in its place to it, if the spool still has it.
+void heal(const FileRecord& record, const fs::path& spool, const CampaignDirectory& directory,
+          AfterCommit& after) {
+  if (!record.kept || kind_of(record.place(directory)) == "a regular file") return;
+  try {
+    const auto& [name, bytes, sha256] = record.file;
+    bring_home(open_left_file(left_file(spool, name), bytes, sha256), record, directory, after);
+  } catch (const ResultError&) {  // the doctor names what is missing
+  }
+}
+
+// The attempt that writes files with this stem, as CampaignDirectory::spool_file() spells it.
+std::optional<std::int64_t> attempt_of(const std::string& stem) {
+  const std::size_t dash = stem.rfind('-');
+  return dash == std::string::npos ? std::nullopt : number_in<std::int64_t>(stem.substr(dash + 1));
+}
+
+bool is_at_work(Database& database, const std::string& stem) {
+  const std::optional<std::int64_t> attempt = attempt_of(stem);
+  const std::optional<std::int64_t> process = attempt ? database.process_of(*attempt) : std::nullopt;
+  return process && (kill(static_cast<pid_t>(*process), 0) == 0 || errno != ESRCH);
+}
+
+}  // namespace
+
+void take_files(Connection& connection, const CampaignDirectory& directory, const RealisationResult& result,
+                const fs::path& spool, const StoredResult& stored, bool keep, AfterCommit& after) {
+  const std::vector<LeftFile> files = left_files(result.document);
+  if (stored.is_new) {
+    const std::vector<Descriptor> opened = open_files_in_spool(result.document, spool);
+    for (std::size_t i = 0; i < files.size(); ++i) {
+      store_file(connection, stored.point, result.seed, files[i], keep);
+      const FileRecord record{result.point, stored.point, result.seed, files[i], keep};
+      if (keep) bring_home(opened[i], record, directory, after);
+    }
+  } else if (!files.empty()) {
+    for (const FileRecord& record : files_of_seed(connection, stored.point, result.seed))
+      heal(record, spool, directory, after);
+  }
+  if (files.empty()) return;
+  // What is then left of them: unwanted ones, and those that were copied.
+  for (const fs::path& file : left_files_of(spool)) after.remove(file);
+}
+
+void remove_files_of_the_dead(Database& database, const CampaignDirectory& directory) {
+  for (const fs::path& file : whole_files(directory.left())) {
+    const std::string name = file.filename().string();
+    const std::size_t end = name.rfind('@');
+    if (end == std::string::npos) continue;  // not ours
+    const std::string stem = name.substr(0, end);
+    // In this order: what a process that is gone has written is there by now.
+    if (is_at_work(database, stem) || is_there(directory.spool() / (stem + ".json"))) continue;
+    std::error_code replaced;  // by a folder meanwhile, which the next start moves aside
+    fs::remove(file, replaced);
   }
 }
 

@@ -10,7 +10,11 @@
 #include <vector>
 
 #include "runner/owner/run_listener.h"
+#include "runner/store/campaign_directory.h"
 #include "runner/store/file_removal.h"
+#include "runner/store/realisation_result.h"
+#include "runner/store/result_store.h"
+#include "runner/store/sqlite.h"
 
 namespace peclet::runner {
 
@@ -50,5 +54,20 @@ class AfterCommit {
   std::vector<std::filesystem::path> to_discard_, to_remove_, to_reject_;
   std::vector<std::variant<RunEvent, Note, Warning>> to_tell_;
 };
+
+// Files that a realisation left beside its result. Their rows are stored with the result, and they get their
+// places after that commit, before the spool file of the result goes. What was checked is what gets there: it
+// is held open meanwhile. So whatever is killed when, the spool file is found again, as a result that is
+// known by then, and the moving goes on from there.
+//
+// Takes the files of a result that has been stored, or that is known, inside its transaction. With `keep`
+// files of a new one are kept. Throws ResultError if a file of a new one is absent or another one;
+// std::system_error if the machine fails.
+void take_files(Connection& connection, const CampaignDirectory& directory, const RealisationResult& result,
+                const std::filesystem::path& spool, const StoredResult& stored, bool keep,
+                AfterCommit& after);
+
+// Removes files in the spool of attempts that gave no result and whose processes no longer run.
+void remove_files_of_the_dead(Database& database, const CampaignDirectory& directory);
 
 }  // namespace peclet::runner

@@ -5,12 +5,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <system_error>
-#include <tuple>
-#include <utility>
 #include <variant>
 
 #include "runner/engines/engine_process.h"
-#include "runner/engines/worker_pool.h"
 #include "runner/store/disk_room.h"
 #include "runner/store/result_files.h"
 #include "runner/store/spool.h"

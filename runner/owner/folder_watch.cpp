@@ -11,7 +11,6 @@
 #include "contract/guarded_file.h"
 #include "runner/campaign/quoting.h"
 #include "runner/store/backups.h"
-#include "runner/store/locks.h"
 
 namespace peclet::runner {
 namespace {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <chrono>
-#include <filesystem>
 
 #include "runner/owner/run_listener.h"
 #include "runner/store/campaign_directory.h"

@@ -5,23 +5,17 @@
 
 #include <algorithm>
 #include <charconv>
-#include <limits>
 #include <map>
-#include <set>
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
-#include "contract/errors.h"
 #include "runner/campaign/quoting.h"
-#include "runner/owner/file_taking.h"
 #include "runner/statistics/observation.h"
 #include "runner/statistics/quantities.h"
 #include "runner/store/blame.h"
 #include "runner/store/bundle_store.h"
-#include "runner/store/campaign_directory.h"
-#include "runner/store/result_store.h"
 #include "runner/store/spool.h"
 
 namespace peclet::runner {
@@ -180,8 +174,29 @@ void Ledger::renew_lease(const GivenSeed& given_seed, const JobProgress& progres
                      progress.strain);
 }
 
+void Ledger::refuse_other_engine(const std::string& identity) const {
+  for (const PointRecord& about : board_.points()) {
+    if (board_.is_to_be_run(about) && !about.engine_identity.empty() && about.engine_identity != identity) {
+      throw OtherEngine(
+          fmt::format("{}: has results of engine {}, but the engine now is {}; one point never mixes two",
+                      about.label, about.engine_identity, identity));
+    }
+  }
+}
+
 std::int64_t Ledger::admit_engine(const Json& engine) {
-  engine_.admit(engine, board_);
+  std::string identity;
+  try {
+    identity = engine_identity(engine);
+  } catch (const ResultError& error) {
+    throw IntegrityError(fmt::format("the engine's hello does not say what it is: {}", error.what()));
+  }
+  if (has_engine() && engine_ != identity) {
+    throw IntegrityError(
+        fmt::format("the engine changed while the campaign ran: it was {}, now it is {}", engine_, identity));
+  }
+  refuse_other_engine(identity);
+  engine_ = identity;
   return engine_row(database_, engine);
 }
 
@@ -368,7 +383,7 @@ void Ledger::refresh() {
   board_.read_points(database_);
   read_board();
   book_looks();
-  engine_.require_no_other(board_);
+  if (has_engine()) refuse_other_engine(engine_);
 }
 
 bool Ledger::find_place(GivenSeed& given_seed) const {
@@ -555,7 +570,7 @@ bool Ledger::take_result(const GivenSeed& given_seed, const std::string& sha256,
     if (result.point != given_seed.job.point || result.seed != given_seed.job.seed) {
       throw ResultError("it is of another point or seed than the job");
     }
-    if (result.engine != engine_.identity()) {
+    if (result.engine != engine_) {
       throw ResultError("it names another engine than the worker's hello");
     }
     return result;

@@ -16,10 +16,10 @@
 #include <string>
 #include <vector>
 
+#include "contract/errors.h"
 #include "runner/engines/worker_process.h"
 #include "runner/owner/after_commit.h"
 #include "runner/owner/board.h"
-#include "runner/owner/engine_admission.h"
 #include "runner/owner/run_listener.h"
 #include "runner/store/campaign_directory.h"
 #include "runner/store/point_store.h"
@@ -27,6 +27,12 @@
 #include "runner/store/seed_store.h"
 
 namespace peclet::runner {
+
+// Points with results of one engine are to be run with another. what() names both.
+class OtherEngine : public IntegrityError {
+ public:
+  using IntegrityError::IntegrityError;
+};
 
 // A seed that has been given to a worker.
 struct GivenSeed {
@@ -80,12 +86,14 @@ class Ledger {
   // A seed that was handed over comes back without an attempt.
   void take_back(SeedId id);
 
-  // The engine's row. Throws as EngineAdmission::admit().
+  // The engine that says this of itself runs from now on: one for the whole of a run, and never two at one
+  // point. Returns its row. Throws OtherEngine if a point that is still to be run has results of another one,
+  // IntegrityError if this run has begun with another one or if it does not say what it is.
   std::int64_t admit_engine(const Json& engine);
   // Keeps the results of other engines apart at every point that is still to be run, in a transaction of its
   // own. Returns how many points these were.
   int accept_engine(const std::string& identity);
-  bool has_engine() const { return engine_.has_engine(); }
+  bool has_engine() const { return !engine_.empty(); }
 
   // The campaign is another one from now on. Throws InputError when finished realisations lack its
   // observable.
@@ -123,6 +131,7 @@ class Ledger {
   std::optional<SeedId> seed_of_checkpoint(const std::filesystem::path& file) const;
   void read_board();
   void book_looks();
+  void refuse_other_engine(const std::string& identity) const;
   // Whether the seed has a part in the looks.
   bool takes_part(SeedId id) const {
     return id.point != nowhere && id.seed < campaign().maximum_realisations;
@@ -154,7 +163,7 @@ class Ledger {
   RunListener& listener_;
   int retries_;
   Board board_;
-  EngineAdmission engine_;
+  std::string engine_;  // identity of the one that runs; "" before one has
   struct Lacking {
     std::string observable;  // of the target, that results do not have
     std::string names;       // what they have instead

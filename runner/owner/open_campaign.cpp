@@ -11,7 +11,6 @@
 #include "runner/campaign/campaign_file.h"
 #include "runner/campaign/quoting.h"
 #include "runner/store/backups.h"
-#include "runner/store/database.h"
 #include "runner/store/disk_room.h"
 #include "runner/store/locks.h"
 

@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <utility>
-
 #include "contract/guarded_file.h"
 #include "runner/campaign/quoting.h"
 #include "runner/owner/open_campaign.h"

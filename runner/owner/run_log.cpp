@@ -4,8 +4,6 @@
 #include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/base_sink.h>
 
-#include <utility>
-
 #include "runner/owner/progress.h"
 #include "runner/store/rotating_file.h"
 

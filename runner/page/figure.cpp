@@ -10,9 +10,10 @@
 #include "contract/durable_file.h"
 #include "contract/errors.h"
 #include "contract/sha256.h"
-#include "runner/engines/command.h"
+#include "runner/engines/engine_process.h"
 #include "runner/page/page_html.h"
 #include "runner/page/swept.h"
+#include "runner/store/campaign_directory.h"
 
 namespace peclet::runner {
 namespace {
@@ -130,25 +131,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::string name = (fs::temp_directory_path() / "peclet-plot-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::system_error(errno, std::generic_category(), name);
-    path_ = name;
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;  // what is left of it lies where temporary files are
-    fs::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
-
 }  // namespace
 
 PictureForm picture_form(const fs::path& output) {
@@ -174,7 +156,7 @@ fs::path script_beside(const fs::path& output) {
 
 Picture drawn(const std::string& script, PictureForm form) {
   constexpr std::chrono::seconds patience(120);  // the first use of matplotlib looks through all fonts
-  const ScratchFolder folder;
+  const ScratchFolder folder("peclet-plot");
   const fs::path source = folder.path() / "figure.py",
                  output = folder.path() / (form == PictureForm::png   ? "figure.png"
                                            : form == PictureForm::pdf ? "figure.pdf"

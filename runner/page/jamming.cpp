@@ -15,7 +15,7 @@
 #include "runner/campaign/campaign.h"
 #include "runner/campaign/campaign_file.h"
 #include "runner/campaign/quoting.h"
-#include "runner/engines/command.h"
+#include "runner/engines/engine_process.h"
 #include "runner/owner/open_campaign.h"
 #include "runner/page/swept.h"
 #include "runner/statistics/cohorts.h"

@@ -8,7 +8,7 @@
 
 #include "runner/campaign/number_text.h"
 #include "runner/campaign/text_table.h"
-#include "runner/owner/retry_plan.h"
+#include "runner/owner/request_handler.h"
 #include "runner/reports/status.h"
 #include "runner/statistics/cohorts.h"
 #include "runner/statistics/forecast.h"

@@ -12,7 +12,7 @@
 #include "contract/errors.h"
 #include "runner/campaign/quoting.h"
 #include "runner/campaign/text_table.h"
-#include "runner/owner/retry_plan.h"
+#include "runner/owner/request_handler.h"
 #include "runner/reports/status.h"
 #include "runner/statistics/cohorts.h"
 #include "runner/statistics/quantity_estimates.h"

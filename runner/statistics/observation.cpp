@@ -1,6 +1,5 @@
 #include "runner/statistics/observation.h"
 
-#include <cmath>
 #include <optional>
 #include <string_view>
 

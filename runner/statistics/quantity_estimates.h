@@ -13,9 +13,7 @@
 // and has no value. A jammed seed whose N is 0 takes no part in the ratio.
 #pragma once
 
-#include <functional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "contract/json.h"

@@ -9,7 +9,6 @@
 #include <set>
 #include <system_error>
 #include <utility>
-#include <vector>
 
 #include "contract/durable_file.h"
 #include "contract/guarded_file.h"
@@ -120,6 +119,17 @@ void require_own_folders(const CampaignDirectory& directory) {
   for (const fs::path& folder : folders_below(directory)) require_own_folder(folder);
   require_own_folder(directory.files());
   require_own_folder(directory.aside());
+}
+
+ScratchFolder::ScratchFolder(const std::string& name) {
+  std::string path = (fs::temp_directory_path() / (name + "-XXXXXX")).string();
+  if (mkdtemp(path.data()) == nullptr) throw std::system_error(errno, std::generic_category(), path);
+  path_ = path;
+}
+
+ScratchFolder::~ScratchFolder() {
+  std::error_code ignored;  // what is left of it lies where temporary files are
+  fs::remove_all(path_, ignored);
 }
 
 fs::path make_folder_aside(const CampaignDirectory& directory) {

@@ -68,6 +68,20 @@ void create_folders(const CampaignDirectory& directory);
 // itself is the one that its user has named, and may be a link. Throws UnsuitableFile naming the folder.
 void require_own_folders(const CampaignDirectory& directory);
 
+// A folder among temporary files, which goes with its owner.
+class ScratchFolder {
+ public:
+  // `name` begins the folder's own. Throws std::system_error.
+  explicit ScratchFolder(const std::string& name);
+  ~ScratchFolder();
+  ScratchFolder& operator=(ScratchFolder&&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
 // A new folder in aside/, for what is in the way.
 std::filesystem::path make_folder_aside(const CampaignDirectory& directory);
 

@@ -5,15 +5,8 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
-#include <cmath>
-#include <cstdint>
-#include <filesystem>
-#include <map>
 #include <set>
-#include <string>
-#include <string_view>
 #include <utility>
 
 #include "contract/guarded_file.h"

@@ -6,9 +6,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <chrono>
 #include <fstream>
 #include <limits>
@@ -16,9 +16,7 @@
 #include <string_view>
 #include <system_error>
 #include <thread>
-#include <utility>
 
-#include "contract/durable_file.h"
 #include "contract/guarded_file.h"
 #include "contract/text.h"
 #include "runner/campaign/quoting.h"
@@ -50,55 +48,31 @@ std::int64_t process_that_locks(std::uint64_t inode, const std::string& kind, st
 
 namespace {
 
-// A descriptor that holds the lock.
-int locked(const std::filesystem::path& path, int flags) {
-  int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC | flags);
-  while (descriptor >= 0 && flock(descriptor, LOCK_EX) != 0) {
-    if (errno == EINTR) continue;
-    const int error = errno;
-    close(descriptor);
-    descriptor = -1;
-    errno = error;
-  }
-  if (descriptor < 0) throw std::system_error(errno, std::generic_category(), path.string());
-  return descriptor;
-}
+namespace fs = std::filesystem;
 
-// False: it was replaced while we waited, and there is nothing to hold any more.
-bool is_there(int descriptor, const std::filesystem::path& file) {
+// Whether the file still has its name.
+bool is_there(int descriptor, const fs::path& file) {
   struct stat held {
   }, named{};
   return fstat(descriptor, &held) == 0 && stat(file.c_str(), &named) == 0 && held.st_dev == named.st_dev &&
          held.st_ino == named.st_ino;
 }
 
-}  // namespace
-
-FolderLock::FolderLock(const std::filesystem::path& folder) : descriptor_(locked(folder, O_DIRECTORY)) {}
-
-FolderLock::~FolderLock() { close(descriptor_); }
-
-FileLock::FileLock(const std::filesystem::path& file) : descriptor_(locked(file, 0)) {
-  while (!is_there(descriptor_, file)) {
-    close(descriptor_);
-    descriptor_ = locked(file, 0);
+// Returns the file or folder, open and locked.
+Descriptor locked(const fs::path& path) {
+  for (;;) {
+    Descriptor file = open_file(path, O_RDONLY);
+    const auto is_locked = [&] { return file.number() >= 0 && flock(file.number(), LOCK_EX) == 0; };
+    while (!is_locked()) {
+      if (errno != EINTR) throw std::system_error(errno, std::generic_category(), path.string());
+    }
+    // One that was replaced while we waited is nothing to hold.
+    if (is_there(file.number(), path)) return file;
   }
 }
 
-FileLock::~FileLock() { close(descriptor_); }
-
-namespace {
-
-namespace fs = std::filesystem;
-
-int open_folder(const CampaignDirectory& directory) {
-  return open(directory.root().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-}
-
-std::int64_t number_in(std::string_view text) {
-  std::int64_t number = 0;
-  std::from_chars(text.data(), text.data() + text.size(), number);
-  return number;
+Descriptor open_folder(const CampaignDirectory& directory) {
+  return open_file(directory.root(), O_RDONLY | O_DIRECTORY);
 }
 
 // Below 0: it is not there, or not ours to read.
@@ -111,7 +85,8 @@ std::int64_t written_owner(const CampaignDirectory& directory) {
   const Descriptor file = open_to_look(directory.lock());
   std::array<char, 32> text{};
   const ssize_t count = pread(file.number(), text.data(), text.size(), 0);
-  return count > 0 ? number_in({text.data(), static_cast<std::size_t>(count)}) : 0;
+  std::string_view said(text.data(), static_cast<std::size_t>(std::max<ssize_t>(0, count)));
+  return number_in<std::int64_t>(take_line(said)).value_or(0);
 }
 
 // Who has locked the folder, by the kernel's list: for an owner whose campaign.lock was deleted. 0: the list
@@ -161,46 +136,48 @@ Attempt lock_patiently(int descriptor) {
       path.parent_path().string()));
 }
 
-}  // namespace
-
-OwnerLock::OwnerLock(const CampaignDirectory& directory) {
-  const std::string path = directory.lock().string();
+Descriptor owned_folder(const CampaignDirectory& directory) {
   require_own_folders(directory);
-  Descriptor folder(open_folder(directory));
-  if (folder.number() < 0) fail(path, errno);
+  Descriptor folder = open_folder(directory);
+  if (folder.number() < 0) fail(directory.lock(), errno);
   // Some network file systems, where a campaign is at its user's own risk, lock no folders.
   if (lock_patiently(folder.number()) == Attempt::owned) refuse_owned(directory, folder.number());
-  require_regular(directory.lock());
-  Descriptor file = open_file(path, O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK, 0644);
-  if (file.number() < 0) fail(path, errno);
-  const Attempt attempt = lock_patiently(file.number());
-  if (attempt == Attempt::owned) refuse_owned(directory, folder.number());
-  if (attempt == Attempt::impossible) fail(path, errno);
-  const std::string process = fmt::format("{}\n", getpid());
-  const bool written =
-      ftruncate(file.number(), 0) == 0 &&
-      pwrite(file.number(), process.data(), process.size(), 0) == static_cast<ssize_t>(process.size());
-  // On a full disk the lock is worth as much without the number.
-  if (!written && !peclet::means_no_room(errno)) fail(path, errno);
-  folder_ = folder.take();
-  file_ = file.take();
+  return folder;
 }
 
-OwnerLock::~OwnerLock() {
-  close(file_);
-  close(folder_);
+Descriptor owned_file(const CampaignDirectory& directory, int folder) {
+  require_regular(directory.lock());
+  Descriptor file = open_file(directory.lock(), O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK, 0644);
+  if (file.number() < 0) fail(directory.lock(), errno);
+  const Attempt attempt = lock_patiently(file.number());
+  if (attempt == Attempt::owned) refuse_owned(directory, folder);
+  if (attempt == Attempt::impossible) fail(directory.lock(), errno);
+  return file;
+}
+
+}  // namespace
+
+FileLock::FileLock(const fs::path& path) : file_(locked(path)) {}
+
+OwnerLock::OwnerLock(const CampaignDirectory& directory)
+    : folder_(owned_folder(directory)), file_(owned_file(directory, folder_.number())) {
+  const std::string process = fmt::format("{}\n", getpid());
+  const bool written =
+      ftruncate(file_.number(), 0) == 0 &&
+      pwrite(file_.number(), process.data(), process.size(), 0) == static_cast<ssize_t>(process.size());
+  // On a full disk the lock is worth as much without the number.
+  if (!written && !peclet::means_no_room(errno)) fail(directory.lock(), errno);
 }
 
 std::optional<fs::path> OwnerLock::folder() const {
   struct stat about {};
-  if (fstat(folder_, &about) != 0)
-    throw std::system_error(errno, std::generic_category(), "campaign's folder");
+  if (fstat(folder_.number(), &about) != 0) fail_to("cannot examine", "the campaign's folder");
   if (about.st_nlink == 0) return std::nullopt;
-  return fs::read_symlink(fmt::format("/proc/self/fd/{}", folder_));
+  return fs::read_symlink(fmt::format("/proc/self/fd/{}", folder_.number()));
 }
 
 std::optional<std::int64_t> current_owner(const CampaignDirectory& directory) {
-  const Descriptor folder(open_folder(directory));
+  const Descriptor folder = open_folder(directory);
   const Descriptor file = open_to_look(directory.lock());
   // Shared locks, held for an instant: they fail while there is an owner.
   for (const int descriptor : {folder.number(), file.number()}) {

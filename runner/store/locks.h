@@ -7,13 +7,12 @@
 #include <stdexcept>
 #include <string>
 
+#include "contract/durable_file.h"
 #include "runner/store/campaign_directory.h"
 
 namespace peclet::runner {
 
-// What this machine calls itself.
-//
-// "unknown" where it has no name.
+// What this machine calls itself; "unknown" where it has no name.
 std::string host_name();
 
 // Returns the process that holds a write lock of this kind ("FLOCK", "POSIX") on the file with this inode, on
@@ -21,27 +20,15 @@ std::string host_name();
 // away.
 std::int64_t process_that_locks(std::uint64_t inode, const std::string& kind, std::uint64_t at = 0);
 
-// Held from construction, which waits for it, to destruction or to the end of the process. Leaves no file.
-class FolderLock {
- public:
-  // Throws std::system_error naming the folder.
-  explicit FolderLock(const std::filesystem::path& folder);
-  ~FolderLock();
-  FolderLock& operator=(FolderLock&&) = delete;
-
- private:
-  int descriptor_;
-};
-
-// The same of a file, which whoever holds it may replace by another of its name.
+// A lock on a folder, or on a file that its holder may replace by another of its name. Held from
+// construction, which waits for it, to destruction or to the end of the process. Leaves no file.
 class FileLock {
  public:
-  explicit FileLock(const std::filesystem::path& file);
-  ~FileLock();
-  FileLock& operator=(FileLock&&) = delete;
+  // Throws std::system_error naming the path.
+  explicit FileLock(const std::filesystem::path& path);
 
  private:
-  int descriptor_;
+  Descriptor file_;
 };
 
 // Another process owns the campaign. Exit code 5.
@@ -58,14 +45,12 @@ class OwnerLock {
   // Requires the folder to exist. Throws OwnedByAnother naming the owner's process, UnsuitableFile as
   // require_own_folders() or when the lock is no regular file, std::system_error.
   explicit OwnerLock(const CampaignDirectory& directory);
-  ~OwnerLock();
-  OwnerLock& operator=(OwnerLock&&) = delete;
 
   // Where the folder is now: another place when it was moved; nothing when it was deleted.
   std::optional<std::filesystem::path> folder() const;
 
  private:
-  int folder_ = -1, file_ = -1;
+  Descriptor folder_, file_;
 };
 
 // The process that owns the campaign now, without waiting for it or disturbing it; nothing when nobody does.

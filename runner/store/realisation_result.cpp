@@ -4,16 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <optional>
-#include <set>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "contract/documents.h"
 #include "contract/errors.h"
-#include "contract/frames.h"
 #include "contract/sha256.h"
 #include "runner/campaign/quoting.h"
 #include "runner/statistics/quantities.h"

@@ -5,11 +5,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <set>
 #include <system_error>
 
-#include "contract/durable_file.h"
 #include "contract/errors.h"
 #include "contract/guarded_file.h"
 #include "contract/sha256.h"

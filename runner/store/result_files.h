@@ -8,11 +8,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
-#include "contract/documents.h"
 #include "contract/durable_file.h"
 #include "contract/json.h"
 #include "runner/store/campaign_directory.h"

@@ -12,7 +12,6 @@
 #include "runner/campaign/quoting.h"
 #include "runner/statistics/cohorts.h"
 #include "runner/store/number_store.h"
-#include "runner/store/realisation_result.h"
 
 namespace peclet::runner {
 namespace {

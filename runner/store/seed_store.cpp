@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "runner/campaign/number_text.h"
-#include "runner/store/blame.h"
 #include "runner/store/locks.h"
 #include "runner/store/result_store.h"
 

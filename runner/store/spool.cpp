@@ -4,15 +4,14 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <csignal>
-#include <cstdint>
 #include <regex>
 #include <system_error>
 
 #include "contract/durable_file.h"
 #include "contract/guarded_file.h"
 #include "contract/sha256.h"
+#include "contract/text.h"
 #include "runner/store/result_files.h"
 
 namespace peclet::runner {
@@ -23,11 +22,8 @@ namespace fs = std::filesystem;
 // write_durably() names its temporary files NAME.PROCESS.COUNT.tmp. Nothing: not such a name.
 std::optional<int> writer_of(const fs::path& temporary) {
   const std::string process = temporary.stem().stem().extension().string();  // ".PROCESS"
-  int number = 0;
-  if (process.size() < 2) return std::nullopt;
-  const auto [end, error] = std::from_chars(process.data() + 1, process.data() + process.size(), number);
-  if (error != std::errc{} || end != process.data() + process.size() || number <= 0) return std::nullopt;
-  return number;
+  const auto number = process.empty() ? std::nullopt : number_in<int>(process.substr(1));
+  return number && *number > 0 ? number : std::nullopt;
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include <fstream>
 
 #include "contract/errors.h"
-#include "runner/engines/command.h"
+#include "runner/engines/engine_process.h"
 #include "tests/runner/runner_fixture.h"
 
 namespace peclet::runner {

@@ -7,7 +7,7 @@
 
 #include "contract/errors.h"
 #include "runner/batch/batch_system.h"
-#include "runner/engines/command.h"
+#include "runner/engines/engine_process.h"
 
 namespace peclet::runner {
 namespace {

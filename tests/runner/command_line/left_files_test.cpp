@@ -11,7 +11,6 @@
 #include "runner/command_line/ask_owner.h"
 #include "runner/maintenance/backup.h"
 #include "runner/maintenance/doctor.h"
-#include "runner/maintenance/restore.h"
 #include "runner/reports/explain.h"
 #include "runner/reports/export.h"
 #include "runner/store/result_files.h"

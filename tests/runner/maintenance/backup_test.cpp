@@ -10,7 +10,6 @@
 
 #include "contract/durable_file.h"
 #include "contract/errors.h"
-#include "runner/maintenance/restore.h"
 #include "runner/reports/export.h"
 #include "runner/store/backups.h"
 #include "runner/store/locks.h"

@@ -246,7 +246,7 @@ TEST_F(Doctor, FindsWorkersThatOutlivedTheirOwner) {
   EngineCommand command{"/bin/sleep", {"60"}, {}};
   command.environment = {"PECLET_CAMPAIGN=" + campaign_.directory().root().string(),
                          "PECLET_OWNER=999999999"};
-  const EngineProcess orphan(command, "/dev/null");
+  const EngineProcess orphan(command);
   EXPECT_EQ(severity("orphaned-worker"), "warning");
   EXPECT_NE(examine().text.find(std::to_string(orphan.process())), std::string::npos);
   orphan.kill();

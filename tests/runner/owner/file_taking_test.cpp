@@ -1,6 +1,4 @@
 // Files beside results: each of them is in its place, once, wherever the owner died.
-#include "runner/owner/file_taking.h"
-
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -14,6 +12,7 @@
 #include "contract/durable_file.h"
 #include "contract/errors.h"
 #include "contract/sha256.h"
+#include "runner/owner/after_commit.h"
 #include "runner/store/result_files.h"
 #include "runner/store/spool.h"
 #include "tests/runner/owner/dispatcher_fixture.h"

@@ -7,7 +7,6 @@
 #include <filesystem>
 
 #include "runner/maintenance/backup.h"
-#include "runner/maintenance/restore.h"
 #include "runner/store/backups.h"
 #include "runner/store/locks.h"
 #include "tests/runner/campaign_process.h"

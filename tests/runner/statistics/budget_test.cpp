@@ -1,12 +1,11 @@
 // Runs that may spend only so much processor time.
-#include "runner/statistics/budget.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
 
 #include "runner/campaign/number_text.h"
+#include "runner/statistics/scheduler.h"
 #include "runner/store/database_summary.h"
 #include "tests/runner/campaign_process.h"
 
