@@ -18,7 +18,6 @@
 #include "runner/store/disk_room.h"
 #include "runner/store/locks.h"
 #include "runner/store/result_files.h"
-#include "runner/store/spool.h"
 
 namespace peclet::runner {
 namespace {

@@ -8,7 +8,6 @@
 #include "contract/durable_file.h"
 #include "contract/errors.h"
 #include "runner/store/result_files.h"
-#include "runner/store/spool.h"
 
 namespace peclet::runner {
 

@@ -1,4 +1,3 @@
-// Bundles: seeds that are taken back, whatever the batch system does.
 #include "runner/batch/bundles.h"
 
 #include <fmt/format.h>
@@ -13,7 +12,7 @@
 #include "contract/sha256.h"
 #include "runner/store/blame.h"
 #include "runner/store/locks.h"
-#include "runner/store/spool.h"
+#include "runner/store/result_files.h"
 
 namespace peclet::runner {
 
@@ -101,8 +100,6 @@ void Bundles::fence_forgotten() {
   }
 }
 
-// Bundles: from open seeds to a job that has been submitted.
-
 namespace {
 
 // Of the campaign's folder on this machine: campaigns of one name do not share a job's name.
@@ -122,6 +119,21 @@ BatchTemplate filled_in(const BatchTemplate& scripts, const BundleFolder& folder
   BatchTemplate filled = scripts;
   filled.at("job.sh") = fill_in(scripts.at("job.sh"), values, "job.sh");
   return filled;
+}
+
+// Some task of the bundle has been at work, whatever the batch system remembers.
+bool has_left_traces(const BundleFolder& folder, const BundleRecord& bundle) {
+  if (!fs::is_empty(folder.root() / "ended")) return true;
+  for (int task = 0; task < bundle.tasks; ++task) {
+    if (!fs::is_empty(folder.task(task))) return true;
+  }
+  return false;
+}
+
+std::string trouble_of(const BundleFolder& folder, int task) {
+  if (!fs::exists(folder.trouble(task))) return "";
+  const Json trouble = read_json(folder.trouble(task));
+  return fmt::format("on {}: {}", trouble.value("host", "?"), trouble.value("message", "?"));
 }
 
 }  // namespace
@@ -263,8 +275,7 @@ std::string Bundles::submit(const BundleRecord& bundle, const std::vector<std::s
   if (const auto* unknown = std::get_if<JobUnknown>(&answer)) {
     listener_.warn(
         fmt::format("{}: whether the batch system has taken the job is unknown ({}); it is asked for a job "
-                    "of this name before "
-                    "another is submitted",
+                    "of this name before another is submitted",
                     bundle.name, unknown->complaint));
     return "";
   }
@@ -288,27 +299,6 @@ std::string Bundles::submit_unconfirmed() {
   }
   return refusal;
 }
-
-// Bundles: what has become of the seeds of jobs that have been submitted.
-
-namespace {
-
-// Some task of the bundle has been at work, whatever the batch system remembers.
-bool has_left_traces(const BundleFolder& folder, const BundleRecord& bundle) {
-  if (!fs::is_empty(folder.root() / "ended")) return true;
-  for (int task = 0; task < bundle.tasks; ++task) {
-    if (!fs::is_empty(folder.task(task))) return true;
-  }
-  return false;
-}
-
-std::string trouble_of(const BundleFolder& folder, int task) {
-  if (!fs::exists(folder.trouble(task))) return "";
-  const Json trouble = read_json(folder.trouble(task));
-  return fmt::format("on {}: {}", trouble.value("host", "?"), trouble.value("message", "?"));
-}
-
-}  // namespace
 
 Bundles::SettleReport Bundles::settle() {
   SettleReport settled;

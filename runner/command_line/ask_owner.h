@@ -73,7 +73,7 @@ struct RetryOptions {
 };
 
 // Queues them again; their earlier attempts are kept, but no longer count against them. Throws InputError for
-// a campaign that has not been run; as await_reply() and plan_retry().
+// a campaign that has not been run; as await_reply(), and for a seed that was not given up.
 Reply retry_seeds(const RetryOptions& options);
 
 }  // namespace peclet::runner

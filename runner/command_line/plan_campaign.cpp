@@ -11,7 +11,6 @@
 #include "runner/campaign/campaign_file.h"
 #include "runner/command_line/print.h"
 #include "runner/command_line/run.h"
-#include "runner/engines/cost_trial.h"
 #include "runner/engines/scene_check.h"
 #include "runner/reports/plan.h"
 #include "runner/store/campaign_directory.h"

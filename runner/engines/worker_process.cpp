@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <poll.h>
+#include <sched.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -9,10 +10,17 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <sstream>
 #include <system_error>
+#include <thread>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "contract/documents.h"
 #include "contract/errors.h"
@@ -21,66 +29,45 @@
 #include "runner/store/result_files.h"
 
 namespace peclet::runner {
+
 namespace {
+
+namespace fs = std::filesystem;
+
+// Machines with more cores than a cpu_set_t has bits need a larger set.
+int cores_of_affinity() {
+  for (std::size_t count = CPU_SETSIZE; count <= 1 << 16; count *= 2) {
+    cpu_set_t* const set = CPU_ALLOC(count);
+    if (set == nullptr) break;
+    const std::size_t size = CPU_ALLOC_SIZE(count);
+    const bool known = sched_getaffinity(0, size, set) == 0;
+    const int cores = known ? CPU_COUNT_S(size, set) : 0;
+    CPU_FREE(set);
+    if (known) return cores;
+  }
+  return static_cast<int>(std::thread::hardware_concurrency());
+}
+
+std::optional<double> number_in(const fs::path& file) {
+  double number = 0;
+  return std::ifstream(file) >> number ? std::optional(number) : std::nullopt;
+}
+
+// Version 2: "QUOTA PERIOD" or "max PERIOD" [us]. Version 1: one file each, a quota below 0 for none.
+std::optional<double> quota_of(const fs::path& group) {
+  std::string quota;
+  double period = 0;
+  if (std::ifstream(group / "cpu.max") >> quota >> period) {
+    return quota == "max" || period <= 0 ? std::nullopt
+                                         : std::optional(std::strtod(quota.c_str(), nullptr) / period);
+  }
+  const std::optional<double> time = number_in(group / "cpu.cfs_quota_us"),
+                              of = number_in(group / "cpu.cfs_period_us");
+  return time && of && *time > 0 && *of > 0 ? std::optional(*time / *of) : std::nullopt;
+}
 
 constexpr Awake longest_turn{1};
 constexpr Awake hello_patience{60};
-
-}  // namespace
-
-void AwakeClock::end_turn(Time now) {
-  awake_ += std::min<Awake>({now - heard_, longest_turn, lease_ / 2});
-  heard_ = now;
-}
-
-void WorkerWatch::start(Awake now) {
-  *this = {};
-  stage_ = Stage::starting;
-  since_ = now;
-}
-
-void WorkerWatch::rest(Awake now) {
-  stage_ = Stage::idle;
-  since_ = now;
-}
-
-void WorkerWatch::begin_job(Awake now) {
-  stage_ = Stage::busy;
-  since_ = renewed_ = now;
-  progress_ = {};
-}
-
-void WorkerWatch::hear(const Progressed& progress, Awake now) {
-  if (std::tie(progress.phase, progress.step) > std::tie(progress_.phase, progress_.step)) renewed_ = now;
-  progress_ = {progress.phase, progress.step, progress.steps, progress.strain};
-}
-
-void WorkerWatch::condemn(AttemptReason reason) {
-  if (!condemned_) condemned_ = std::move(reason);
-}
-
-bool WorkerWatch::is_overdue(Awake now, Awake lease) const {
-  if (condemned_) return false;
-  return (stage_ == Stage::starting && now - since_ > hello_patience) ||
-         (is_busy() && now - renewed_ > lease);
-}
-
-AttemptReason WorkerWatch::overdue(Awake lease, bool is_stopped) const {
-  if (stage_ == Stage::starting) return {AttemptOutcome::hung, "it did not say hello"};
-  const char* const why = is_recalled_ ? ": it was told to leave"
-                          : is_stopped ? ": its process has been stopped"
-                                       : "";
-  return {is_recalled_ || is_stopped ? AttemptOutcome::killed : AttemptOutcome::hung,
-          fmt::format("no new step after {} for {:g} s{}", progress_.step, lease.count(), why)};
-}
-
-AttemptReason WorkerWatch::ended(const ExitStatus& ending, bool all_recalled) const {
-  if (condemned_) return *condemned_;
-  const bool left = (all_recalled || is_recalled_) && ending.status == 0;
-  return {left ? AttemptOutcome::drained : outcome_of(ending), to_string(ending)};
-}
-
-namespace {
 
 using Time = std::chrono::steady_clock;
 
@@ -134,6 +121,93 @@ WorkerEvent as_event(int worker, Json given) {
 }
 
 }  // namespace
+
+// "0::/system.slice/job.scope" of version 2, "4:cpu,cpuacct:/slurm/uid_1000/job_7" of version 1. In a
+// container the files of its own group may lie at the root. Every group above limits, too.
+std::optional<double> core_quota(const fs::path& root, const std::string& groups) {
+  std::vector<std::pair<fs::path, fs::path>> places;  // where its kind is mounted, and the group in there
+  std::istringstream lines(groups);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t first = line.find(':'), second = line.find(':', first + 1);
+    if (first == std::string::npos || second == std::string::npos) continue;
+    const std::string controllers = line.substr(first + 1, second - first - 1);
+    const fs::path group = fs::path(line.substr(second + 1)).relative_path();
+    if (controllers.empty()) places.emplace_back(root, group);
+    if ((',' + controllers + ',').find(",cpu,") != std::string::npos) {
+      places.emplace_back(root / controllers, group);
+      places.emplace_back(root / "cpu", group);
+    }
+  }
+  std::optional<double> least;
+  for (auto& [mount, group] : places) {
+    for (;; group = group.parent_path()) {
+      if (const std::optional<double> quota = quota_of(mount / group))
+        least = std::min(least.value_or(*quota), *quota);
+      if (group.empty()) break;
+    }
+  }
+  return least;
+}
+
+int usable_cores() {
+  std::ifstream file("/proc/self/cgroup");
+  const std::string groups{std::istreambuf_iterator<char>(file), {}};
+  const int cores = cores_of_affinity();
+  const std::optional<double> quota = core_quota("/sys/fs/cgroup", groups);
+  return std::max(1, quota ? std::min(cores, static_cast<int>(std::ceil(*quota))) : cores);
+}
+
+void AwakeClock::end_turn(Time now) {
+  awake_ += std::min<Awake>({now - heard_, longest_turn, lease_ / 2});
+  heard_ = now;
+}
+
+void WorkerWatch::start(Awake now) {
+  *this = {};
+  stage_ = Stage::starting;
+  since_ = now;
+}
+
+void WorkerWatch::rest(Awake now) {
+  stage_ = Stage::idle;
+  since_ = now;
+}
+
+void WorkerWatch::begin_job(Awake now) {
+  stage_ = Stage::busy;
+  since_ = renewed_ = now;
+  progress_ = {};
+}
+
+void WorkerWatch::hear(const Progressed& progress, Awake now) {
+  if (std::tie(progress.phase, progress.step) > std::tie(progress_.phase, progress_.step)) renewed_ = now;
+  progress_ = {progress.phase, progress.step, progress.steps, progress.strain};
+}
+
+void WorkerWatch::condemn(AttemptReason reason) {
+  if (!condemned_) condemned_ = std::move(reason);
+}
+
+bool WorkerWatch::is_overdue(Awake now, Awake lease) const {
+  if (condemned_) return false;
+  return (stage_ == Stage::starting && now - since_ > hello_patience) ||
+         (is_busy() && now - renewed_ > lease);
+}
+
+AttemptReason WorkerWatch::overdue(Awake lease, bool is_stopped) const {
+  if (stage_ == Stage::starting) return {AttemptOutcome::hung, "it did not say hello"};
+  const char* const why = is_recalled_ ? ": it was told to leave"
+                          : is_stopped ? ": its process has been stopped"
+                                       : "";
+  return {is_recalled_ || is_stopped ? AttemptOutcome::killed : AttemptOutcome::hung,
+          fmt::format("no new step after {} for {:g} s{}", progress_.step, lease.count(), why)};
+}
+
+AttemptReason WorkerWatch::ended(const ExitStatus& ending, bool all_recalled) const {
+  if (condemned_) return *condemned_;
+  const bool left = (all_recalled || is_recalled_) && ending.status == 0;
+  return {left ? AttemptOutcome::drained : outcome_of(ending), to_string(ending)};
+}
 
 const char* phase_name(int phase) { return job_phases.at(static_cast<std::size_t>(phase)); }
 

@@ -19,6 +19,14 @@
 
 namespace peclet::runner {
 
+// Returns the cores of the affinity mask (taskset, Slurm's cpusets), or fewer where a control group limits
+// processor time to fewer; at least 1.
+int usable_cores();
+
+// The processor time, in cores, to which the control groups limit a process whose /proc/self/cgroup reads
+// `groups`, below `root`, where they are mounted (/sys/fs/cgroup); nothing if they do not.
+std::optional<double> core_quota(const std::filesystem::path& root, const std::string& groups);
+
 // Time during which this process ran. Leases and patience are measured in it: an owner that was stopped, or
 // frozen together with its workers, has heard nothing meanwhile and must not hold that against them.
 using Awake = std::chrono::duration<double>;

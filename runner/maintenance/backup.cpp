@@ -19,7 +19,7 @@
 #include "runner/owner/open_campaign.h"
 #include "runner/store/locks.h"
 #include "runner/store/point_store.h"
-#include "runner/store/spool.h"
+#include "runner/store/result_files.h"
 
 namespace peclet::runner {
 
@@ -43,56 +43,6 @@ void link_or_copy(const fs::path& place, const fs::path& copy) {
   if (no_link) return copy_regular(place, copy, largest_left_file);
   rename_durably(next, copy);
 }
-
-}  // namespace
-
-FileCopies copy_files_of(const std::vector<FileRecord>& records, const CampaignDirectory& directory,
-                         const fs::path& backups) {
-  FileCopies copies;
-  require_own_folder(CampaignDirectory(backups).files());
-  for (const FileRecord& record : records) {
-    if (!record.kept) continue;
-    const fs::path target = copy_of(record, backups), place = record.place(directory);
-    // Only whole files get such a name.
-    const bool is_there = kind_of(target) == "a regular file" && fs::file_size(target) == record.file.bytes;
-    if (!is_there && !is_what_it_was(place, record)) {
-      ++copies.lacking;
-      continue;
-    }
-    ++copies.there;
-    if (is_there) continue;
-    create_folders_durably(target.parent_path());
-    link_or_copy(place, target);
-  }
-  return copies;
-}
-
-bool is_sound(const FileRecord& record, const CampaignDirectory& directory) {
-  return is_what_it_was(record.place(directory), record);
-}
-
-bool has_copy(const FileRecord& record, const fs::path& backups) {
-  return is_what_it_was(copy_of(record, backups), record);
-}
-
-FileCopies bring_files_back(const std::vector<FileRecord>& records, const CampaignDirectory& directory,
-                            const fs::path& backups) {
-  FileCopies copies;
-  for (const FileRecord& record : records) {
-    if (!record.kept || is_sound(record, directory)) continue;
-    if (!has_copy(record, backups)) {
-      ++copies.lacking;
-      continue;
-    }
-    const fs::path place = record.place(directory);
-    create_folders_durably(place.parent_path());
-    copy_regular(copy_of(record, backups), place, largest_left_file);
-    ++copies.there;
-  }
-  return copies;
-}
-
-namespace {
 
 void refuse_unsuitable_folder(const CampaignDirectory& directory, const fs::path& folder) {
   // A path that leads through a disk that is not mounted would be made on the one above it, unnoticed.
@@ -188,50 +138,6 @@ std::string as_text(const Backup& backup, const CampaignDirectory& directory, bo
                             shell_word(directory.root().filename().string()));
 }
 
-}  // namespace
-
-Backup make_backup(const CampaignDirectory& directory, const fs::path& folder, bool checkpoints) {
-  const auto started = std::chrono::steady_clock::now();
-  refuse_unsuitable_folder(directory, folder);
-  fs::create_directory(folder);
-  const FileLock lock(folder);  // `peclet backup` and the campaign's own backups may meet
-  remove_unfinished_files(folder);
-  Backup backup;
-  if (checkpoints) {
-    // Before the database: a result that is committed in between is in both, and counts once.
-    backup.spool_files = copy_files(directory.spool(), folder / "spool");
-    copy_files(directory.left(), CampaignDirectory(folder).left());  // after the results that list them
-    backup.checkpoints = copy_files(directory.checkpoints(), folder / "checkpoints");
-  }
-  const fs::path next = folder / "backup.next.db";
-  std::vector<FileRecord> files;
-  copy_database(directory.database(), next, [&](Connection& copy) {
-    // Whoever restores the copy can say when and where it was made.
-    EventStore(copy).write("backup", std::nullopt, std::nullopt,
-                           "copied from " + directory.database().string());
-    files = files_in(copy);
-    backup.results = extent_of(copy).results;
-  });
-  backup.files = copy_files_of(files, directory, folder);  // before the generation that refers to them
-  backup.file = newest_backup(folder);
-  if (!kind_of(backup.file).empty()) fs::rename(backup.file, previous_backup(folder));
-  rename_durably(next, backup.file);
-  backup.bytes = fs::file_size(backup.file);
-  backup.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
-  return backup;
-}
-
-std::string backup_campaign(const BackupOptions& options) {
-  const OpenCampaign open = open_campaign(options.campaign, options.directory);
-  const bool is_elsewhere = !options.target.empty();
-  const fs::path folder = is_elsewhere ? without_slash(options.target) : open.directory.backup();
-  Backup backup = make_backup(open.directory, folder, options.checkpoints);
-  backup.beside_campaign = is_elsewhere && device_of(folder) == device_of(open.directory.root());
-  return options.json ? as_json(backup).dump(2) + '\n' : as_text(backup, open.directory, options.checkpoints);
-}
-
-namespace {
-
 // A backup must not be what fills the disk: beside it, there has to be room for as much again.
 void refuse_to_fill_the_disk(const CampaignDirectory& directory) {
   const std::uintmax_t size = fs::file_size(directory.database());
@@ -247,50 +153,6 @@ Backup back_up(const CampaignDirectory& directory) {
   refuse_to_fill_the_disk(directory);
   return make_backup(directory, directory.backup(), false);
 }
-
-}  // namespace
-
-PeriodicBackup::PeriodicBackup(CampaignDirectory directory, std::chrono::duration<double> interval,
-                               RunListener& listener, Time now)
-    : directory_(std::move(directory)), interval_(interval), listener_(listener), last_(now) {}
-
-PeriodicBackup::~PeriodicBackup() {
-  if (running_.valid()) running_.wait();
-}
-
-void PeriodicBackup::attend(Time now) {
-  if (running_.valid()) {
-    if (running_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
-    tell();
-    last_ = now;
-  }
-  if (now - last_ >= interval_) start();
-}
-
-void PeriodicBackup::finish() {
-  if (running_.valid()) tell();
-  start();
-  tell();
-}
-
-void PeriodicBackup::start() {
-  running_ = std::async(std::launch::async, [directory = directory_] { return back_up(directory); });
-}
-
-void PeriodicBackup::tell() {
-  try {
-    running_.get();
-    complaint_.clear();
-  } catch (const std::exception& error) {
-    if (complaint_ == error.what()) return;
-    complaint_ = error.what();
-    listener_.warn("no backup could be made, which is tried again: " + complaint_);
-  }
-}
-
-namespace {
-
-namespace fs = std::filesystem;
 
 struct Source {
   fs::path file;
@@ -435,7 +297,133 @@ std::string write_campaign_file(const fs::path& file, const Json& document) {
   return fmt::format("{} was there, is not what was run last, and is not touched\n", file.string());
 }
 
+// Copies what is kept of these into a folder of backups. Throws NoRoomError, std::system_error,
+// UnsuitableFile.
+FileCopies copy_files_of(const std::vector<FileRecord>& records, const CampaignDirectory& directory,
+                         const fs::path& backups) {
+  FileCopies copies;
+  require_own_folder(CampaignDirectory(backups).files());
+  for (const FileRecord& record : records) {
+    if (!record.kept) continue;
+    const fs::path target = copy_of(record, backups), place = record.place(directory);
+    // Only whole files get such a name.
+    const bool is_there = kind_of(target) == "a regular file" && fs::file_size(target) == record.file.bytes;
+    if (!is_there && !is_what_it_was(place, record)) {
+      ++copies.lacking;
+      continue;
+    }
+    ++copies.there;
+    if (is_there) continue;
+    create_folders_durably(target.parent_path());
+    link_or_copy(place, target);
+  }
+  return copies;
+}
+
 }  // namespace
+
+bool is_sound(const FileRecord& record, const CampaignDirectory& directory) {
+  return is_what_it_was(record.place(directory), record);
+}
+
+bool has_copy(const FileRecord& record, const fs::path& backups) {
+  return is_what_it_was(copy_of(record, backups), record);
+}
+
+FileCopies bring_files_back(const std::vector<FileRecord>& records, const CampaignDirectory& directory,
+                            const fs::path& backups) {
+  FileCopies copies;
+  for (const FileRecord& record : records) {
+    if (!record.kept || is_sound(record, directory)) continue;
+    if (!has_copy(record, backups)) {
+      ++copies.lacking;
+      continue;
+    }
+    const fs::path place = record.place(directory);
+    create_folders_durably(place.parent_path());
+    copy_regular(copy_of(record, backups), place, largest_left_file);
+    ++copies.there;
+  }
+  return copies;
+}
+
+Backup make_backup(const CampaignDirectory& directory, const fs::path& folder, bool checkpoints) {
+  const auto started = std::chrono::steady_clock::now();
+  refuse_unsuitable_folder(directory, folder);
+  fs::create_directory(folder);
+  const FileLock lock(folder);  // `peclet backup` and the campaign's own backups may meet
+  remove_unfinished_files(folder);
+  Backup backup;
+  if (checkpoints) {
+    // Before the database: a result that is committed in between is in both, and counts once.
+    backup.spool_files = copy_files(directory.spool(), folder / "spool");
+    copy_files(directory.left(), CampaignDirectory(folder).left());  // after the results that list them
+    backup.checkpoints = copy_files(directory.checkpoints(), folder / "checkpoints");
+  }
+  const fs::path next = folder / "backup.next.db";
+  std::vector<FileRecord> files;
+  copy_database(directory.database(), next, [&](Connection& copy) {
+    // Whoever restores the copy can say when and where it was made.
+    EventStore(copy).write("backup", std::nullopt, std::nullopt,
+                           "copied from " + directory.database().string());
+    files = files_in(copy);
+    backup.results = extent_of(copy).results;
+  });
+  backup.files = copy_files_of(files, directory, folder);  // before the generation that refers to them
+  backup.file = newest_backup(folder);
+  if (!kind_of(backup.file).empty()) fs::rename(backup.file, previous_backup(folder));
+  rename_durably(next, backup.file);
+  backup.bytes = fs::file_size(backup.file);
+  backup.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  return backup;
+}
+
+std::string backup_campaign(const BackupOptions& options) {
+  const OpenCampaign open = open_campaign(options.campaign, options.directory);
+  const bool is_elsewhere = !options.target.empty();
+  const fs::path folder = is_elsewhere ? without_slash(options.target) : open.directory.backup();
+  Backup backup = make_backup(open.directory, folder, options.checkpoints);
+  backup.beside_campaign = is_elsewhere && device_of(folder) == device_of(open.directory.root());
+  return options.json ? as_json(backup).dump(2) + '\n' : as_text(backup, open.directory, options.checkpoints);
+}
+
+PeriodicBackup::PeriodicBackup(CampaignDirectory directory, std::chrono::duration<double> interval,
+                               RunListener& listener, Time now)
+    : directory_(std::move(directory)), interval_(interval), listener_(listener), last_(now) {}
+
+PeriodicBackup::~PeriodicBackup() {
+  if (running_.valid()) running_.wait();
+}
+
+void PeriodicBackup::attend(Time now) {
+  if (running_.valid()) {
+    if (running_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+    tell();
+    last_ = now;
+  }
+  if (now - last_ >= interval_) start();
+}
+
+void PeriodicBackup::finish() {
+  if (running_.valid()) tell();
+  start();
+  tell();
+}
+
+void PeriodicBackup::start() {
+  running_ = std::async(std::launch::async, [directory = directory_] { return back_up(directory); });
+}
+
+void PeriodicBackup::tell() {
+  try {
+    running_.get();
+    complaint_.clear();
+  } catch (const std::exception& error) {
+    if (complaint_ == error.what()) return;
+    complaint_ = error.what();
+    listener_.warn("no backup could be made, which is tried again: " + complaint_);
+  }
+}
 
 std::string restore_campaign(const RestoreOptions& options) {
   const Source source = find_backup(options.backup);
@@ -470,8 +458,7 @@ std::string restore_campaign(const RestoreOptions& options) {
   if (files.there > 0) text += fmt::format("with it came {} files of realisations\n", files.there);
   if (files.lacking > 0) {
     text += fmt::format(
-        "{} files of realisations are neither here nor beside the backup: `peclet doctor` names "
-        "them\n",
+        "{} files of realisations are neither here nor beside the backup: `peclet doctor` names them\n",
         files.lacking);
   }
   if (is_older) {

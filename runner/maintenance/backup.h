@@ -1,7 +1,8 @@
-// The verb `peclet backup`: copies of a campaign's database from which it can go on, here or elsewhere.
+// The verbs `peclet backup`, copies of a campaign's database from which it can go on, here or elsewhere, and
+// `peclet restore`, by which one takes the place of a database that is lost or damaged.
 //
 // A folder of backups holds two generations: backup.db, and backup.previous.db from before it. Each is a
-// sound SQLite database in one file, beside copies of the files that realisations left (file_copies.h).
+// sound SQLite database in one file, beside copies of the files that realisations left.
 // Whoever writes there holds a flock on the folder.
 #pragma once
 
@@ -28,11 +29,6 @@ struct FileCopies {
   int there = 0;    // that were copied, or already there
   int lacking = 0;  // that are absent or damaged where they should come from
 };
-
-// Copies what is kept of these into a folder of backups. Throws NoRoomError, std::system_error,
-// UnsuitableFile.
-FileCopies copy_files_of(const std::vector<FileRecord>& records, const CampaignDirectory& directory,
-                         const std::filesystem::path& backups);
 
 // Whether a file lies in its place and is what its row says.
 bool is_sound(const FileRecord& record, const CampaignDirectory& directory);

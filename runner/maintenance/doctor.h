@@ -42,15 +42,10 @@ struct CampaignUnderExamination {
 
 using Findings = std::vector<Finding>;
 
-// Each looks at one side of it (doctor_database.cpp, doctor_files.cpp, doctor_hand_over.cpp,
-// doctor_left_files.cpp, doctor_machine.cpp). A reader's database.
-void examine_results(Database& database, const CampaignUnderExamination& examined, Findings& findings);
-void examine_looks(Database& database, Findings& findings);
-void examine_states(Database& database, const CampaignUnderExamination& examined, Findings& findings);
+// Each looks at one side of it (doctor_files.cpp, doctor_machine.cpp). A reader's database.
 void examine_files(Database& database, const CampaignUnderExamination& examined, Findings& findings);
 void examine_left_files(Database& database, const CampaignUnderExamination& examined, Findings& findings);
 void examine_backups(Database& database, const CampaignUnderExamination& examined, Findings& findings);
-void examine_hand_over(Database& database, const CampaignUnderExamination& examined, Findings& findings);
 void examine_processes(const CampaignUnderExamination& examined, Findings& findings);
 void examine_clock(Database& database, const CampaignUnderExamination& examined, Findings& findings);
 void examine_log(const CampaignUnderExamination& examined, Findings& findings);

@@ -15,27 +15,26 @@
 #include "runner/owner/request.h"
 #include "runner/store/backups.h"
 #include "runner/store/result_files.h"
-#include "runner/store/spool.h"
 
 namespace peclet::runner {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<const char*, 14> known_names{"campaign.db",
-                                                  "campaign.db-wal",
-                                                  "campaign.db-shm",
-                                                  "campaign.db-journal",
-                                                  "campaign.lock",
-                                                  "spool",
-                                                  "checkpoints",
-                                                  "failures",
-                                                  "logs",
-                                                  "backup",
-                                                  "aside",
-                                                  "campaign.json",
-                                                  "requests",
-                                                  "files"};
+constexpr std::array known_names{"campaign.db",
+                                 "campaign.db-wal",
+                                 "campaign.db-shm",
+                                 "campaign.db-journal",
+                                 "campaign.lock",
+                                 "spool",
+                                 "checkpoints",
+                                 "failures",
+                                 "logs",
+                                 "backup",
+                                 "aside",
+                                 "campaign.json",
+                                 "requests",
+                                 "files"};
 
 // A campaign that works makes one every ten minutes.
 constexpr double old_backup_hours = 24;
@@ -205,47 +204,6 @@ void examine_strays(const CampaignUnderExamination& examined, Findings& findings
                       "move them away if nothing else needs them"});
 }
 
-}  // namespace
-
-void examine_files(Database& database, const CampaignUnderExamination& examined, Findings& findings) {
-  examine_spool(examined, findings);
-  examine_checkpoints(database, examined, findings);
-  examine_requests(examined, findings);
-  examine_unfinished(examined, findings);
-  examine_strays(examined, findings);
-}
-
-void examine_backups(Database& database, const CampaignUnderExamination& examined, Findings& findings) {
-  const std::int64_t results = extent_of(database.connection()).results;
-  if (results == 0) return;
-  const fs::path newest = newest_backup(examined.directory.backup());
-  const auto find = [&](const std::string& code, const std::string& message) {
-    findings.push_back(
-        {code, Severity::warning, message, "`peclet backup` and `peclet doctor --repair` make one",
-         [directory = examined.directory](Database&) { make_backup(directory, directory.backup(), false); }});
-  };
-  if (kind_of(newest).empty())
-    return find("no-backup", fmt::format("there is no backup of {} results", results));
-  try {
-    const Contents contents = examine(newest);
-    const double hours =
-        static_cast<double>(seconds_of_utc(examined.now) - seconds_of_utc(contents.backed_up_at)) / 3600;
-    if (contents.results < results && hours > old_backup_hours) {
-      find("old-backup", fmt::format("the last backup is {:.0f} hours old and lacks {} results", hours,
-                                     results - contents.results));
-    }
-  } catch (const UnsuitableFile& error) {
-    findings.push_back({"backup-damaged", Severity::warning, error.what(),
-                        "move it away; `peclet backup` makes another one"});
-  } catch (const IntegrityError& error) {
-    find("backup-damaged", fmt::format("the last backup is damaged: {}", error.what()));
-  }
-}
-
-// Are the files that realisations have left where the database says, and are they what it says?
-
-namespace {
-
 class Places {
  public:
   explicit Places(const fs::path& root) : root_(root) {}
@@ -322,6 +280,43 @@ void examine_places(Database& database, const CampaignUnderExamination& examined
 }
 
 }  // namespace
+
+void examine_files(Database& database, const CampaignUnderExamination& examined, Findings& findings) {
+  examine_spool(examined, findings);
+  examine_checkpoints(database, examined, findings);
+  examine_requests(examined, findings);
+  examine_unfinished(examined, findings);
+  examine_strays(examined, findings);
+}
+
+void examine_backups(Database& database, const CampaignUnderExamination& examined, Findings& findings) {
+  const std::int64_t results = extent_of(database.connection()).results;
+  if (results == 0) return;
+  const fs::path newest = newest_backup(examined.directory.backup());
+  const auto find = [&](const std::string& code, const std::string& message) {
+    findings.push_back(
+        {code, Severity::warning, message, "`peclet backup` and `peclet doctor --repair` make one",
+         [directory = examined.directory](Database&) { make_backup(directory, directory.backup(), false); }});
+  };
+  if (kind_of(newest).empty())
+    return find("no-backup", fmt::format("there is no backup of {} results", results));
+  try {
+    const Contents contents = examine(newest);
+    const double hours =
+        static_cast<double>(seconds_of_utc(examined.now) - seconds_of_utc(contents.backed_up_at)) / 3600;
+    if (contents.results < results && hours > old_backup_hours) {
+      find("old-backup", fmt::format("the last backup is {:.0f} hours old and lacks {} results", hours,
+                                     results - contents.results));
+    }
+  } catch (const UnsuitableFile& error) {
+    findings.push_back({"backup-damaged", Severity::warning, error.what(),
+                        "move it away; `peclet backup` makes another one"});
+  } catch (const IntegrityError& error) {
+    find("backup-damaged", fmt::format("the last backup is damaged: {}", error.what()));
+  }
+}
+
+// Are the files that realisations have left where the database says, and are they what it says?
 
 void examine_left_files(Database& database, const CampaignUnderExamination& examined, Findings& findings) {
   examine_places(database, examined, findings);

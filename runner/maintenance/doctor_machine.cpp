@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "runner/campaign/quoting.h"
-#include "runner/engines/usable_cores.h"
+#include "runner/engines/worker_process.h"
 #include "runner/maintenance/doctor.h"
 #include "runner/store/backups.h"
 #include "runner/store/database_summary.h"

@@ -10,7 +10,6 @@
 #include "runner/engines/engine_process.h"
 #include "runner/store/disk_room.h"
 #include "runner/store/result_files.h"
-#include "runner/store/spool.h"
 
 namespace peclet::runner {
 namespace {
@@ -30,6 +29,37 @@ constexpr seconds surplus_patience{10};
 constexpr int most_early_exits = 3;
 // The same for kills from outside, which may be somebody's fault drill.
 constexpr int most_early_kills = 100;
+
+// Mean seconds of jobs that it is worth having another one wait for. A commit takes some hundredth of a
+// second, for which a worker with longer jobs need not have one; and a seed behind a long one would make the
+// decision of its point wait, while workers become idle that could run it.
+constexpr double longest_job_to_queue_behind = 1;
+
+// The longest that a turn waits: leases and the time limit are judged at least this often.
+constexpr std::chrono::milliseconds longest_wait{500};
+
+int worker_of(const WorkerEvent& event) {
+  return std::visit(
+      [](const auto& happened) {
+        if constexpr (requires { happened.worker; }) {
+          return happened.worker;
+        } else {
+          return -1;
+        }
+      },
+      event);
+}
+
+// The news of a worker's progress that `later` makes old, if that is what it said last; otherwise null.
+Progressed* superseded(std::vector<WorkerEvent>& news, const Progressed& later) {
+  const auto last = std::find_if(news.rbegin(), news.rend(),
+                                 [&](const WorkerEvent& event) { return worker_of(event) == later.worker; });
+  auto* const progress = last == news.rend() ? nullptr : std::get_if<Progressed>(&*last);
+  return progress != nullptr && progress->job == later.job && progress->phase == later.phase ? progress
+                                                                                             : nullptr;
+}
+
+constexpr std::chrono::seconds request_interval{1};
 
 }  // namespace
 
@@ -300,17 +330,6 @@ void Dispatcher::obey_stop_signal() {
   }
 }
 
-// What workers have in hand: the seed that each one runs, and perhaps one that waits for its end.
-
-namespace {
-
-// Mean seconds of jobs that it is worth having another one wait for. A commit takes some hundredth of a
-// second, for which a worker with longer jobs need not have one; and a seed behind a long one would make the
-// decision of its point wait, while workers become idle that could run it.
-constexpr double longest_job_to_queue_behind = 1;
-
-}  // namespace
-
 // Idle workers first: a seed waits for none that could begin it.
 void Dispatcher::give_out_seeds() {
   if (stopping_ != Stopping::no || pause_.lasts() || ledger_.scheduler().finished()) return;
@@ -406,37 +425,6 @@ void Dispatcher::give_back(const Assignment& waiting) {
   ledger_.end_attempt(waiting.given_seed, {AttemptOutcome::drained, 0, {}, "waited behind another job"});
 }
 
-// The dispatcher's transaction, and what it does when something is in the way: what was heard is kept until
-// it can be booked.
-
-namespace {
-
-// The longest that a turn waits: leases and the time limit are judged at least this often.
-constexpr std::chrono::milliseconds longest_wait{500};
-
-int worker_of(const WorkerEvent& event) {
-  return std::visit(
-      [](const auto& happened) {
-        if constexpr (requires { happened.worker; }) {
-          return happened.worker;
-        } else {
-          return -1;
-        }
-      },
-      event);
-}
-
-// The news of a worker's progress that `later` makes old, if that is what it said last; otherwise null.
-Progressed* superseded(std::vector<WorkerEvent>& news, const Progressed& later) {
-  const auto last = std::find_if(news.rbegin(), news.rend(),
-                                 [&](const WorkerEvent& event) { return worker_of(event) == later.worker; });
-  auto* const progress = last == news.rend() ? nullptr : std::get_if<Progressed>(&*last);
-  return progress != nullptr && progress->job == later.job && progress->phase == later.phase ? progress
-                                                                                             : nullptr;
-}
-
-}  // namespace
-
 // Signals are obeyed at once, whatever may become of the booking.
 void Dispatcher::listen() {
   for (WorkerEvent& event : pool_.wait(longest_wait)) {
@@ -522,8 +510,7 @@ void Dispatcher::begin_pause(const Hindrance& hindrance) {
   if (!told_of_.insert(hindrance.kind()).second) return;
   listener_.happened(ShortageBegan{hindrance.text});
   listener_.warn(fmt::format(
-      "{}; workers keep what they have, no further seed is given out, and the campaign goes on by "
-      "itself {}",
+      "{}; workers keep what they have, no further seed is given out, and the campaign goes on by itself {}",
       hindrance.text, hindrance.end));
 }
 
@@ -577,14 +564,6 @@ void Dispatcher::settle_spool() {
     listener_.warn(hindrance->text + "; what workers did last is booked by the next run");
   }
 }
-
-// The dispatcher's part in what people ask for while it runs.
-
-namespace {
-
-constexpr std::chrono::seconds request_interval{1};
-
-}  // namespace
 
 // While workers stop, requests wait for the next owner. During a pause they wait as everything does.
 void Dispatcher::hear_requests() {

@@ -40,8 +40,7 @@ void FolderWatch::refuse_move() const {
   if (!folder || fs::equivalent(*folder, directory_.root(), absent)) return;
   throw IntegrityError(
       fmt::format("{}: was moved to {} while the campaign ran, which stops here; everything that was "
-                  "committed is there: "
-                  "move it back and run again, or go on there with --directory {}",
+                  "committed is there: move it back and run again, or go on there with --directory {}",
                   directory_.root().string(), folder->string(), shell_word(folder->string())));
 }
 
@@ -51,8 +50,7 @@ void FolderWatch::refuse_deletion() const {
   copy_database(database_.connection(), saved);
   throw IntegrityError(fmt::format(
       "{}: was deleted while the campaign ran, which stops here; all {} results in it were saved in {}: put "
-      "them "
-      "back with `peclet restore {} {}`",
+      "them back with `peclet restore {} {}`",
       directory_.database().string(), extent_of(database_.connection()).results, saved.string(),
       shell_word(saved.string()), shell_word(directory_.root().string())));
 }
@@ -73,8 +71,7 @@ bool FolderWatch::mend_folders() const {
   }
   listener_.warn(
       fmt::format("{}: somebody deleted {} while the campaign runs; made anew: the database keeps what it "
-                  "has, and a seed "
-                  "whose checkpoint or unbooked result was there runs again",
+                  "has, and a seed whose checkpoint or unbooked result was there runs again",
                   directory_.root().string(), fmt::join(gone, ", ")));
   return true;
 }

@@ -12,11 +12,10 @@
 #include <utility>
 
 #include "runner/campaign/quoting.h"
-#include "runner/statistics/observation.h"
 #include "runner/statistics/quantities.h"
 #include "runner/store/blame.h"
 #include "runner/store/bundle_store.h"
-#include "runner/store/spool.h"
+#include "runner/store/result_files.h"
 
 namespace peclet::runner {
 namespace {
@@ -24,6 +23,37 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t longest_list = 350;
+
+struct Out {
+  std::size_t seeds = 0;
+  std::vector<std::string> bundles;
+};
+
+// "a-0001, a-0002 and 3 more"
+std::string listed(const std::vector<std::string>& names) {
+  constexpr std::size_t most = 3;
+  const std::string text = fmt::format(
+      "{}", fmt::join(names.begin(),
+                      names.begin() + static_cast<std::ptrdiff_t>(std::min(most, names.size())), ", "));
+  return names.size() > most ? fmt::format("{} and {} more", text, names.size() - most) : text;
+}
+
+constexpr std::size_t files_at_a_time = 64;
+constexpr int most_told = 10;
+
+double cost_of(const RealisationResult& result, const char* which) {
+  return result.document["cost"][which].get<double>();
+}
+
+// Whether it is the result's own fault; what fails for want of room or of a sound disk is not.
+bool is_of_the_result(const std::exception& error) {
+  if (const auto* const database = dynamic_cast<const DatabaseError*>(&error)) {
+    return database->refuses_values();
+  }
+  return dynamic_cast<const ResultError*>(&error) != nullptr ||
+         dynamic_cast<const Json::exception*>(&error) != nullptr ||
+         dynamic_cast<const std::logic_error*>(&error) != nullptr;
+}
 
 }  // namespace
 
@@ -257,7 +287,6 @@ std::string Ledger::name_of(const GivenSeed& given_seed) const {
                      given_seed.id.seed);
 }
 
-// The ledger's part in what a run may do: how many seeds, and for how much processor time.
 void Ledger::set_bounds(Bounds bounds) { board_.set_bounds(std::move(bounds)); }
 
 std::optional<double> Ledger::wall_seconds(const GivenSeed& given_seed) const {
@@ -269,26 +298,6 @@ std::optional<SeedId> Ledger::next() const {
   if (!budget) return scheduler().next();
   return scheduler().next_within(*budget - spent_seconds() - board_.expected_seconds());
 }
-
-// The ledger's part in seeds that a batch system runs.
-
-namespace {
-
-struct Out {
-  std::size_t seeds = 0;
-  std::vector<std::string> bundles;
-};
-
-// "a-0001, a-0002 and 3 more"
-std::string listed(const std::vector<std::string>& names) {
-  constexpr std::size_t most = 3;
-  const std::string text = fmt::format(
-      "{}", fmt::join(names.begin(),
-                      names.begin() + static_cast<std::ptrdiff_t>(std::min(most, names.size())), ", "));
-  return names.size() > most ? fmt::format("{} and {} more", text, names.size() - most) : text;
-}
-
-}  // namespace
 
 void Ledger::ingest_spool() {
   removal_.finish();  // of what has been taken already
@@ -311,8 +320,7 @@ void Ledger::ingest_spool() {
     } else if (out.seeds > 0 && away_.insert(folder).second) {
       listener_.warn(
           fmt::format("{}: {}, and {} seeds are out in it ({}). Put it back, and `peclet ingest` takes in "
-                      "what it holds; if it is "
-                      "gone for good, `peclet ingest --forget {}` queues seeds again",
+                      "what it holds; if it is gone for good, `peclet ingest --forget {}` queues seeds again",
                       folder, unreachable ? unreachable.message() : "is not there", out.seeds,
                       listed(out.bundles), out.bundles.front()));
     }
@@ -372,8 +380,6 @@ void Ledger::take_back(SeedId id) {
   if (id.seed < campaign().maximum_realisations && !has_ended(id)) board_.scheduler().give_back(id);
 }
 
-// The ledger's part in what people change while seeds run: another campaign, cancelled points, another
-// engine.
 void Ledger::take_over(const Campaign& campaign) {
   rows_.take_over(campaign);
   next_campaign_ = campaign;
@@ -423,27 +429,6 @@ int Ledger::accept_engine(const std::string& identity) {
 // A result comes from outside, and what is done with it touches six tables, the scheduler's picture and what
 // is to happen after the commit. Whatever fails on the way, nothing of it may stay: what was half stored
 // would be counted.
-
-namespace {
-
-constexpr std::size_t files_at_a_time = 64;
-constexpr int most_told = 10;
-
-double cost_of(const RealisationResult& result, const char* which) {
-  return result.document["cost"][which].get<double>();
-}
-
-// Whether it is the result's own fault; what fails for want of room or of a sound disk is not.
-bool is_of_the_result(const std::exception& error) {
-  if (const auto* const database = dynamic_cast<const DatabaseError*>(&error)) {
-    return database->refuses_values();
-  }
-  return dynamic_cast<const ResultError*>(&error) != nullptr ||
-         dynamic_cast<const Json::exception*>(&error) != nullptr ||
-         dynamic_cast<const std::logic_error*>(&error) != nullptr;
-}
-
-}  // namespace
 
 std::string Ledger::take_whole(const fs::path& spool, const Reading& read, const Booking& book) {
   Changes of_others = std::exchange(changes_, {});

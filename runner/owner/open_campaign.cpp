@@ -50,35 +50,10 @@ int results_of(const Campaign& campaign, const fs::path& folder) {
       }
     }
     return results;
-  } catch (const InputError&) {
-    return 0;
-  } catch (const IntegrityError&) {
-    return 0;
-  } catch (const DatabaseError&) {
+  } catch (const std::exception&) {
     return 0;
   }
 }
-
-}  // namespace
-
-void refuse_renamed_file(const Campaign& campaign, const fs::path& file, const CampaignDirectory& directory) {
-  if (fs::exists(directory.root())) return;
-  for (const fs::path& orphan : orphans_beside(directory)) {
-    const int results = results_of(campaign, orphan);
-    if (results == 0) continue;
-    const fs::path own = file.parent_path() / directory.root().filename();
-    const fs::path other = file.parent_path() / orphan.filename();
-    throw InputError(
-        file.string(), "", "",
-        fmt::format("has not been run under this name, but {4} has {1} results of its points and no file any "
-                    "more: was it renamed? Go on with them: `mv {0} {2} && peclet run {3}`; or start "
-                    "afresh: `peclet run {3} --directory {2}`",
-                    shell_word(other.string()), results, shell_word(own.string()), shell_word(file.string()),
-                    other.string()));
-  }
-}
-
-namespace {
 
 bool has_been_run(const CampaignDirectory& directory) {
   return !kind_of(directory.database()).empty() || !restore_hint(directory).empty();
@@ -100,6 +75,23 @@ void refuse_unfinished_beginning(const CampaignDirectory& directory) {
 }
 
 }  // namespace
+
+void refuse_renamed_file(const Campaign& campaign, const fs::path& file, const CampaignDirectory& directory) {
+  if (fs::exists(directory.root())) return;
+  for (const fs::path& orphan : orphans_beside(directory)) {
+    const int results = results_of(campaign, orphan);
+    if (results == 0) continue;
+    const fs::path own = file.parent_path() / directory.root().filename();
+    const fs::path other = file.parent_path() / orphan.filename();
+    throw InputError(
+        file.string(), "", "",
+        fmt::format("has not been run under this name, but {4} has {1} results of its points and no file any "
+                    "more: was it renamed? Go on with them: `mv {0} {2} && peclet run {3}`; or start "
+                    "afresh: `peclet run {3} --directory {2}`",
+                    shell_word(other.string()), results, shell_word(own.string()), shell_word(file.string()),
+                    other.string()));
+  }
+}
 
 bool awaits_its_first_run(const fs::path& given, const fs::path& chosen) {
   return fs::is_regular_file(given) && !has_been_run(campaign_directory(given, chosen));

@@ -8,7 +8,7 @@
 #include "runner/store/backups.h"
 #include "runner/store/point_store.h"
 #include "runner/store/realisation_result.h"
-#include "runner/store/spool.h"
+#include "runner/store/result_files.h"
 #include "runner/store/vocabulary.h"
 
 namespace peclet::runner {
@@ -73,10 +73,9 @@ void refuse_older_copy(const CampaignDirectory& directory, Database& database) {
   if (here.attempts >= there.attempts) return;
   throw IntegrityError(fmt::format(
       "{}: is older than its own backup: {} results of {} attempts, and {} of {} in {}; has an old copy "
-      "taken its "
-      "place? Put the newer one back with `peclet restore {} {}`, or keep what is here with `peclet backup "
-      "{}`; "
-      "then run again",
+      "taken its place? Put the newer one back with `peclet restore {} {}`, or keep what is here with "
+      "`peclet backup "
+      "{}`; then run again",
       directory.database().string(), here.results, here.attempts, there.results, there.attempts,
       backup.string(), shell_word(directory.backup().string()), shell_word(directory.root().string()),
       shell_word(directory.root().string())));
@@ -140,8 +139,7 @@ void accept_engine(Ledger& ledger, const Json& engine, RunListener& listener) {
 std::string acceptance_hint(const std::string& verb_and_file, const Json& engine) {
   return fmt::format(
       ". Run with the engine it was begun with, or accept this one with `peclet {} --accept-engine {}`: what "
-      "points "
-      "that are still to be run have is then kept apart, and they begin again",
+      "points that are still to be run have is then kept apart, and they begin again",
       verb_and_file, engine.at("binary_sha256").get<std::string>().substr(0, 12));
 }
 

@@ -4,6 +4,7 @@
 
 #include <spdlog/logger.h>
 
+#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -36,6 +37,26 @@ class Progress : public RunListener {
   std::shared_ptr<spdlog::logger> log_;
   std::string line_;      // what the terminal's last line shows
   double next_line_ = 0;  // seconds of the run at which a log line is due
+};
+
+// Writes down what a run tells, and passes it on.
+class RunLog : public RunListener {
+ public:
+  // `audience` must outlive the log.
+  RunLog(const std::filesystem::path& file, RunListener& audience);
+
+  void note(const std::string& message) override;
+  void warn(const std::string& message) override;
+  void happened(const RunEvent& event) override { audience_.happened(event); }
+  void report(const RunReport& report) override;  // into the file once in ten minutes
+
+  // For the file alone: how the run began and ended.
+  void record(const std::string& message);
+
+ private:
+  RunListener& audience_;
+  std::shared_ptr<spdlog::logger> log_;
+  double next_report_ = 0;  // seconds of the run
 };
 
 }  // namespace peclet::runner

@@ -18,6 +18,8 @@ namespace peclet::runner {
 
 namespace {
 
+namespace fs = std::filesystem;
+
 // "10 0.5" of "peclet=10 volume_fraction=0.5": what stands in the row of a table.
 std::string values_in(const std::string& label) {
   std::istringstream words(label);
@@ -32,29 +34,6 @@ std::string values_in(const std::string& label) {
 bool has_name(const PointRecord& point, const std::string& name) {
   return values_in(point.label) == name || (name.size() >= 4 && point.hash.starts_with(name));
 }
-
-}  // namespace
-
-std::size_t find_point(const std::vector<PointRecord>& points, const std::string& name) {
-  std::vector<std::size_t> found;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (points[i].label == name) return i;
-    if (has_name(points[i], name)) found.push_back(i);
-  }
-  if (found.size() == 1) return found.front();
-  constexpr std::size_t most_labels = 12;
-  std::vector<std::string> labels;
-  labels.reserve(std::min(points.size(), most_labels));
-  for (std::size_t i = 0; i < std::min(points.size(), most_labels); ++i)
-    labels.push_back(shell_word(points[i].label));
-  throw InputError(
-      "", "", name,
-      fmt::format(
-          "must be the label of one point, its values alone, or 4 or more digits of its hash; labels: {}{}",
-          fmt::join(labels, ", "), points.size() > most_labels ? ", ..." : ""));
-}
-
-namespace {
 
 constexpr const char* would_repeat = "ended with the engine's own verdict, and would end so again";
 
@@ -100,36 +79,6 @@ std::string listed(const std::vector<Item>& items, const char* separator = ", ")
 
 std::string plural(std::size_t count) { return fmt::format("{} seed{}", count, count == 1 ? "" : "s"); }
 
-}  // namespace
-
-RetryPlan plan_retry(Database& database, const std::vector<PointRecord>& points,
-                     const std::vector<int>& seeds) {
-  check_named(database, points, seeds);
-  RetryPlan plan;
-  std::size_t retried = 0, failed = 0;
-  std::vector<std::string> where;
-  for (const PointRecord& point : points) {
-    std::vector<int> chosen;
-    for (const RealisationRecord& record : database.realisations(point.id)) {
-      const bool is_meant =
-          seeds.empty() || std::find(seeds.begin(), seeds.end(), record.seed) != seeds.end();
-      if (record.state == SeedState::failed) ++failed;
-      if (record.state == SeedState::quarantined && is_meant) chosen.push_back(record.seed);
-    }
-    if (chosen.empty()) continue;
-    retried += chosen.size();
-    where.push_back(fmt::format("{} seed{} {}", point.label, chosen.size() == 1 ? "" : "s", listed(chosen)));
-    plan.seeds[point.id] = std::move(chosen);
-  }
-  plan.message = retried == 0 ? "no seed was given up: there is nothing to retry"
-                              : fmt::format("{} queued again, with a clean record: {}", plural(retried),
-                                            listed(where, "; "));
-  if (failed > 0 && seeds.empty()) plan.message += fmt::format("; {} {}", plural(failed), would_repeat);
-  return plan;
-}
-
-namespace {
-
 void compare(std::vector<std::string>& changes, const char* what, const std::string& before,
              const std::string& after) {
   if (before != after) changes.push_back(fmt::format("{} {} -> {}", what, before, after));
@@ -168,30 +117,6 @@ void compare_points(std::vector<std::string>& changes, Database& database, const
   if (const auto left = missing_in(after, before); left > 0) changes.push_back(points_text(left, "left out"));
 }
 
-}  // namespace
-
-std::string describe_changes(Database& database, const Campaign& campaign) {
-  const CampaignRecord known = database.campaign();
-  const Target& before = known.target.target;
-  const Target& after = campaign.target;
-  std::vector<std::string> changes;
-  compare(changes, "observable", before.observable, after.observable);
-  compare(changes, "tolerance", to_string(before.tolerance), to_string(after.tolerance));
-  compare(changes, after.has_tolerance() ? "further targets" : "also shown", also_text(before),
-          also_text(after));
-  compare(changes, "confidence", exact_percent(before.confidence), exact_percent(after.confidence));
-  compare_realisations(changes, known.target, campaign);
-  const auto kept = [](const Json& document) { return document.value("keep_files", Json("all")).dump(); };
-  compare(changes, "files kept", kept(known.document), kept(campaign.document));
-  compare_points(changes, database, campaign);
-  if (!changes.empty()) return fmt::format("{}", fmt::join(changes, "; "));
-  return known.document == campaign.document ? "nothing differs" : "the file, in nothing that decides";
-}
-
-namespace {
-
-namespace fs = std::filesystem;
-
 // One that is larger is not taken over while the campaign runs; `peclet run` reads it.
 constexpr std::uint64_t largest_campaign_file = 64 << 20;
 
@@ -217,7 +142,81 @@ std::optional<std::int64_t> only(const std::vector<PointRecord>& points) {
   return points.size() == 1 ? std::optional(points.front().id) : std::nullopt;
 }
 
+// Which seeds a retry queues again.
+struct RetryPlan {
+  std::map<std::int64_t, std::vector<int>> seeds;  // by PointRecord::id
+  std::string message;                             // what is done, and why not more
+};
+
+// The seeds of `points` that were given up, or of these the `seeds` that are named. Throws InputError for
+// named seeds of more than one point, and for one that was not given up: a seed that ended with the engine's
+// own verdict would end so again.
+RetryPlan plan_retry(Database& database, const std::vector<PointRecord>& points,
+                     const std::vector<int>& seeds) {
+  check_named(database, points, seeds);
+  RetryPlan plan;
+  std::size_t retried = 0, failed = 0;
+  std::vector<std::string> where;
+  for (const PointRecord& point : points) {
+    std::vector<int> chosen;
+    for (const RealisationRecord& record : database.realisations(point.id)) {
+      const bool is_meant =
+          seeds.empty() || std::find(seeds.begin(), seeds.end(), record.seed) != seeds.end();
+      if (record.state == SeedState::failed) ++failed;
+      if (record.state == SeedState::quarantined && is_meant) chosen.push_back(record.seed);
+    }
+    if (chosen.empty()) continue;
+    retried += chosen.size();
+    where.push_back(fmt::format("{} seed{} {}", point.label, chosen.size() == 1 ? "" : "s", listed(chosen)));
+    plan.seeds[point.id] = std::move(chosen);
+  }
+  plan.message = retried == 0 ? "no seed was given up: there is nothing to retry"
+                              : fmt::format("{} queued again, with a clean record: {}", plural(retried),
+                                            listed(where, "; "));
+  if (failed > 0 && seeds.empty()) plan.message += fmt::format("; {} {}", plural(failed), would_repeat);
+  return plan;
+}
+
+// Returns in words what a campaign file changes: "tolerance 5 % -> 3 %; 2 points added, 1 left out"; "nothing
+// differs". Requires that the database holds a campaign and has not taken this one over yet.
+std::string describe_changes(Database& database, const Campaign& campaign) {
+  const CampaignRecord known = database.campaign();
+  const Target& before = known.target.target;
+  const Target& after = campaign.target;
+  std::vector<std::string> changes;
+  compare(changes, "observable", before.observable, after.observable);
+  compare(changes, "tolerance", to_string(before.tolerance), to_string(after.tolerance));
+  compare(changes, after.has_tolerance() ? "further targets" : "also shown", also_text(before),
+          also_text(after));
+  compare(changes, "confidence", exact_percent(before.confidence), exact_percent(after.confidence));
+  compare_realisations(changes, known.target, campaign);
+  const auto kept = [](const Json& document) { return document.value("keep_files", Json("all")).dump(); };
+  compare(changes, "files kept", kept(known.document), kept(campaign.document));
+  compare_points(changes, database, campaign);
+  if (!changes.empty()) return fmt::format("{}", fmt::join(changes, "; "));
+  return known.document == campaign.document ? "nothing differs" : "the file, in nothing that decides";
+}
+
 }  // namespace
+
+std::size_t find_point(const std::vector<PointRecord>& points, const std::string& name) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (points[i].label == name) return i;
+    if (has_name(points[i], name)) found.push_back(i);
+  }
+  if (found.size() == 1) return found.front();
+  constexpr std::size_t most_labels = 12;
+  std::vector<std::string> labels;
+  labels.reserve(std::min(points.size(), most_labels));
+  for (std::size_t i = 0; i < std::min(points.size(), most_labels); ++i)
+    labels.push_back(shell_word(points[i].label));
+  throw InputError(
+      "", "", name,
+      fmt::format(
+          "must be the label of one point, its values alone, or 4 or more digits of its hash; labels: {}{}",
+          fmt::join(labels, ", "), points.size() > most_labels ? ", ..." : ""));
+}
 
 bool RequestHandler::carry_out() {
   bool any = false;

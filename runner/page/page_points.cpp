@@ -10,7 +10,7 @@
 
 #include "runner/page/page_data.h"
 #include "runner/statistics/cohorts.h"
-#include "runner/statistics/observation.h"
+#include "runner/statistics/quantities.h"
 #include "runner/statistics/quantity_estimates.h"
 #include "runner/statistics/stop_rule.h"
 #include "runner/store/database_summary.h"

@@ -126,10 +126,7 @@ std::vector<Estimate> estimates_so_far(std::span<const std::optional<Outcome>> o
     if (!outcome) continue;
     for (std::size_t place = 0; place < observables; ++place) add(sums[place], outcome->of(place));
   }
-  std::vector<Estimate> estimates;
-  estimates.reserve(observables);
-  for (const RunningEstimate& sum : sums) estimates.push_back(sum.estimate());
-  return estimates;
+  return estimates_of(sums);
 }
 
 Observation Outcome::of(std::size_t place) const {

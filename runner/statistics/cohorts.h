@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "contract/json.h"
-#include "runner/statistics/observation.h"
+#include "runner/statistics/quantities.h"
 #include "runner/statistics/stop_rule.h"
 
 namespace peclet::runner {

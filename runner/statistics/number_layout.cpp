@@ -55,14 +55,12 @@ std::optional<std::size_t> place_among(const std::vector<std::string>& observabl
 
 Json description(const Quantity& quantity) {
   Json about{{"symbol", quantity.symbol}, {"unit", quantity.unit}, {"estimator", estimator_of(quantity)}};
-  for (const QuantityAxis& axis : quantity.axes)
-    about["axes"].push_back({{"name", axis.name}, {"unit", axis.unit}, {"values", axis.values}});
+  if (!quantity.axes.empty()) about["axes"] = quantity.axes;
   if (quantity.ratio) {
     about["numerator"] = quantity.ratio->numerator;
     about["denominator"] = quantity.ratio->denominator;
   }
-  if (quantity.control)
-    about["control"] = {{"quantity", quantity.control->quantity}, {"mean", quantity.control->mean}};
+  if (quantity.control) about["control"] = *quantity.control;
   return about;
 }
 

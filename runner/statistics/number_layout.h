@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "contract/json.h"
-#include "runner/statistics/observation.h"
 #include "runner/statistics/quantities.h"
 
 namespace peclet::runner {

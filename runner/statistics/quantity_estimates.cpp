@@ -158,12 +158,6 @@ std::vector<QuantityEstimate> QuantityEstimates::estimates() const {
   std::vector<QuantityEstimate> all;
   for (const Sums& sums : sums_) {
     QuantityEstimate found{sums.quantity, {}, {}, sums.unlike};
-    const auto estimates_of = [](const std::vector<RunningEstimate>& running) {
-      std::vector<Estimate> estimates(running.size());
-      std::transform(running.begin(), running.end(), estimates.begin(),
-                     [](const RunningEstimate& element) { return element.estimate(); });
-      return estimates;
-    };
     if (sums.quantity.control) {
       found.estimates = estimates_of(sums.controlled);
       found.uncontrolled = estimates_of(sums.plain);
@@ -196,10 +190,7 @@ Json QuantityEstimates::json(double confidence) const {
     json["symbol"] = quantity.symbol;
     json["unit"] = quantity.unit;
     json["estimator"] = estimator_of(quantity);
-    json["axes"] = Json::array();
-    for (const QuantityAxis& axis : quantity.axes) {
-      json["axes"].push_back({{"name", axis.name}, {"unit", axis.unit}, {"values", axis.values}});
-    }
+    json["axes"] = quantity.axes;
     if (quantity.control) json["uncontrolled"] = columns(found.uncontrolled, quantity, confidence);
     if (found.unlike > 0) json["unlike"] = found.unlike;
     all[quantity.name] = std::move(json);

@@ -22,18 +22,24 @@ bool decides(const std::vector<Look>& looks) {
   return !looks.empty() && looks.back().verdict != Verdict::more;
 }
 
+std::string sum_text(const SummedError& error) {
+  if (error.unknown == 0) return rough(error.sum);
+  return fmt::format("{} ({} of them without an interval, each counted as 1)", rough(error.sum),
+                     error.unknown);
+}
+
 }  // namespace
 
 Scheduler::Scheduler(std::vector<std::vector<std::optional<Outcome>>> outcomes, Target target, int minimum,
                      int maximum)
     : target_(std::move(target)),
-      observables_(target_.observables().size()),
       minimum_(minimum),
       maximum_(maximum),
       ceiling_(maximum),
       schedule_(look_schedule(minimum, maximum)) {
   for (std::vector<std::optional<Outcome>>& known : outcomes) {
     Point point;
+    point.so_far.resize(target_.observables().size());
     point.outcomes = std::move(known);
     // Seeds beyond the maximum (it was larger once) are kept by the database and have no part in the looks.
     if (std::ssize(point.outcomes) > maximum_) point.outcomes.resize(static_cast<std::size_t>(maximum_));
@@ -72,18 +78,12 @@ void Scheduler::look_at(Point& point) {
   point.fall = decides(point.looks) ? 0 : expected_fall(point);
 }
 
-void Scheduler::count_in(Point& point, const Outcome& outcome) const {
-  point.so_far.resize(observables_);
-  for (std::size_t place = 0; place < observables_; ++place) add(point.so_far[place], outcome.of(place));
+void Scheduler::count_in(Point& point, const Outcome& outcome) {
+  for (std::size_t place = 0; place < point.so_far.size(); ++place)
+    add(point.so_far[place], outcome.of(place));
 }
 
-std::vector<Estimate> Scheduler::so_far(int point) const {
-  std::vector<Estimate> estimates(observables_, RunningEstimate().estimate());
-  const std::vector<RunningEstimate>& known = point_at(point).so_far;
-  std::transform(known.begin(), known.end(), estimates.begin(),
-                 [](const RunningEstimate& one) { return one.estimate(); });
-  return estimates;
-}
+std::vector<Estimate> Scheduler::so_far(int point) const { return estimates_of(point_at(point).so_far); }
 
 bool Scheduler::decided(int point) const { return decides(point_at(point).looks); }
 
@@ -248,16 +248,6 @@ bool Scheduler::end(SeedId id, const Outcome& outcome) {
   return true;
 }
 
-namespace {
-
-std::string sum_text(const SummedError& error) {
-  if (error.unknown == 0) return rough(error.sum);
-  return fmt::format("{} ({} of them without an interval, each counted as 1)", rough(error.sum),
-                     error.unknown);
-}
-
-}  // namespace
-
 SummedError summed_error(const Scheduler& scheduler) {
   SummedError error;
   if (!scheduler.target().tolerance.is_relative()) return error;
@@ -278,11 +268,9 @@ std::string budget_text(double spent_seconds, double budget_seconds, const Summe
       fmt::format("budget: {} of {} h of processor time spent", rough(spent_seconds / seconds_per_hour),
                   rough(budget_seconds / seconds_per_hour));
   if (after.points == 0) return spent + '\n';
-  return fmt::format(
-      "{}; relative half-widths of the {}{} last looks sum to "
-      "{},\n        before to {}\n",
-      spent, counted(static_cast<std::size_t>(after.points), "point"), after.points == 1 ? "'s" : "'",
-      sum_text(after), sum_text(before));
+  return fmt::format("{}; relative half-widths of the {}{} last looks sum to {},\n        before to {}\n",
+                     spent, counted(static_cast<std::size_t>(after.points), "point"),
+                     after.points == 1 ? "'s" : "'", sum_text(after), sum_text(before));
 }
 
 }  // namespace peclet::runner

@@ -129,7 +129,7 @@ class Scheduler {
   Phase& phase_of(SeedId id);
   static void close(Point& point);
   void look_at(Point& point);
-  void count_in(Point& point, const Outcome& outcome) const;
+  static void count_in(Point& point, const Outcome& outcome);
   // The look after the last one made, and the one after that.
   int look_ahead(const Point& point, int steps) const;
   bool is_open(const Point& point) const;
@@ -157,7 +157,6 @@ class Scheduler {
   std::optional<SeedId> most_urgent(int steps, double budget) const;
 
   Target target_;
-  std::size_t observables_;
   int minimum_, maximum_, ceiling_;
   std::vector<int> schedule_;
   Allocation allocation_ = Allocation::longest_first;

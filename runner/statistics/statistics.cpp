@@ -32,6 +32,20 @@ Estimate::Values values_between(int count, double low, double high, bool are_bin
   return count > 1 && are_equal ? Estimate::Values::equal : Estimate::Values::spread;
 }
 
+constexpr int resamples = 4000;
+// Of five values of which four are equal two resamples in three have spread: so many draws always suffice
+// where numbers are finite.
+constexpr int most_draws = 4 * resamples;
+constexpr std::size_t fewest_values = 5;
+
+// Linear between the order statistics.
+double quantile(const std::vector<double>& sorted, double probability) {
+  const double place = probability * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<std::size_t>(place);
+  const std::size_t above = std::min(below + 1, sorted.size() - 1);
+  return sorted[below] + (place - std::floor(place)) * (sorted[above] - sorted[below]);
+}
+
 }  // namespace
 
 Estimate estimate(std::span<const double> values, bool is_share) {
@@ -76,6 +90,13 @@ Estimate RunningEstimate::estimate() const {
   if (count_ == 0) return {0, none, none};
   return {count_, mean_, count_ < 2 ? none : std::sqrt(squares_ / (count_ - 1) / count_),
           values_between(count_, low_, high_, are_binary_, is_share_)};
+}
+
+std::vector<Estimate> estimates_of(std::span<const RunningEstimate> running) {
+  std::vector<Estimate> estimates;
+  estimates.reserve(running.size());
+  for (const RunningEstimate& one : running) estimates.push_back(one.estimate());
+  return estimates;
 }
 
 double skewness(std::span<const double> values) {
@@ -133,24 +154,6 @@ double half_width(const Estimate& estimate, double confidence) {
   }
   return std::numeric_limits<double>::quiet_NaN();
 }
-
-namespace {
-
-constexpr int resamples = 4000;
-// Of five values of which four are equal two resamples in three have spread: so many draws always suffice
-// where numbers are finite.
-constexpr int most_draws = 4 * resamples;
-constexpr std::size_t fewest_values = 5;
-
-// Linear between the order statistics.
-double quantile(const std::vector<double>& sorted, double probability) {
-  const double place = probability * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  return sorted[below] + (place - std::floor(place)) * (sorted[above] - sorted[below]);
-}
-
-}  // namespace
 
 std::optional<Interval> bootstrap_t(std::span<const double> values, double confidence) {
   const Estimate whole = estimate(values);

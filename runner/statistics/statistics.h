@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <span>
+#include <vector>
 
 namespace peclet::runner {
 
@@ -39,6 +40,8 @@ class RunningEstimate {
   double low_ = 0, high_ = 0;
   bool are_binary_ = true;
 };
+
+std::vector<Estimate> estimates_of(std::span<const RunningEstimate> running);
 
 // Third central moment over the 3/2 power of the second, both with n; NaN for fewer than three values or
 // equal ones.

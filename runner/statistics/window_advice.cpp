@@ -18,23 +18,6 @@ bool differs_from_zero(const std::vector<double>& contrasts, double scale) {
   return std::abs(mean.mean) > student_half_width(mean, confidence_of_each) + 1e-9 * std::abs(scale);
 }
 
-}  // namespace
-
-bool has_transient(std::span<const Observation> observed) {
-  std::vector<double> quarters, halves;
-  double scale = 0;
-  for (const Observation& observation : observed) {
-    if (!std::isfinite(observation.first_half)) continue;
-    const double whole = observation.value + observation.control;
-    scale = std::max(scale, std::abs(whole));
-    quarters.push_back(observation.first_quarter - whole);
-    halves.push_back(observation.first_half - whole);
-  }
-  return differs_from_zero(quarters, scale) || differs_from_zero(halves, scale);
-}
-
-namespace {
-
 constexpr std::size_t fewest_realisations = 8;
 constexpr double normal_quantile = 1.959964;  // 97.5 %
 
@@ -56,6 +39,19 @@ std::optional<double> correlation(std::span<const WindowHalves> halves) {
 }
 
 }  // namespace
+
+bool has_transient(std::span<const Observation> observed) {
+  std::vector<double> quarters, halves;
+  double scale = 0;
+  for (const Observation& observation : observed) {
+    if (!std::isfinite(observation.first_half)) continue;
+    const double whole = observation.value + observation.control;
+    scale = std::max(scale, std::abs(whole));
+    quarters.push_back(observation.first_quarter - whole);
+    halves.push_back(observation.first_half - whole);
+  }
+  return differs_from_zero(quarters, scale) || differs_from_zero(halves, scale);
+}
 
 std::optional<WindowAdvice> advise_window(std::span<const WindowHalves> halves, double equilibration,
                                           double production) {

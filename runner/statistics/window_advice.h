@@ -4,7 +4,7 @@
 #include <optional>
 #include <span>
 
-#include "runner/statistics/observation.h"
+#include "runner/statistics/quantities.h"
 
 namespace peclet::runner {
 

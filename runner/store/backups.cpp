@@ -77,6 +77,14 @@ void finish_copy(const fs::path& path, const std::function<void(Connection&)>& a
   }
 }
 
+// When the campaign was set up, and the first point that it ever had, never change.
+void read_identity(Connection& database, Contents& contents) {
+  contents.name = database.text("SELECT name FROM campaign");
+  contents.created_at = database.text("SELECT created_at FROM campaign");
+  contents.origin = database.text(
+      "SELECT created_at || ' ' || (SELECT hash FROM point ORDER BY point_id LIMIT 1) FROM campaign");
+}
+
 }  // namespace
 
 std::string damage(Connection& connection) {
@@ -113,18 +121,6 @@ void copy_database(Connection& from, const fs::path& to, const std::function<voi
     throw;
   }
 }
-
-namespace {
-
-// When the campaign was set up, and the first point that it ever had, never change.
-void read_identity(Connection& database, Contents& contents) {
-  contents.name = database.text("SELECT name FROM campaign");
-  contents.created_at = database.text("SELECT created_at FROM campaign");
-  contents.origin = database.text(
-      "SELECT created_at || ' ' || (SELECT hash FROM point ORDER BY point_id LIMIT 1) FROM campaign");
-}
-
-}  // namespace
 
 Extent extent_of(Connection& database) {
   return {database.integer("SELECT count(*) FROM result"),

@@ -66,6 +66,48 @@ std::optional<std::string> kind_among(const Kinds& kinds, const fs::path& path) 
   return std::nullopt;
 }
 
+struct Guarded {
+  fs::path folder;
+  std::set<std::string> own_folders;  // that belong in it
+};
+
+// As restore() leaves them, a folder of backups may hold checkpoints and a spool.
+std::vector<Guarded> guarded_folders(const CampaignDirectory& directory) {
+  return {
+      {directory.spool(), {directory.rejected().filename().string(), directory.left().filename().string()}},
+      {directory.rejected(), {}},
+      {directory.left(), {}},
+      {directory.checkpoints(), {}},
+      {directory.failures(), {}},
+      {directory.logs(), {}},
+      {directory.requests(), {}},
+      {directory.backup(),
+       {directory.spool().filename().string(), directory.checkpoints().filename().string(),
+        directory.files().filename().string()}}};
+}
+
+std::vector<fs::path> intruders_in(const Guarded& guarded) {
+  std::vector<fs::path> found;
+  for (const fs::directory_entry& entry : fs::directory_iterator(guarded.folder)) {
+    const fs::file_type type = entry.symlink_status().type();
+    const bool belongs =
+        type == fs::file_type::regular ||
+        (type == fs::file_type::directory && guarded.own_folders.contains(entry.path().filename().string()));
+    if (!belongs) found.push_back(entry.path());
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+std::string listed(const std::vector<fs::path>& found) {
+  constexpr std::size_t most = 2;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, found.size()); ++i) {
+    text += fmt::format("{}{} ({})", i == 0 ? "" : ", ", plain_name(found[i]), kind_of(found[i]));
+  }
+  return found.size() > most ? fmt::format("{} and {} more", text, found.size() - most) : text;
+}
+
 }  // namespace
 
 fs::path CampaignDirectory::checkpoint(const std::string& hash, int seed) const {
@@ -150,56 +192,9 @@ std::string doubt_about_file_system(const fs::path& path) {
   if (!kind) return "";
   return fmt::format(
       "{}: is on {}; if that is one of a network, its locks and fsync cannot be trusted: use it from one "
-      "machine "
-      "alone, or choose a --directory on a local disk",
+      "machine alone, or choose a --directory on a local disk",
       path.string(), *kind);
 }
-
-namespace {
-
-struct Guarded {
-  fs::path folder;
-  std::set<std::string> own_folders;  // that belong in it
-};
-
-// As restore() leaves them, a folder of backups may hold checkpoints and a spool.
-std::vector<Guarded> guarded_folders(const CampaignDirectory& directory) {
-  return {
-      {directory.spool(), {directory.rejected().filename().string(), directory.left().filename().string()}},
-      {directory.rejected(), {}},
-      {directory.left(), {}},
-      {directory.checkpoints(), {}},
-      {directory.failures(), {}},
-      {directory.logs(), {}},
-      {directory.requests(), {}},
-      {directory.backup(),
-       {directory.spool().filename().string(), directory.checkpoints().filename().string(),
-        directory.files().filename().string()}}};
-}
-
-std::vector<fs::path> intruders_in(const Guarded& guarded) {
-  std::vector<fs::path> found;
-  for (const fs::directory_entry& entry : fs::directory_iterator(guarded.folder)) {
-    const fs::file_type type = entry.symlink_status().type();
-    const bool belongs =
-        type == fs::file_type::regular ||
-        (type == fs::file_type::directory && guarded.own_folders.contains(entry.path().filename().string()));
-    if (!belongs) found.push_back(entry.path());
-  }
-  std::sort(found.begin(), found.end());
-  return found;
-}
-
-std::string listed(const std::vector<fs::path>& found) {
-  constexpr std::size_t most = 2;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(most, found.size()); ++i) {
-    text += fmt::format("{}{} ({})", i == 0 ? "" : ", ", plain_name(found[i]), kind_of(found[i]));
-  }
-  return found.size() > most ? fmt::format("{} and {} more", text, found.size() - most) : text;
-}
-
-}  // namespace
 
 void move_intruders_aside(const CampaignDirectory& directory,
                           const std::function<void(const std::string&)>& tell) {

@@ -116,97 +116,6 @@ std::unique_ptr<Connection> connection_of_reader(const std::filesystem::path& pa
   }
 }
 
-}  // namespace
-
-bool is_frozen_for_us(const std::filesystem::path& path) {
-  return kind_of(path.string() + "-wal").empty() && !may_write(path.parent_path());
-}
-
-bool is_campaign_database(Connection& connection) {
-  return connection.integer("PRAGMA application_id") == our_application;
-}
-
-std::string other_version(Connection& connection) {
-  const std::int64_t version = connection.integer("PRAGMA user_version");
-  if (version == our_version) return "";
-  return fmt::format(
-      "was written by another peclet: its tables are of version {}, and this program knows version {}; use "
-      "the peclet that wrote it",
-      version, our_version);
-}
-
-void check_tables(Connection& connection) {
-  static const Tables ours = make_tables();
-  Statement query(connection, "SELECT name, type, sql FROM sqlite_schema");
-  std::set<std::string> found;
-  while (query.step()) {
-    const std::string name = query.text(0), type = query.text(1);
-    if (type == "trigger") refuse(connection, name, "is a trigger, of which this program makes none");
-    if (type != "index" && ours.count(name) != 0) {
-      const bool is_plain = type == "table" && query.text(2).starts_with("CREATE TABLE");
-      if (!is_plain) refuse(connection, name, "is not the table that this program makes");
-      found.insert(name);
-    }
-  }
-  for (const auto& [name, columns] : ours) {
-    if (found.count(name) == 0) refuse(connection, name, "is a table that is missing");
-    if (columns_of(connection, name) != columns) {
-      refuse(connection, name, "does not have the columns that this program gives it");
-    }
-  }
-}
-
-const char* to_string(SeedState state) { return state_names.at(static_cast<std::size_t>(state)); }
-
-SeedState seed_state(const std::string& text) {
-  const auto known = std::ranges::find(state_names, text);
-  if (known == state_names.end()) throw IntegrityError("the database holds an unknown state: " + text);
-  return static_cast<SeedState>(known - state_names.begin());
-}
-
-Database::Database(std::unique_ptr<Connection> connection) : connection_(std::move(connection)) {}
-
-Database Database::open_owner(const std::filesystem::path& path) {
-  // Readers never hold a lock that blocks the writer in WAL mode; only a checkpoint may have to wait.
-  Database database(std::make_unique<Connection>(path.string(), Connection::Access::create, 10'000));
-  Connection& connection = database.connection();
-  const bool fresh = is_empty(connection);
-  if (!fresh) check_kind(connection);
-  // Results take some 2 kB, of which pages of 4 kB would hold one each. Ignored where there are tables.
-  connection.execute("PRAGMA page_size = 16384");
-  connection.execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON");
-  connection.execute(fmt::format("PRAGMA wal_autocheckpoint = {}", pages_of_log(path)));
-  // Beside a reader that does not come to an end the log grows; when that one is gone, the file shrinks
-  // again.
-  connection.execute("PRAGMA journal_size_limit = 8388608");
-  if (connection.text("PRAGMA journal_mode") != "wal") {
-    throw DatabaseError(connection.path() + ": cannot keep a write-ahead log on this file system", 0);
-  }
-  if (fresh) {
-    create_tables(connection);
-  } else if (const std::string verdict = connection.text("PRAGMA quick_check(1)"); verdict != "ok") {
-    throw IntegrityError(fmt::format("{}: is damaged: {}", connection.path(), verdict));
-  }
-  return database;
-}
-
-Database Database::open_reader(const std::filesystem::path& path) {
-  if (kind_of(path).empty()) {
-    throw InputError(path.string(), "", "",
-                     "no such database; has the campaign been started with `peclet run`?");
-  }
-  Database database(connection_of_reader(path));
-  database.snapshot_ = std::make_unique<Transaction>(database.connection(), Transaction::Kind::snapshot);
-  if (is_empty(database.connection())) throw BeingSetUp(path.string());
-  check_kind(database.connection());
-  if (!holds_anything(database.connection())) throw BeingSetUp(path.string());
-  return database;
-}
-
-// The read-only half of database.h: rows into records.
-
-namespace {
-
 constexpr const char* point_columns =
     "SELECT point_id, place, hash, scene, settings, label, engine_identity, suspect, priority, "
     "cancelled, kept_apart FROM point ";
@@ -301,6 +210,91 @@ constexpr const char* result_columns =
 
 }  // namespace
 
+bool is_frozen_for_us(const std::filesystem::path& path) {
+  return kind_of(path.string() + "-wal").empty() && !may_write(path.parent_path());
+}
+
+bool is_campaign_database(Connection& connection) {
+  return connection.integer("PRAGMA application_id") == our_application;
+}
+
+std::string other_version(Connection& connection) {
+  const std::int64_t version = connection.integer("PRAGMA user_version");
+  if (version == our_version) return "";
+  return fmt::format(
+      "was written by another peclet: its tables are of version {}, and this program knows version {}; use "
+      "the peclet that wrote it",
+      version, our_version);
+}
+
+void check_tables(Connection& connection) {
+  static const Tables ours = make_tables();
+  Statement query(connection, "SELECT name, type, sql FROM sqlite_schema");
+  std::set<std::string> found;
+  while (query.step()) {
+    const std::string name = query.text(0), type = query.text(1);
+    if (type == "trigger") refuse(connection, name, "is a trigger, of which this program makes none");
+    if (type != "index" && ours.count(name) != 0) {
+      const bool is_plain = type == "table" && query.text(2).starts_with("CREATE TABLE");
+      if (!is_plain) refuse(connection, name, "is not the table that this program makes");
+      found.insert(name);
+    }
+  }
+  for (const auto& [name, columns] : ours) {
+    if (found.count(name) == 0) refuse(connection, name, "is a table that is missing");
+    if (columns_of(connection, name) != columns) {
+      refuse(connection, name, "does not have the columns that this program gives it");
+    }
+  }
+}
+
+const char* to_string(SeedState state) { return state_names.at(static_cast<std::size_t>(state)); }
+
+SeedState seed_state(const std::string& text) {
+  const auto known = std::ranges::find(state_names, text);
+  if (known == state_names.end()) throw IntegrityError("the database holds an unknown state: " + text);
+  return static_cast<SeedState>(known - state_names.begin());
+}
+
+Database::Database(std::unique_ptr<Connection> connection) : connection_(std::move(connection)) {}
+
+Database Database::open_owner(const std::filesystem::path& path) {
+  // Readers never hold a lock that blocks the writer in WAL mode; only a checkpoint may have to wait.
+  Database database(std::make_unique<Connection>(path.string(), Connection::Access::create, 10'000));
+  Connection& connection = database.connection();
+  const bool fresh = is_empty(connection);
+  if (!fresh) check_kind(connection);
+  // Results take some 2 kB, of which pages of 4 kB would hold one each. Ignored where there are tables.
+  connection.execute("PRAGMA page_size = 16384");
+  connection.execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON");
+  connection.execute(fmt::format("PRAGMA wal_autocheckpoint = {}", pages_of_log(path)));
+  // Beside a reader that does not come to an end the log grows; when that one is gone, the file shrinks
+  // again.
+  connection.execute("PRAGMA journal_size_limit = 8388608");
+  if (connection.text("PRAGMA journal_mode") != "wal") {
+    throw DatabaseError(connection.path() + ": cannot keep a write-ahead log on this file system", 0);
+  }
+  if (fresh) {
+    create_tables(connection);
+  } else if (const std::string verdict = connection.text("PRAGMA quick_check(1)"); verdict != "ok") {
+    throw IntegrityError(fmt::format("{}: is damaged: {}", connection.path(), verdict));
+  }
+  return database;
+}
+
+Database Database::open_reader(const std::filesystem::path& path) {
+  if (kind_of(path).empty()) {
+    throw InputError(path.string(), "", "",
+                     "no such database; has the campaign been started with `peclet run`?");
+  }
+  Database database(connection_of_reader(path));
+  database.snapshot_ = std::make_unique<Transaction>(database.connection(), Transaction::Kind::snapshot);
+  if (is_empty(database.connection())) throw BeingSetUp(path.string());
+  check_kind(database.connection());
+  if (!holds_anything(database.connection())) throw BeingSetUp(path.string());
+  return database;
+}
+
 CampaignRecord Database::campaign() {
   Statement query(*connection_,
                   "SELECT target_id, observable, criterion, confidence, minimum, maximum, name, "
@@ -327,10 +321,9 @@ std::vector<PointRecord> Database::inactive_points() {
 }
 
 StateCounts Database::counts(std::int64_t point) {
-  Statement query(*connection_,
-                  "SELECT state, count(*), total(cpu_seconds) FROM realisation WHERE point_id = ? "
-                  "GROUP BY state",
-                  point);
+  Statement query(
+      *connection_,
+      "SELECT state, count(*), total(cpu_seconds) FROM realisation WHERE point_id = ? GROUP BY state", point);
   StateCounts counts;
   while (query.step()) {
     counts.of(seed_state(query.text(0))) = query.number(1);
@@ -432,11 +425,10 @@ std::vector<int> Database::completed(std::int64_t point, int end) {
 }
 
 MeanSteps Database::mean_steps(std::int64_t point) {
-  Statement query(
-      *connection_,
-      "SELECT avg(equilibration_steps), avg(production_steps) FROM realisation WHERE point_id = ? "
-      "AND state = 'done'",
-      point);
+  Statement query(*connection_,
+                  "SELECT avg(equilibration_steps), avg(production_steps) FROM realisation WHERE point_id = "
+                  "? AND state = 'done'",
+                  point);
   query.step();
   return {query.real(0), query.real(1)};
 }

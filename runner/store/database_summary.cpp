@@ -100,8 +100,7 @@ std::map<std::int64_t, std::map<std::string, std::string>> read_loss_reasons(Con
       "(point_id, seed) WHERE e.kind = 'lost' AND r.state = 'failed' UNION ALL "
       "SELECT a.point_id, r.cause, a.seed, -a.attempt_id, a.message FROM attempt a JOIN realisation r USING "
       "(point_id, seed) WHERE a.blamed = 1 AND a.pardoned = 0 AND r.state = 'quarantined' AND a.message != "
-      "'' "
-      "ORDER BY 1, 3, 4");
+      "'' ORDER BY 1, 3, 4");
   std::map<std::int64_t, std::map<std::string, std::string>> reasons;
   while (query.step()) {
     reasons[query.integer(0)].emplace(query.text(1),
@@ -139,6 +138,26 @@ void make_again(Database& database, const PointRecord& point, const TargetRecord
   const std::vector<std::optional<Outcome>> outcomes = database.outcomes(point.id);
   look.repeated = repeated_seeds(
       std::span(outcomes).first(std::min(outcomes.size(), static_cast<std::size_t>(look.seeds))));
+}
+
+// NaN: does not exist, or is beyond what a number can be.
+bool is_same(double one, double other) { return one == other || (std::isnan(one) && std::isnan(other)); }
+
+bool agree(const std::vector<ObservableLook>& stored, const std::vector<ObservableLook>& replayed) {
+  return std::equal(stored.begin(), stored.end(), replayed.begin(), replayed.end(),
+                    [](const ObservableLook& one, const ObservableLook& other) {
+                      return one.observable == other.observable && one.verdict == other.verdict &&
+                             one.estimate.count == other.estimate.count &&
+                             is_same(one.estimate.mean, other.estimate.mean);
+                    });
+}
+
+bool agrees(const Look& stored, const Look& replayed) {
+  return agree(stored.each, replayed.each) && stored.seeds == replayed.seeds &&
+         stored.lost == replayed.lost && stored.verdict == replayed.verdict &&
+         stored.estimate.count == replayed.estimate.count &&
+         (stored.estimate.count == 0 || (is_same(stored.estimate.mean, replayed.estimate.mean) &&
+                                         is_same(stored.controlled.mean, replayed.controlled.mean)));
 }
 
 }  // namespace
@@ -220,30 +239,6 @@ std::vector<PointForecast> forecasts_of(Database& database, const std::vector<Po
   return forecasts;
 }
 
-namespace {
-
-// NaN: does not exist, or is beyond what a number can be.
-bool is_same(double one, double other) { return one == other || (std::isnan(one) && std::isnan(other)); }
-
-bool agree(const std::vector<ObservableLook>& stored, const std::vector<ObservableLook>& replayed) {
-  return std::equal(stored.begin(), stored.end(), replayed.begin(), replayed.end(),
-                    [](const ObservableLook& one, const ObservableLook& other) {
-                      return one.observable == other.observable && one.verdict == other.verdict &&
-                             one.estimate.count == other.estimate.count &&
-                             is_same(one.estimate.mean, other.estimate.mean);
-                    });
-}
-
-bool agrees(const Look& stored, const Look& replayed) {
-  return agree(stored.each, replayed.each) && stored.seeds == replayed.seeds &&
-         stored.lost == replayed.lost && stored.verdict == replayed.verdict &&
-         stored.estimate.count == replayed.estimate.count &&
-         (stored.estimate.count == 0 || (is_same(stored.estimate.mean, replayed.estimate.mean) &&
-                                         is_same(stored.controlled.mean, replayed.controlled.mean)));
-}
-
-}  // namespace
-
 std::optional<Look> checked_look(Database& database, const PointRecord& point, const TargetRecord& target) {
   const std::vector<LookRecord> stored = database.looks(point.id);
   const std::vector<Look> replayed =
@@ -251,10 +246,9 @@ std::optional<Look> checked_look(Database& database, const PointRecord& point, c
   // An owner that was killed between a result and its look leaves fewer looks than there could be.
   for (std::size_t i = 0; i < stored.size(); ++i) {
     if (i < replayed.size() && agrees(stored[i].look, replayed[i])) continue;
-    throw IntegrityError(
-        fmt::format("{}: the stored look at {} seeds of {} is not what the stored results say; "
-                    "see `peclet doctor`",
-                    database.connection().path(), stored[i].look.seeds, point.label));
+    throw IntegrityError(fmt::format(
+        "{}: the stored look at {} seeds of {} is not what the stored results say; see `peclet doctor`",
+        database.connection().path(), stored[i].look.seeds, point.label));
   }
   if (stored.empty()) return std::nullopt;
   Look look = stored.back().look;
@@ -277,16 +271,11 @@ int unreadable_results(Database& database, std::int64_t point) {
 }
 
 std::string readable_result(Database& database, std::int64_t point, int seed) {
-  Statement stored(
-      database.connection(),
-      "SELECT document, text FROM result LEFT JOIN dictionary USING (point_id) WHERE point_id = ? "
-      "AND seed = ?",
-      point, seed);
-  if (!stored.step()) return "";
   try {
-    return result_text(stored, 0, 1);
+    return database.result_text(point, seed).value_or("");
   } catch (const IntegrityError&) {
-    return stored.text(0);
+    return database.connection().text("SELECT document FROM result WHERE point_id = ? AND seed = ?", point,
+                                      seed);
   }
 }
 

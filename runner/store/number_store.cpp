@@ -109,8 +109,8 @@ std::vector<std::optional<Outcome>> NumberStore::outcomes(std::int64_t point) {
   Statement query(
       connection_,
       "SELECT seed, layout_id, numbers, final_state_sha256 FROM realisation LEFT JOIN numbers USING "
-      "(point_id, "
-      "seed) WHERE point_id = ? AND seed < ? AND state IN ('done', 'failed', 'quarantined') ORDER BY seed",
+      "(point_id, seed) WHERE point_id = ? AND seed < ? AND state IN ('done', 'failed', 'quarantined') ORDER "
+      "BY seed",
       point, most_realisations);
   std::vector<std::optional<Outcome>> outcomes;
   while (query.step()) {

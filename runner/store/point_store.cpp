@@ -5,7 +5,6 @@
 #include "contract/errors.h"
 #include "runner/campaign/number_text.h"
 #include "runner/campaign/quoting.h"
-#include "runner/statistics/observation.h"
 #include "runner/statistics/quantities.h"
 #include "runner/store/number_store.h"
 #include "runner/store/result_store.h"
@@ -62,8 +61,8 @@ void PointStore::take_over(const Campaign& campaign) {
 std::int64_t PointStore::adopt_target(const Campaign& campaign) {
   const Target& target = campaign.target;
   const char* const parts[] = {
-      "INSERT OR IGNORE INTO target (observable, criterion, confidence, minimum, maximum) "
-      "VALUES (?, ?, ?, ?, ?)",
+      "INSERT OR IGNORE INTO target (observable, criterion, confidence, minimum, maximum) VALUES (?, ?, ?, "
+      "?, ?)",
       "SELECT target_id FROM target WHERE observable = ? AND criterion = ? AND confidence = ? AND "
       "minimum = ? AND maximum = ?"};
   std::int64_t id = 0;

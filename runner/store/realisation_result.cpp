@@ -169,38 +169,6 @@ std::optional<std::string> too_large(const Json& value) {
   return std::nullopt;
 }
 
-}  // namespace
-
-ResultError::ResultError(const std::string& message) : std::runtime_error(plain(message)) {}
-
-Json checked_part(Json part, const std::string& root) {
-  try {
-    return result_keys().validate(std::move(part), "", root);
-  } catch (const InputError& error) {
-    throw ResultError(error.within("", root).what());
-  }
-}
-
-std::string check_shape(Json& document) {
-  document = checked_part(std::move(document), "");
-  check_ending(document);
-  check_left_files(document.value("files", Json::array()));
-  check_quantities(document);
-  if (const std::optional<std::string> pointer = too_large(document)) {
-    refuse(*pointer, fmt::format("must be a number between -{0:g} and {0:g}", largest_number));
-  }
-  return engine_identity(document["engine"]);
-}
-
-std::string engine_identity(const Json& engine) {
-  const Json checked = checked_part(engine, "/engine");
-  return fmt::format("{} ({}) sha256 {}", checked["version"].get<std::string>(),
-                     checked["instruction_set"].get<std::string>(),
-                     checked["binary_sha256"].get<std::string>());
-}
-
-namespace {
-
 // Time is no part of the physics; the machine, and where it keeps the state of a blow-up, is none either. Nor
 // are the files beside the result: a log among them has times in it.
 std::string content_hash(Json& document) {
@@ -237,7 +205,37 @@ std::string without_white_space(std::string_view json) {
   return text;
 }
 
+// Throws ResultError naming the first value that is not as it must be, and what is allowed. Realisations with
+// results have means, others none. Returns engine_identity().
+std::string check_shape(Json& document) {
+  document = checked_part(std::move(document), "");
+  check_ending(document);
+  check_left_files(document.value("files", Json::array()));
+  check_quantities(document);
+  if (const std::optional<std::string> pointer = too_large(document)) {
+    refuse(*pointer, fmt::format("must be a number between -{0:g} and {0:g}", largest_number));
+  }
+  return engine_identity(document["engine"]);
+}
+
 }  // namespace
+
+ResultError::ResultError(const std::string& message) : std::runtime_error(plain(message)) {}
+
+Json checked_part(Json part, const std::string& root) {
+  try {
+    return result_keys().validate(std::move(part), "", root);
+  } catch (const InputError& error) {
+    throw ResultError(error.within("", root).what());
+  }
+}
+
+std::string engine_identity(const Json& engine) {
+  const Json checked = checked_part(engine, "/engine");
+  return fmt::format("{} ({}) sha256 {}", checked["version"].get<std::string>(),
+                     checked["instruction_set"].get<std::string>(),
+                     checked["binary_sha256"].get<std::string>());
+}
 
 RealisationResult parse_result(std::string text) {
   if (const std::string excess = excess_of(text); !excess.empty()) throw ResultError(excess);

@@ -13,8 +13,7 @@
 namespace peclet::runner {
 
 // How large the text of a result may be: judged before it is read as JSON, which takes memory in proportion.
-//
-// Of a result's text. Most have some ten thousand bytes and a few thousand values; a pair distribution in the
+// Most have some ten thousand bytes and a few thousand values; a pair distribution in the
 // plane of shear may have four million numbers. Lists, objects and keys take more memory than numbers do.
 constexpr std::size_t largest_result = std::size_t{64} << 20;
 constexpr std::size_t most_values = std::size_t{1} << 22;
@@ -39,10 +38,6 @@ class ResultError : public std::runtime_error {
 // Returns the part of a result at the pointer `root`, such as "/engine". Throws ResultError if it does not
 // match its keys.
 Json checked_part(Json part, const std::string& root);
-
-// Throws ResultError naming the first value that is not as it must be, and what is allowed. Realisations
-// with results have means, others none. Returns engine_identity().
-std::string check_shape(Json& document);
 
 // Engine version, instruction set and hash of the binary: results of one point share it.
 // Throws ResultError when one of the three is missing or none.

@@ -99,6 +99,13 @@ class Inflation {
   z_stream stream_{};
 };
 
+template <typename Number>
+std::optional<Number> number_at(const Json& document, const char* pointer) {
+  const Json::json_pointer where(pointer);
+  if (!document.contains(where) || !document.at(where).is_number()) return std::nullopt;
+  return document.at(where).get<Number>();
+}
+
 }  // namespace
 
 std::string deflated(std::string_view text, std::string_view dictionary) {
@@ -146,17 +153,6 @@ std::string result_text(const Statement& query, int document, int dictionary) {
   }
   return text;
 }
-
-namespace {
-
-template <typename Number>
-std::optional<Number> number_at(const Json& document, const char* pointer) {
-  const Json::json_pointer where(pointer);
-  if (!document.contains(where) || !document.at(where).is_number()) return std::nullopt;
-  return document.at(where).get<Number>();
-}
-
-}  // namespace
 
 StoredResult ResultStore::store(const RealisationResult& result, const Target& target) {
   const std::string& identity = result.engine;
@@ -207,8 +203,8 @@ void ResultStore::store_columns(std::int64_t point, const RealisationResult& res
   connection_.run(
       "INSERT OR REPLACE INTO realisation (point_id, seed, state, cause, timestep, equilibration_steps, "
       "production_steps, production_strain, statistical_inefficiency, largest_overlap, cpu_seconds, "
-      "wall_seconds, final_state_sha256, content_sha256, engine_id) VALUES (?, ?, ?, ?, ?, ?, ?, ?, "
-      "?, ?, ?, ?, ?, ?, ?)",
+      "wall_seconds, final_state_sha256, content_sha256, engine_id) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
+      "?, ?, ?, ?)",
       point, result.seed, state_of(stored.outcome), stored.cause, number_at<double>(document, "/timestep"),
       number_at<std::int64_t>(document, "/steps/equilibration"),
       number_at<std::int64_t>(document, "/steps/production"),
@@ -234,8 +230,7 @@ void ResultStore::withdraw(std::int64_t point, int seed) {
 void ResultStore::store_looks(std::int64_t point, const std::vector<Look>& looks) {
   // Looks only ever grow, except when a late result replaces a quarantined seed: then they are made again.
   connection_.run(
-      "DELETE FROM look WHERE point_id = ? AND target_id = (SELECT target_id FROM campaign) AND "
-      "seeds > ?",
+      "DELETE FROM look WHERE point_id = ? AND target_id = (SELECT target_id FROM campaign) AND seeds > ?",
       point, looks.empty() ? 0 : looks.back().seeds);
   Statement insert(
       connection_,

@@ -11,8 +11,6 @@
 
 namespace peclet::runner {
 
-struct AttemptReport;  // attempt_report.h
-
 struct AttemptEnd {
   AttemptOutcome outcome = AttemptOutcome::result;
   std::int64_t step = 0;

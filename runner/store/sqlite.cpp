@@ -27,6 +27,34 @@ bool comes_from_the_system(int code) {
   return primary == SQLITE_IOERR || primary == SQLITE_CANTOPEN || primary == SQLITE_FULL;
 }
 
+// Says who has locked a database: "campaign.db: is locked by sqlite3 (process 4711), which writes to it:
+// ...".
+//
+// In WAL mode the writer locks byte 120 of the -shm file; in other modes, and to the exclusion of readers,
+// bytes of the database from 0x40000000 on (SQLite's os_unix.c and wal.c).
+std::string lock_text(const std::string& database) {
+  constexpr std::uint64_t write_lock = 120, pending = 0x40000000;
+  const auto holder = [](const std::string& file, std::uint64_t byte) -> std::int64_t {
+    struct stat about {};
+    return stat(file.c_str(), &about) == 0 ? process_that_locks(about.st_ino, "POSIX", byte) : 0;
+  };
+  std::int64_t process = holder(database + "-shm", write_lock);
+  for (std::uint64_t byte = pending; process == 0 && byte < pending + 3; ++byte)
+    process = holder(database, byte);
+  if (process <= 0) {
+    return fmt::format(
+        "{0}: is locked by another program, which writes to it: let that end its transaction or close the "
+        "database (`fuser -v {0}` names it)",
+        database);
+  }
+  std::string name;
+  std::getline(std::ifstream(fmt::format("/proc/{}/comm", process)), name);
+  return fmt::format(
+      "{}: is locked by {} (process {}), which writes to it: let it end its transaction (COMMIT or "
+      "ROLLBACK) or close the database",
+      database, name.empty() ? "another program" : plain(name), process);
+}
+
 // `error` is the errno after the call, which began with 0: what SQLite remembers by itself may be older, and
 // after COMMIT it remembers nothing.
 [[noreturn]] void complain(const std::string& path, sqlite3* handle, int code, std::string_view doing,
@@ -91,31 +119,6 @@ bool DatabaseError::no_room() const {
 }
 
 bool DatabaseError::is_locked() const { return (code_ & 0xff) == SQLITE_BUSY; }
-
-// In WAL mode the writer locks byte 120 of the -shm file; in other modes, and to the exclusion of readers,
-// bytes of the database from 0x40000000 on (SQLite's os_unix.c and wal.c).
-std::string lock_text(const std::string& database) {
-  constexpr std::uint64_t write_lock = 120, pending = 0x40000000;
-  const auto holder = [](const std::string& file, std::uint64_t byte) -> std::int64_t {
-    struct stat about {};
-    return stat(file.c_str(), &about) == 0 ? process_that_locks(about.st_ino, "POSIX", byte) : 0;
-  };
-  std::int64_t process = holder(database + "-shm", write_lock);
-  for (std::uint64_t byte = pending; process == 0 && byte < pending + 3; ++byte)
-    process = holder(database, byte);
-  if (process <= 0) {
-    return fmt::format(
-        "{0}: is locked by another program, which writes to it: let that end its transaction or close the "
-        "database (`fuser -v {0}` names it)",
-        database);
-  }
-  std::string name;
-  std::getline(std::ifstream(fmt::format("/proc/{}/comm", process)), name);
-  return fmt::format(
-      "{}: is locked by {} (process {}), which writes to it: let it end its transaction (COMMIT or "
-      "ROLLBACK) or close the database",
-      database, name.empty() ? "another program" : plain(name), process);
-}
 
 bool means_no_room(const std::exception& error) {
   if (const auto* database = dynamic_cast<const DatabaseError*>(&error)) return database->no_room();

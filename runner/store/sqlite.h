@@ -40,10 +40,6 @@ class DatabaseError : public std::runtime_error {
 // Whether an exception says that there was no room to write something.
 bool means_no_room(const std::exception& error);
 
-// Says who has locked a database: "campaign.db: is locked by sqlite3 (process 4711), which writes to it:
-// ...".
-std::string lock_text(const std::string& database);
-
 class Connection {
  public:
   // `frozen`: reads a file that nobody writes meanwhile, without its log and without locks.

@@ -12,7 +12,7 @@
 
 #include "contract/durable_file.h"
 #include "runner/engines/stop_signals.h"
-#include "runner/store/spool.h"
+#include "runner/store/result_files.h"
 #include "tests/runner/campaign_process.h"
 
 namespace peclet::runner {

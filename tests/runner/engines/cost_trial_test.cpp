@@ -1,10 +1,9 @@
 // What a realisation may cost, from the beginning of one.
-#include "runner/engines/cost_trial.h"
-
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 
+#include "runner/engines/scene_check.h"
 #include "tests/runner/runner_fixture.h"
 
 namespace peclet::runner {

@@ -1,9 +1,8 @@
-#include "runner/engines/usable_cores.h"
-
 #include <gtest/gtest.h>
 #include <sched.h>
 
 #include "contract/durable_file.h"
+#include "runner/engines/worker_process.h"
 #include "tests/runner/runner_fixture.h"
 
 namespace peclet::runner {

@@ -13,7 +13,7 @@
 #include "runner/reports/export.h"
 #include "runner/store/backups.h"
 #include "runner/store/locks.h"
-#include "runner/store/spool.h"
+#include "runner/store/result_files.h"
 #include "tests/runner/campaign_process.h"
 #include "tests/runner/stored_campaign.h"
 

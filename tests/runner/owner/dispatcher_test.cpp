@@ -5,8 +5,8 @@
 #include "contract/errors.h"
 #include "runner/engines/engine_process.h"
 #include "runner/store/point_store.h"
+#include "runner/store/result_files.h"
 #include "runner/store/result_store.h"
-#include "runner/store/spool.h"
 #include "tests/runner/owner/dispatcher_fixture.h"
 
 namespace peclet::runner {

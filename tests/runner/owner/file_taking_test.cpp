@@ -14,7 +14,6 @@
 #include "contract/sha256.h"
 #include "runner/owner/after_commit.h"
 #include "runner/store/result_files.h"
-#include "runner/store/spool.h"
 #include "tests/runner/owner/dispatcher_fixture.h"
 
 namespace peclet::runner {

@@ -13,7 +13,7 @@
 #include <system_error>
 
 #include "contract/durable_file.h"
-#include "runner/store/spool.h"
+#include "runner/store/result_files.h"
 #include "tests/runner/owner/dispatcher_fixture.h"
 
 namespace peclet::runner {

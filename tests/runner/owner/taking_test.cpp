@@ -8,7 +8,6 @@
 #include "contract/durable_file.h"
 #include "contract/sha256.h"
 #include "runner/store/result_files.h"
-#include "runner/store/spool.h"
 #include "tests/runner/owner/dispatcher_fixture.h"
 
 namespace peclet::runner {

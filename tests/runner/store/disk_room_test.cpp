@@ -11,7 +11,7 @@
 #include "runner/owner/dispatcher.h"
 #include "runner/owner/request_handler.h"
 #include "runner/store/point_store.h"
-#include "runner/store/spool.h"
+#include "runner/store/result_files.h"
 #include "tests/runner/owner/scripted_pool.h"
 #include "tests/runner/runner_fixture.h"
 

@@ -1,6 +1,4 @@
 // Files that wait to be taken in: which are read, which are set aside and which are removed.
-#include "runner/store/spool.h"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -11,6 +9,7 @@
 
 #include "contract/sha256.h"
 #include "runner/store/realisation_result.h"
+#include "runner/store/result_files.h"
 #include "tests/runner/runner_fixture.h"
 
 namespace peclet::runner {
