@@ -16,8 +16,6 @@
 namespace peclet::runner {
 namespace {
 
-namespace fs = std::filesystem;
-
 // A controller that is restarted answers after some tens of seconds.
 constexpr std::chrono::seconds patience{60};
 // Of submit.sh: the connection failed on the way (EX_TEMPFAIL).

@@ -16,12 +16,13 @@
 // for it.
 #pragma once
 
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
 #include <variant>
 #include <vector>
+
+#include "runner/campaign/paths.h"
 
 namespace peclet::runner {
 
@@ -29,7 +30,7 @@ using BatchTemplate = std::map<std::string, std::string>;  // text by file name
 
 // The folder's, or (for "") the built-in one of that name. Throws InputError when there is no such, or a file
 // is missing.
-BatchTemplate batch_template(const std::string& system, const std::filesystem::path& folder);
+BatchTemplate batch_template(const std::string& system, const fs::path& folder);
 
 // Puts `values` in the place of their names between @, each quoted for where it stands: for the shell, or in
 // a line `#SBATCH ...` for sbatch. In any other line that begins with #, which may be a directive of another
@@ -60,13 +61,12 @@ struct JobUnknown {  // the answer was lost, and the job may be there
 using Submission = std::variant<JobTaken, JobRefused, JobUnknown>;
 
 // A submit command that fails after all its work is found out by asking for the job's name.
-Submission submit_job(const std::filesystem::path& folder, const std::string& name,
+Submission submit_job(const fs::path& folder, const std::string& name,
                       const std::vector<std::string>& options);
 // Nothing when nobody knows; `why` says so. That is no news about any task.
-std::optional<QueryAnswer> query_job(const std::filesystem::path& folder, const std::string& name,
-                                     std::string& why);
+std::optional<QueryAnswer> query_job(const fs::path& folder, const std::string& name, std::string& why);
 // False when it failed.
-bool cancel_job(const std::filesystem::path& folder, const std::string& name, std::string& why);
+bool cancel_job(const fs::path& folder, const std::string& name, std::string& why);
 // Tasks that a job may have; `otherwise` when the batch system does not say.
 int largest_array(const BatchTemplate& scripts, int otherwise);
 

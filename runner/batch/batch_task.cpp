@@ -21,8 +21,6 @@
 
 namespace peclet::runner {
 namespace {
-
-namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds longest_wait{500};
@@ -87,7 +85,6 @@ class BatchTask {
     return is_blamed(outcome) && unwritable_folder(job_) ? AttemptOutcome::drained : outcome;
   }
   bool is_in_hand(std::int64_t job) const { return watch_.is_busy() && job == job_.attempt; }
-  void take_result(const ResultSpooled& result);
   void judge_lease();
   void condemn(AttemptReason reason);
   void note_running();
@@ -185,10 +182,6 @@ void BatchTask::handle(const Progressed& event) {
   if (Clock::now() - noted_ > std::chrono::duration<double>(manifest_.checkpoint_seconds)) note_running();
 }
 
-void BatchTask::handle(const ResultSpooled& event) {
-  if (is_in_hand(event.job)) take_result(event);
-}
-
 void BatchTask::handle(const JobFailed& event) {
   if (is_in_hand(event.job)) end({unless_it_lacked_room(AttemptOutcome::refused), event.message});
 }
@@ -212,7 +205,8 @@ void BatchTask::handle(const StopSignal&) {
   pool_.drain(the_worker);
 }
 
-void BatchTask::take_result(const ResultSpooled& result) {
+void BatchTask::handle(const ResultSpooled& result) {
+  if (!is_in_hand(result.job)) return;
   try {
     if (result.spool != job_.spool) throw ResultError("spooled its result elsewhere");
     const RealisationResult read = read_spool_file(job_.spool, result.sha256);

@@ -1,12 +1,12 @@
 // The verb `peclet task`: one task of a bundle on a node, without a database.
 #pragma once
 
-#include <filesystem>
+#include "runner/campaign/paths.h"
 
 namespace peclet::runner {
 
 struct TaskOptions {
-  std::filesystem::path manifest;
+  fs::path manifest;
   int index = 0;
 };
 

@@ -18,8 +18,6 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(AttemptReport, step, message, host, process, 
 
 namespace {
 
-namespace fs = std::filesystem;
-
 template <typename Number>
 Json number_or_null(const std::optional<Number>& number) {
   return number ? Json(*number) : Json(nullptr);

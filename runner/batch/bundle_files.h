@@ -15,12 +15,12 @@
 // Every file is written whole (temporary file, fsync, rename) by one process at a time.
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "contract/key_table.h"
+#include "runner/campaign/paths.h"
 #include "runner/store/blame.h"
 #include "runner/store/bundle_store.h"
 #include "runner/store/campaign_directory.h"
@@ -34,10 +34,10 @@ struct BundledSeed {
 };
 
 struct Manifest {
-  std::string bundle, campaign;         // names
-  std::vector<std::string> engine;      // program and arguments, as the nodes find them
-  std::filesystem::path engine_folder;  // in which it runs, where the node has it
-  std::string engine_identity;          // that the engine there must have
+  std::string bundle, campaign;     // names
+  std::vector<std::string> engine;  // program and arguments, as the nodes find them
+  fs::path engine_folder;           // in which it runs, where the node has it
+  std::string engine_identity;      // that the engine there must have
   int threads = 1;
   double lease_seconds = 120, checkpoint_seconds = 60;
   Json scenes;                          // by hash
@@ -48,43 +48,43 @@ struct Manifest {
 const KeyTable& manifest_keys();
 Json manifest_json(const Manifest& manifest);
 // Throws InputError for a file that is absent or no manifest.
-Manifest read_manifest(const std::filesystem::path& path);
+Manifest read_manifest(const fs::path& path);
 
 // Names below a bundle's folder.
 class BundleFolder {
  public:
-  BundleFolder(const std::filesystem::path& shared, const std::string& name)
+  BundleFolder(const fs::path& shared, const std::string& name)
       : shared_(shared), root_(shared / "bundles" / name) {}
   // Of a manifest where it is seen here: owner and nodes may see the shared folder in different places.
-  static BundleFolder of_manifest(const std::filesystem::path& manifest);
+  static BundleFolder of_manifest(const fs::path& manifest);
 
   // The folders that this bundle shares with others: spool, checkpoints, failures.
   const CampaignDirectory& shared() const { return shared_; }
-  const std::filesystem::path& root() const { return root_; }
-  std::filesystem::path manifest() const { return root_ / "manifest.json"; }
-  std::filesystem::path script(const std::string& name) const { return root_ / name; }
-  std::filesystem::path forgotten() const { return root_ / "forgotten"; }
-  std::filesystem::path logs() const { return root_ / "logs"; }
-  std::filesystem::path ended(int place) const { return root_ / "ended" / (std::to_string(place) + ".json"); }
-  std::filesystem::path task(int index) const { return root_ / "tasks" / std::to_string(index); }
-  std::filesystem::path running(int index) const { return task(index) / "running.json"; }
-  std::filesystem::path trouble(int index) const { return task(index) / "trouble.json"; }
-  std::filesystem::path left(int index) const { return task(index) / "files"; }
+  const fs::path& root() const { return root_; }
+  fs::path manifest() const { return root_ / "manifest.json"; }
+  fs::path script(const std::string& name) const { return root_ / name; }
+  fs::path forgotten() const { return root_ / "forgotten"; }
+  fs::path logs() const { return root_ / "logs"; }
+  fs::path ended(int place) const { return root_ / "ended" / (std::to_string(place) + ".json"); }
+  fs::path task(int index) const { return root_ / "tasks" / std::to_string(index); }
+  fs::path running(int index) const { return task(index) / "running.json"; }
+  fs::path trouble(int index) const { return task(index) / "trouble.json"; }
+  fs::path left(int index) const { return task(index) / "files"; }
   void create(int tasks) const;
 
  private:
   CampaignDirectory shared_;
-  std::filesystem::path root_;
+  fs::path root_;
 };
 
-void write_report(const std::filesystem::path& path, int place, const AttemptReport& report);
+void write_report(const fs::path& path, int place, const AttemptReport& report);
 struct PlacedReport {
   int place = 0;
   AttemptReport report;
 };
 const KeyTable& report_keys();
 // Nothing when there is none. Throws InputError for a file that is no report.
-std::optional<PlacedReport> read_report(const std::filesystem::path& path);
+std::optional<PlacedReport> read_report(const fs::path& path);
 
 // How the names of a seed's results begin, in the task's folder and in the spool.
 std::string result_name(const BundledSeed& seed);

@@ -16,8 +16,6 @@
 
 namespace peclet::runner {
 
-namespace fs = std::filesystem;
-
 // Asked of the batch system again, just before something is done about it: an answer that came too late for
 // settle() would otherwise be overlooked.
 bool Bundles::was_never_submitted(const BundleRecord& bundle) const {
@@ -70,7 +68,7 @@ bool Bundles::forget(const std::string& name) {
     const std::string message = fmt::format(
         "{} (job {}): {} seeds are queued again; results that its tasks leave are taken in, and count once",
         name, bundle.job.empty() ? "not confirmed" : bundle.job, seeds);
-    events_.write("bundle-forgotten", std::nullopt, std::nullopt, message);
+    events_.write("bundle-forgotten", message);
     booking.commit();
     listener_.note("forgotten: " + message);
     fence_forgotten();
@@ -258,7 +256,7 @@ std::string Bundles::make(const BundleSettings& settings, const std::vector<Seed
   Transaction booking(database_.connection());
   for (const BundleSeedRecord& row : rows) seeds_.enqueue(row.point, row.seed + 1);
   bundle.id = book_.prepare(bundle, rows);
-  events_.write("handed-over", std::nullopt, std::nullopt,
+  events_.write("handed-over",
                 fmt::format("{} seeds in {} tasks as {}", rows.size(), bundle.tasks, bundle.name));
   booking.commit();
   return submit(bundle, settings.options);
@@ -448,9 +446,8 @@ void Bundles::close(const BundleRecord& bundle, const BundleFolder& folder) {
   const int without = book_.without_result(bundle.id);
   Transaction booking(database_.connection());
   book_.close(bundle.id);
-  events_.write(
-      "bundle-closed", std::nullopt, std::nullopt,
-      fmt::format("{} (job {}): {} seeds came back without a result", bundle.name, bundle.job, without));
+  events_.write("bundle-closed", fmt::format("{} (job {}): {} seeds came back without a result", bundle.name,
+                                             bundle.job, without));
   booking.commit();
   // What the tasks printed is of interest only when something went wrong.
   if (without == 0) return void(fs::remove_all(folder.root()));

@@ -7,7 +7,6 @@
 // that is run twice gives the same result twice, and it counts once.
 #pragma once
 
-#include <filesystem>
 #include <map>
 #include <set>
 #include <string>
@@ -15,6 +14,7 @@
 
 #include "runner/batch/batch_system.h"
 #include "runner/batch/bundle_files.h"
+#include "runner/campaign/paths.h"
 #include "runner/owner/ledger.h"
 #include "runner/store/bundle_store.h"
 #include "runner/store/point_store.h"
@@ -23,7 +23,7 @@
 namespace peclet::runner {
 
 struct BundleSettings {
-  std::filesystem::path shared;
+  fs::path shared;
   int seeds_per_task = 1;
   int largest_array = 1000;  // tasks of one bundle
   int threads = 1;
@@ -32,15 +32,14 @@ struct BundleSettings {
   BatchTemplate scripts;
   std::vector<std::string> options;  // of submit.sh
   std::vector<std::string> engine;   // program and arguments
-  std::filesystem::path engine_folder;
+  fs::path engine_folder;
   Json engine_provenance;  // of the owner's engine: the nodes' must have its identity
   std::string program;     // peclet, as the nodes find it
 };
 
 // What the template would make of these settings. Throws InputError for what cannot be put into it, before
 // anything is written.
-void check_template(const BatchTemplate& scripts, const std::filesystem::path& shared,
-                    const std::string& program);
+void check_template(const BatchTemplate& scripts, const fs::path& shared, const std::string& program);
 
 class Bundles {
  public:
@@ -99,7 +98,7 @@ class Bundles {
   void close(const BundleRecord& bundle, const BundleFolder& folder);
   std::string make(const BundleSettings& settings, const std::vector<SeedId>& seeds);
   std::string submit(const BundleRecord& bundle, const std::vector<std::string>& options);
-  std::string free_name(const std::filesystem::path& shared);
+  std::string free_name(const fs::path& shared);
   Manifest manifest_of(const BundleSettings& settings, const std::vector<SeedId>& seeds) const;
   void write(const BundleFolder& folder, const Manifest& manifest, const BundleSettings& settings);
 

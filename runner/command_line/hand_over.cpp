@@ -17,7 +17,6 @@
 #include "runner/campaign/campaign_file.h"
 #include "runner/campaign/quoting.h"
 #include "runner/engines/engine_process.h"
-#include "runner/engines/stop_signals.h"
 #include "runner/maintenance/backup.h"
 #include "runner/owner/dispatcher.h"
 #include "runner/owner/owned_campaign.h"

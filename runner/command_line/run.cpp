@@ -21,7 +21,7 @@
 #include "runner/maintenance/backup.h"
 #include "runner/owner/dispatcher.h"
 #include "runner/owner/event_stream.h"
-#include "runner/owner/folder_watch.h"
+#include "runner/owner/owned_campaign.h"
 #include "runner/owner/pause.h"
 #include "runner/owner/progress.h"
 #include "runner/owner/request_handler.h"

@@ -17,7 +17,7 @@
 #include "contract/text.h"
 #include "runner/campaign/campaign_file.h"
 #include "runner/campaign/text_table.h"
-#include "runner/engines/stop_signals.h"
+#include "runner/engines/engine_process.h"
 #include "runner/owner/open_campaign.h"
 #include "runner/page/live_campaign.h"
 #include "runner/page/loopback_server.h"

@@ -5,6 +5,7 @@
 #include <poll.h>
 #include <spawn.h>
 #include <sys/mman.h>
+#include <sys/signalfd.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -21,12 +22,11 @@
 
 #include "contract/errors.h"
 #include "runner/campaign/campaign_file.h"
-#include "runner/store/own_files.h"
+#include "runner/store/campaign_directory.h"
 
 namespace peclet::runner {
-namespace {
 
-namespace fs = std::filesystem;
+namespace {
 using Clock = std::chrono::steady_clock;
 
 bool is_file(const fs::path& path) {
@@ -179,6 +179,13 @@ std::optional<ExitStatus> wait_for(pid_t process, int options) {
   return ended == 0 ? std::nullopt : std::optional(exit_status(status));
 }
 
+// Whoever started this with nohup wants it to outlive the terminal. (A signal that is blocked is kept even if
+// it is to be ignored.)
+bool is_ignored(int number) {
+  struct sigaction present {};
+  return sigaction(number, nullptr, &present) == 0 && present.sa_handler == SIG_IGN;
+}
+
 }  // namespace
 
 EngineCommand resolve_engine(const Campaign& campaign, const fs::path& campaign_file) {
@@ -301,6 +308,33 @@ CommandAnswer run_command(const std::vector<std::string>& words, std::chrono::se
   }
   answer.ending = *wait_for(process, 0);
   return answer;
+}
+
+StopSignals::StopSignals(int one_more) {
+  sigemptyset(&stopping_);
+  for (const int number : {SIGINT, SIGTERM, one_more}) sigaddset(&stopping_, number);
+  if (!is_ignored(SIGHUP)) sigaddset(&stopping_, SIGHUP);
+  pthread_sigmask(SIG_BLOCK, &stopping_, nullptr);
+  descriptor_ = signalfd(-1, &stopping_, SFD_NONBLOCK | SFD_CLOEXEC);
+  if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), "signalfd");
+}
+
+// A signal that came too late for anybody to take must not kill a process that is leaving anyway.
+StopSignals::~StopSignals() {
+  while (take()) {
+  }
+  close(descriptor_);
+  pthread_sigmask(SIG_UNBLOCK, &stopping_, nullptr);
+}
+
+bool StopSignals::take() {
+  signalfd_siginfo about{};
+  return read(descriptor_, &about, sizeof(about)) == static_cast<ssize_t>(sizeof(about));
+}
+
+bool StopSignals::wait(std::chrono::milliseconds patience) {
+  pollfd watched{descriptor_, POLLIN, 0};
+  return poll(&watched, 1, static_cast<int>(patience.count())) > 0 && take();
 }
 
 }  // namespace peclet::runner

@@ -1,11 +1,11 @@
-// Child processes: one running engine, whose standard input is one end of a socket pair, and outside commands
-// that are run to their end.
+// Processes: one running engine, whose standard input is one end of a socket pair; outside commands that are
+// run to their end; signals that stop this process.
 #pragma once
 
 #include <sys/types.h>
 
 #include <chrono>
-#include <filesystem>
+#include <csignal>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -13,6 +13,7 @@
 
 #include "contract/durable_file.h"
 #include "runner/campaign/campaign.h"
+#include "runner/campaign/paths.h"
 #include "runner/store/blame.h"
 
 namespace peclet::runner {
@@ -24,9 +25,9 @@ class EngineError : public std::runtime_error {
 };
 
 struct EngineCommand {
-  std::filesystem::path program;
+  fs::path program;
   std::vector<std::string> arguments;  // without the program
-  std::filesystem::path folder;        // in which it runs
+  fs::path folder;                     // in which it runs
   // Signals that the engine never hears, because whoever sends them to all processes of a job means its
   // owner, which then asks the engine by frames.
   std::vector<int> blocked_signals{};
@@ -37,7 +38,7 @@ struct EngineCommand {
 // running program, else on PATH, else among the program's own adapters. It runs in the campaign file's
 // folder, so that names among its arguments mean the same wherever peclet is started. Throws InputError at
 // /engine/0 of `campaign_file`.
-EngineCommand resolve_engine(const Campaign& campaign, const std::filesystem::path& campaign_file);
+EngineCommand resolve_engine(const Campaign& campaign, const fs::path& campaign_file);
 
 // Movable owner of the process and of our end of its socket.
 class EngineProcess {
@@ -95,5 +96,25 @@ struct CommandAnswer {
 // the program cannot be started.
 CommandAnswer run_command(const std::vector<std::string>& words, std::chrono::seconds patience,
                           const std::string& input = "");
+
+// SIGINT, SIGTERM and SIGHUP (the terminal or connection is gone), and one more if it is given, as something
+// to poll for: from construction to destruction they are blocked in this thread and read from a descriptor
+// instead. Threads that are started meanwhile inherit that. SIGHUP is left alone where it is ignored, as
+// under nohup.
+class StopSignals {
+ public:
+  explicit StopSignals(int one_more = SIGTERM);
+  ~StopSignals();
+  StopSignals& operator=(StopSignals&&) = delete;
+  int descriptor() const { return descriptor_; }
+  // Takes one signal that has come, if any.
+  bool take();
+  // Waits for one at most so long, and takes it.
+  bool wait(std::chrono::milliseconds patience);
+
+ private:
+  sigset_t stopping_{};
+  int descriptor_ = -1;
+};
 
 }  // namespace peclet::runner

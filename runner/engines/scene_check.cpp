@@ -25,7 +25,7 @@
 #include "contract/sha256.h"
 #include "contract/text.h"
 #include "runner/campaign/quoting.h"
-#include "runner/engines/stop_signals.h"
+#include "runner/engines/engine_process.h"
 #include "runner/engines/worker_process.h"
 #include "runner/statistics/quantities.h"
 #include "runner/store/blame.h"
@@ -179,7 +179,7 @@ std::string of_point(const Campaign& campaign, const StatePoint& point) {
 
 // An engine that says what it will measure spares us the first seed of a misspelt observable.
 void check_observables(const Json& answer, const Campaign& campaign, const StatePoint& point,
-                       const std::filesystem::path& campaign_file) {
+                       const fs::path& campaign_file) {
   if (!answer.contains("observables")) return;
   const auto known = answer["observables"].get<std::vector<std::string>>();
   for (const std::string& wanted : campaign.target.observables()) {
@@ -215,7 +215,7 @@ SceneAnswer read_answer(const Json& message, const Json& identity) {
   return answer;
 }
 
-std::vector<SceneAnswer> ask_once(const Campaign& campaign, const std::filesystem::path& campaign_file,
+std::vector<SceneAnswer> ask_once(const Campaign& campaign, const fs::path& campaign_file,
                                   const EngineCommand& command) {
   Conversation engine(command);
   std::vector<SceneAnswer> answers;
@@ -308,7 +308,7 @@ class Trial {
 
 }  // namespace
 
-std::vector<SceneAnswer> check_scenes(const Campaign& campaign, const std::filesystem::path& campaign_file,
+std::vector<SceneAnswer> check_scenes(const Campaign& campaign, const fs::path& campaign_file,
                                       const EngineCommand& command) {
   for (int tries = 1; tries < most_tries; ++tries) {
     try {

@@ -1,7 +1,6 @@
 // What the engine says about the scenes of a campaign before anything runs.
 #pragma once
 
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -9,8 +8,9 @@
 
 #include "contract/json.h"
 #include "runner/campaign/campaign.h"
+#include "runner/campaign/paths.h"
 #include "runner/engines/engine_process.h"
-#include "runner/store/vocabulary.h"
+#include "runner/store/point_store.h"
 
 namespace peclet::runner {
 
@@ -28,7 +28,7 @@ struct SceneAnswer {
 // Throws InputError at /scene... of `campaign_file`, naming the point, for a scene that the engine refuses,
 // and at /target/observable for one that the engine says it will not measure; std::runtime_error for an
 // engine that cannot be started or does not answer within a minute.
-std::vector<SceneAnswer> check_scenes(const Campaign& campaign, const std::filesystem::path& campaign_file,
+std::vector<SceneAnswer> check_scenes(const Campaign& campaign, const fs::path& campaign_file,
                                       const EngineCommand& command);
 
 // Work of a realisation of each point; nothing unless the engine knows all of them.
@@ -39,10 +39,10 @@ struct CostTrial {
   std::string broke_off{};          // "packing: ..." where the realisation ended early; "" where it did not
 };
 
-// The engine runs seed 0 in a folder of its own that is
-// removed again, and is killed when it has said after two seconds how far it is. So it is a guess, from the
-// beginning of one realisation. No seconds when the engine does not get that far within ten seconds, when the
-// realisation ends early, as one that jams, or when the engine cannot run the scene.
+// Tries what a realisation may cost where nothing is known yet: the engine runs seed 0 in a folder of its own
+// that is removed again, and is killed when it has said after two seconds how far it is. No seconds when the
+// engine does not get that far within ten seconds, when the realisation ends early, as one that jams, or when
+// the engine cannot run the scene.
 CostTrial try_cost(const Json& scene, const EngineCommand& command);
 
 }  // namespace peclet::runner

@@ -5,12 +5,12 @@
 
 #include <chrono>
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "contract/json.h"
+#include "runner/campaign/paths.h"
 #include "runner/store/blame.h"
 
 namespace peclet::runner {
@@ -22,7 +22,7 @@ struct Job {
   int seed = 0;
   Json scene;
   int threads = 1;
-  std::filesystem::path checkpoint, spool, failures;
+  fs::path checkpoint, spool, failures;
   double checkpoint_seconds = 60;
   double progress_seconds = 1;
 };
@@ -45,7 +45,7 @@ const char* phase_name(int phase);
 struct ResultSpooled {
   int worker;
   std::int64_t job;
-  std::filesystem::path spool;
+  fs::path spool;
   std::string sha256;
 };
 struct JobFailed {  // the engine could not run it at all
@@ -61,7 +61,7 @@ struct Drained {
 struct ShortOfRoom {  // could not write a file of its job, keeps its work and tries again
   int worker;
   std::int64_t job;
-  std::filesystem::path path;
+  fs::path path;
   std::uint64_t bytes;
 };
 struct Garbled {  // said something that is no message; it has been killed, Exited follows

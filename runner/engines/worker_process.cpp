@@ -32,8 +32,6 @@ namespace peclet::runner {
 
 namespace {
 
-namespace fs = std::filesystem;
-
 // Machines with more cores than a cpu_set_t has bits need a larger set.
 int cores_of_affinity() {
   for (std::size_t count = CPU_SETSIZE; count <= 1 << 16; count *= 2) {
@@ -211,10 +209,10 @@ AttemptReason WorkerWatch::ended(const ExitStatus& ending, bool all_recalled) co
 
 const char* phase_name(int phase) { return job_phases.at(static_cast<std::size_t>(phase)); }
 
-std::optional<std::filesystem::path> unwritable_folder(const Job& job) {
-  for (const std::filesystem::path& folder :
+std::optional<fs::path> unwritable_folder(const Job& job) {
+  for (const fs::path& folder :
        {job.spool.parent_path(), left_folder(job.spool), job.checkpoint.parent_path(), job.failures}) {
-    if (!std::filesystem::exists(folder) || !has_room(folder, 0)) return folder;
+    if (!fs::exists(folder) || !has_room(folder, 0)) return folder;
   }
   return std::nullopt;
 }

@@ -3,15 +3,14 @@
 
 #include <chrono>
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "contract/frames.h"
+#include "runner/campaign/paths.h"
 #include "runner/engines/engine_process.h"
-#include "runner/engines/stop_signals.h"
 #include "runner/engines/worker_pool.h"
 #include "runner/store/blame.h"
 #include "runner/store/campaign_directory.h"
@@ -25,7 +24,7 @@ int usable_cores();
 
 // The processor time, in cores, to which the control groups limit a process whose /proc/self/cgroup reads
 // `groups`, below `root`, where they are mounted (/sys/fs/cgroup); nothing if they do not.
-std::optional<double> core_quota(const std::filesystem::path& root, const std::string& groups);
+std::optional<double> core_quota(const fs::path& root, const std::string& groups);
 
 // Time during which this process ran. Leases and patience are measured in it: an owner that was stopped, or
 // frozen together with its workers, has heard nothing meanwhile and must not hold that against them.
@@ -117,7 +116,7 @@ class WorkerWatch {
 // Returns the first folder into which an engine writes for its job that is not there or has no room; nothing
 // if it can write in all of them. An engine that does not know how to wait for room may crash or give up
 // instead, which is not its fault.
-std::optional<std::filesystem::path> unwritable_folder(const Job& job);
+std::optional<fs::path> unwritable_folder(const Job& job);
 
 // Allows this process as many open files as so many workers take. Throws InputError when the system does not.
 void allow_open_files(int workers);

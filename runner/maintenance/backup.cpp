@@ -25,8 +25,6 @@ namespace peclet::runner {
 
 namespace {
 
-namespace fs = std::filesystem;
-
 fs::path copy_of(const FileRecord& record, const fs::path& backups) {
   return CampaignDirectory(backups).files() / record.file.sha256;
 }
@@ -266,8 +264,7 @@ Place place_of(const RestoreOptions& options) {
 void record(const CampaignDirectory& directory, const Source& source) {
   Database database = Database::open_owner(directory.database());
   Transaction booking(database.connection());
-  EventStore(database.connection())
-      .write("restored", std::nullopt, std::nullopt, "from " + source.file.string());
+  EventStore(database.connection()).write("restored", "from " + source.file.string());
   booking.commit();
 }
 
@@ -364,8 +361,7 @@ Backup make_backup(const CampaignDirectory& directory, const fs::path& folder, b
   std::vector<FileRecord> files;
   copy_database(directory.database(), next, [&](Connection& copy) {
     // Whoever restores the copy can say when and where it was made.
-    EventStore(copy).write("backup", std::nullopt, std::nullopt,
-                           "copied from " + directory.database().string());
+    EventStore(copy).write("backup", "copied from " + directory.database().string());
     files = files_in(copy);
     backup.results = extent_of(copy).results;
   });

@@ -8,11 +8,11 @@
 
 #include <chrono>
 #include <cstdint>
-#include <filesystem>
 #include <future>
 #include <string>
 #include <vector>
 
+#include "runner/campaign/paths.h"
 #include "runner/owner/run_listener.h"
 #include "runner/store/backups.h"
 #include "runner/store/campaign_directory.h"
@@ -32,22 +32,22 @@ struct FileCopies {
 
 // Whether a file lies in its place and is what its row says.
 bool is_sound(const FileRecord& record, const CampaignDirectory& directory);
-bool has_copy(const FileRecord& record, const std::filesystem::path& backups);
+bool has_copy(const FileRecord& record, const fs::path& backups);
 
 // Brings what is kept of these, and not sound, back into its place.
 FileCopies bring_files_back(const std::vector<FileRecord>& records, const CampaignDirectory& directory,
-                            const std::filesystem::path& backups);
+                            const fs::path& backups);
 
 struct BackupOptions {
-  std::filesystem::path campaign;  // file or folder
-  std::filesystem::path directory;
-  std::filesystem::path target;  // "": the campaign's own folder of backups
-  bool checkpoints = false;      // copy checkpoints and spool, too
+  fs::path campaign;  // file or folder
+  fs::path directory;
+  fs::path target;           // "": the campaign's own folder of backups
+  bool checkpoints = false;  // copy checkpoints and spool, too
   bool json = false;
 };
 
 struct Backup {
-  std::filesystem::path file;
+  fs::path file;
   std::int64_t results = 0;
   std::uintmax_t bytes = 0;
   double seconds = 0;
@@ -60,7 +60,7 @@ struct Backup {
 // InputError when that is not there or the folder holds backups of another campaign, IntegrityError when the
 // database is damaged, DatabaseError, std::system_error; the generations that were there are then still
 // there.
-Backup make_backup(const CampaignDirectory& directory, const std::filesystem::path& folder, bool checkpoints);
+Backup make_backup(const CampaignDirectory& directory, const fs::path& folder, bool checkpoints);
 
 // The verb: what was done, for people or as JSON.
 std::string backup_campaign(const BackupOptions& options);
@@ -98,9 +98,9 @@ class PeriodicBackup {
 };
 
 struct RestoreOptions {
-  std::filesystem::path backup;    // a folder of backups, or one file
-  std::filesystem::path campaign;  // file or folder, which need not exist
-  std::filesystem::path directory;
+  fs::path backup;    // a folder of backups, or one file
+  fs::path campaign;  // file or folder, which need not exist
+  fs::path directory;
   bool force = false;  // also in the place of a sound database that is as new
 };
 

@@ -29,18 +29,8 @@
 namespace peclet::runner {
 namespace {
 
-namespace fs = std::filesystem;
-
 const char* name_of(Severity severity) {
-  switch (severity) {
-    case Severity::integrity:
-      return "integrity";
-    case Severity::warning:
-      return "warning";
-    case Severity::note:
-      break;
-  }
-  return "note";
+  return severity == Severity::integrity ? "integrity" : severity == Severity::warning ? "warning" : "note";
 }
 
 // The seed runs again, and gives the same result if its engine is the same; what was stored is kept for

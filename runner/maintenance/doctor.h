@@ -1,20 +1,20 @@
 // The verb `peclet doctor`: is everything about a campaign in order, and what cures it if not?
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "runner/campaign/paths.h"
 #include "runner/store/campaign_directory.h"
 #include "runner/store/database.h"
 
 namespace peclet::runner {
 
 struct DoctorOptions {
-  std::filesystem::path campaign;  // file or folder
-  std::filesystem::path directory;
+  fs::path campaign;  // file or folder
+  fs::path directory;
   bool repair = false;
   bool json = false;
 };

@@ -19,8 +19,6 @@
 namespace peclet::runner {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr std::array known_names{"campaign.db",
                                  "campaign.db-wal",
                                  "campaign.db-shm",
@@ -174,13 +172,10 @@ void examine_requests(const CampaignUnderExamination& examined, Findings& findin
 }
 
 void examine_unfinished(const CampaignUnderExamination& examined, Findings& findings) {
-  std::vector<fs::path> folders, unfinished;
-  for (const fs::path& folder :
-       {examined.directory.root(), examined.directory.spool(), examined.directory.left(),
-        examined.directory.checkpoints(), examined.directory.failures(), examined.directory.backup(),
-        examined.directory.requests()}) {
-    if (!fs::is_directory(folder)) continue;
-    folders.push_back(folder);
+  std::vector<fs::path> folders = folders_below(examined.directory), unfinished;
+  folders.insert(folders.begin(), examined.directory.root());
+  std::erase_if(folders, [](const fs::path& folder) { return !fs::is_directory(folder); });
+  for (const fs::path& folder : folders) {
     for (const fs::path& file : unfinished_files(folder)) unfinished.push_back(file);
   }
   if (unfinished.empty()) return;
@@ -204,78 +199,63 @@ void examine_strays(const CampaignUnderExamination& examined, Findings& findings
                       "move them away if nothing else needs them"});
 }
 
-class Places {
- public:
-  explicit Places(const fs::path& root) : root_(root) {}
-  void add(const fs::path& path) {
-    constexpr std::size_t most = 3;
-    if (++count_ <= most) text_ += (count_ == 1 ? "" : ", ") + plain(path.lexically_relative(root_).string());
-    if (count_ == most + 1) text_ += " ...";
+// "files/a, files/b, files/c ...": the first of these, as they lie below `root`.
+std::string places_text(const std::vector<fs::path>& places, const fs::path& root) {
+  constexpr std::size_t most = 3;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, places.size()); ++i) {
+    text += (i == 0 ? "" : ", ") + plain(places[i].lexically_relative(root).string());
   }
-  std::size_t count() const { return count_; }
-  const std::string& text() const { return text_; }
+  return places.size() > most ? text + " ..." : text;
+}
 
- private:
-  const fs::path& root_;
-  std::size_t count_ = 0;
-  std::string text_;
-};
-
-// Files that are not what their rows say, for whatever reason.
-class Faulty {
- public:
-  explicit Faulty(const CampaignDirectory& directory) : directory_(directory), places_(directory.root()) {}
-  void add(const FileRecord& record) {
-    places_.add(record.place(directory_));
-    have_copies_ = have_copies_ && has_copy(record, directory_.backup());
+// Reports files that are not what their rows say, for whatever reason.
+void report_faulty(const std::vector<FileRecord>& faulty, const char* code, const char* how,
+                   const CampaignDirectory& directory, Findings& findings) {
+  if (faulty.empty()) return;
+  std::vector<fs::path> places;
+  for (const FileRecord& record : faulty) places.push_back(record.place(directory));
+  Finding finding{code, Severity::warning,
+                  fmt::format("{} files that realisations left {}: {}", places.size(), how,
+                              places_text(places, directory.root())),
+                  "backups made elsewhere have them in files/, by their SHA-256 (view `files`)"};
+  const auto is_copied = [&](const FileRecord& record) { return has_copy(record, directory.backup()); };
+  if (std::all_of(faulty.begin(), faulty.end(), is_copied)) {
+    finding.cure = "`peclet doctor --repair` brings them back from the campaign's own backups";
+    finding.repair = [directory](Database& owner) {
+      bring_files_back(files_in(owner.connection()), directory, directory.backup());
+    };
   }
-  void report(const char* code, const char* how, Findings& findings) const {
-    if (places_.count() == 0) return;
-    Finding finding{
-        code, Severity::warning,
-        fmt::format("{} files that realisations left {}: {}", places_.count(), how, places_.text()),
-        "backups made elsewhere have them in files/, by their SHA-256 (view `files`)"};
-    if (have_copies_) {
-      finding.cure = "`peclet doctor --repair` brings them back from the campaign's own backups";
-      finding.repair = [directory = directory_](Database& owner) {
-        bring_files_back(files_in(owner.connection()), directory, directory.backup());
-      };
-    }
-    findings.push_back(std::move(finding));
-  }
-
- private:
-  const CampaignDirectory& directory_;
-  Places places_;
-  bool have_copies_ = true;
-};
+  findings.push_back(std::move(finding));
+}
 
 void examine_places(Database& database, const CampaignUnderExamination& examined, Findings& findings) {
   const CampaignDirectory& directory = examined.directory;
-  Faulty missing(directory), damaged(directory);
+  std::vector<FileRecord> missing, damaged;
   std::set<fs::path> known;
   for (const FileRecord& record : files_in(database.connection())) {
     if (!record.kept) continue;
     const fs::path place = record.place(directory);
     known.insert(place);
     if (is_there(place)) {
-      if (!is_sound(record, directory)) damaged.add(record);
+      if (!is_sound(record, directory)) damaged.push_back(record);
     } else if (!examined.owner) {  // those of a result that has just been committed are on their way
-      missing.add(record);
+      missing.push_back(record);
     }
   }
-  missing.report("file-missing", "are not there", findings);
-  damaged.report("file-damaged", "are not what they were", findings);
+  report_faulty(missing, "file-missing", "are not there", directory, findings);
+  report_faulty(damaged, "file-damaged", "are not what they were", directory, findings);
   if (examined.owner || kind_of(directory.files()) != "a folder") return;
-  Places orphans(directory.root());
+  std::vector<fs::path> orphans;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(directory.files())) {
     const bool is_folder = entry.symlink_status().type() == fs::file_type::directory;
-    if (!is_folder && !known.contains(entry.path())) orphans.add(entry.path());
+    if (!is_folder && !known.contains(entry.path())) orphans.push_back(entry.path());
   }
-  if (orphans.count() == 0) return;
+  if (orphans.empty()) return;
   findings.push_back(
       {"file-orphan", Severity::note,
-       fmt::format("{} files in files/ are of no result: {}", orphans.count(), orphans.text()),
+       fmt::format("{} files in files/ are of no result: {}", orphans.size(),
+                   places_text(orphans, directory.root())),
        "their seeds bring them again if the database is an older one; move them away otherwise"});
 }
 
@@ -321,17 +301,17 @@ void examine_backups(Database& database, const CampaignUnderExamination& examine
 void examine_left_files(Database& database, const CampaignUnderExamination& examined, Findings& findings) {
   examine_places(database, examined, findings);
   if (examined.owner || kind_of(examined.directory.left()) != "a folder") return;
-  Places waiting(examined.directory.root());
+  std::vector<fs::path> waiting;
   for (const fs::path& file : whole_files(examined.directory.left())) {
     const std::string name = file.filename().string();
     const fs::path result = examined.directory.spool() / (name.substr(0, name.rfind('@')) + ".json");
-    if (!is_there(result)) waiting.add(file);
+    if (!is_there(result)) waiting.push_back(file);
   }
-  if (waiting.count() == 0) return;
-  findings.push_back(
-      {"file-left", Severity::note,
-       fmt::format("{} files are of attempts that gave no result: {}", waiting.count(), waiting.text()),
-       "the next `peclet run` removes them"});
+  if (waiting.empty()) return;
+  findings.push_back({"file-left", Severity::note,
+                      fmt::format("{} files are of attempts that gave no result: {}", waiting.size(),
+                                  places_text(waiting, examined.directory.root())),
+                      "the next `peclet run` removes them"});
 }
 
 }  // namespace peclet::runner

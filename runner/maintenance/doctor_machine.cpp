@@ -18,8 +18,6 @@
 namespace peclet::runner {
 namespace {
 
-namespace fs = std::filesystem;
-
 std::string content(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
@@ -41,25 +39,34 @@ std::string command_of(const fs::path& process) {
   return words;
 }
 
+// The folders of all processes, in /proc.
+std::vector<fs::path> processes() {
+  std::vector<fs::path> found;
+  for (const fs::directory_entry& entry : fs::directory_iterator("/proc")) {
+    const std::string name = entry.path().filename().string();
+    if (name.find_first_not_of("0123456789") == std::string::npos) found.push_back(entry.path());
+  }
+  return found;
+}
+
 // "process 4711 (peclet watch), which is stopped": those that have the database open, the owner and this
 // process apart.
 std::vector<std::string> readers_of(const fs::path& database, const std::string& owner) {
   std::error_code error;
   const fs::path file = fs::canonical(database, error);
   std::vector<std::string> readers;
-  for (const fs::directory_entry& process : fs::directory_iterator("/proc")) {
-    const std::string number = process.path().filename().string();
-    if (number.find_first_not_of("0123456789") != std::string::npos) continue;
+  for (const fs::path& process : processes()) {
+    const std::string number = process.filename().string();
     if (number == owner || number == std::to_string(getpid())) continue;
-    for (fs::directory_iterator open(process.path() / "fd", error), end; !error && open != end;
+    for (fs::directory_iterator open(process / "fd", error), end; !error && open != end;
          open.increment(error)) {
       std::error_code gone;
       if (fs::read_symlink(open->path(), gone) != file) continue;
       // The state follows the name, which is in parentheses.
-      const std::string about = content(process.path() / "stat");
+      const std::string about = content(process / "stat");
       const std::size_t name_end = about.rfind(')');
       const bool is_stopped = name_end != std::string::npos && about.substr(name_end, 4) == ") T ";
-      readers.push_back(fmt::format("process {} ({}){}", number, plain(command_of(process.path()), 80),
+      readers.push_back(fmt::format("process {} ({}){}", number, plain(command_of(process), 80),
                                     is_stopped ? ", which is stopped" : ""));
       break;
     }
@@ -103,20 +110,19 @@ RoomNeeded still_needed(Database& database, const CampaignDirectory& directory) 
 
 void examine_processes(const CampaignUnderExamination& examined, Findings& findings) {
   const std::string owner = examined.owner ? std::to_string(*examined.owner) : "";
-  for (const fs::directory_entry& entry : fs::directory_iterator("/proc")) {
-    const std::string process = entry.path().filename().string();
-    if (process.find_first_not_of("0123456789") != std::string::npos) continue;
+  for (const fs::path& process : processes()) {
+    const std::string number = process.filename().string();
     // Those of other users cannot be read, and are not ours.
-    const std::string environment = content(entry.path() / "environ");
+    const std::string environment = content(process / "environ");
     if (variable_of(environment, "PECLET_CAMPAIGN") != examined.directory.root().string()) continue;
     const std::string theirs = variable_of(environment, "PECLET_OWNER");
-    const std::string command = command_of(entry.path());
+    const std::string command = command_of(process);
     if (theirs == owner || command.empty()) continue;
     findings.push_back(
         {"orphaned-worker", Severity::warning,
-         fmt::format("process {} ({}) was started by process {}, which no longer owns this campaign", process,
+         fmt::format("process {} ({}) was started by process {}, which no longer owns this campaign", number,
                      command, theirs),
-         fmt::format("it should leave by itself within a minute; if not: kill {}", process)});
+         fmt::format("it should leave by itself within a minute; if not: kill {}", number)});
   }
 }
 

@@ -19,8 +19,6 @@ namespace peclet::runner {
 
 namespace {
 
-namespace fs = std::filesystem;
-
 template <typename T>
 void append(std::vector<T>& list, std::vector<T>& later) {
   std::move(later.begin(), later.end(), std::back_inserter(list));
@@ -85,7 +83,7 @@ void AfterCommit::add(AfterCommit&& later) {
 }
 
 void AfterCommit::carry_out(RunListener& listener, FileRemoval& removal) {
-  const auto make_way_for_file = [&listener](const std::filesystem::path& path) {
+  const auto make_way_for_file = [&listener](const fs::path& path) {
     if (const std::string text = make_way(path, "a regular file"); !text.empty()) listener.warn(text);
   };
   for (const auto& [from, place] : to_keep_) {
@@ -94,19 +92,15 @@ void AfterCommit::carry_out(RunListener& listener, FileRemoval& removal) {
     make_way_for_file(place);
     rename_durably(from, place);
   }
-  for (const std::filesystem::path& checkpoint : to_discard_) {
-    for (const std::filesystem::path& file : {checkpoint, growing_beside(checkpoint)}) {
+  for (const fs::path& checkpoint : to_discard_) {
+    for (const fs::path& file : {checkpoint, growing_beside(checkpoint)}) {
       make_way_for_file(file);
-      std::filesystem::remove(file);
+      fs::remove(file);
     }
   }
   removal.add(to_remove_);
-  for (const std::filesystem::path& file : to_reject_) peclet::runner::reject(home_of_spool_file(file), file);
-  for (const auto& told : std::exchange(*this, {}).to_tell_) {
-    if (const auto* const note = std::get_if<Note>(&told)) listener.note(note->text);
-    if (const auto* const warning = std::get_if<Warning>(&told)) listener.warn(warning->text);
-    if (const auto* const event = std::get_if<RunEvent>(&told)) listener.happened(*event);
-  }
+  for (const fs::path& file : to_reject_) peclet::runner::reject(home_of_spool_file(file), file);
+  for (const Telling& telling : std::exchange(*this, {}).to_tell_) telling(listener);
 }
 
 void take_files(Connection& connection, const CampaignDirectory& directory, const RealisationResult& result,

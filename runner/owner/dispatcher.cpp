@@ -105,9 +105,12 @@ bool Dispatcher::anyone_there() const {
 
 // Nobody here has work, there is none to give out, and yet some point is open.
 bool Dispatcher::has_nothing_to_do() const {
-  const bool busy = std::any_of(now_.workers.begin(), now_.workers.end(),
-                                [](const Worker& worker) { return worker.watch.is_busy(); });
-  return !busy && !unbooked_ && !ledger_.scheduler().finished() && !ledger_.next();
+  return busy() == 0 && !unbooked_ && !ledger_.scheduler().finished() && !ledger_.next();
+}
+
+int Dispatcher::busy() const {
+  return static_cast<int>(std::count_if(now_.workers.begin(), now_.workers.end(),
+                                        [](const Worker& worker) { return worker.watch.is_busy(); }));
 }
 
 const char* Dispatcher::why_nothing() const {
@@ -189,8 +192,7 @@ void Dispatcher::report() {
   reported_ = now;
   RunReport report = ledger_.report(pool_.size());
   report.workers = pool_.size();
-  report.busy = static_cast<int>(std::count_if(now_.workers.begin(), now_.workers.end(),
-                                               [](const Worker& worker) { return worker.watch.is_busy(); }));
+  report.busy = busy();
   report.results = now_.results;
   report.elapsed = std::chrono::duration<double>(now - started_).count();
   listener_.report(report);
@@ -263,7 +265,7 @@ void Dispatcher::handle(const Drained& event) {
 void Dispatcher::handle(const ShortOfRoom& event) {
   if (!has_job(event.worker, event.job)) return;
   const Job& job = at(event.worker).assignment->given_seed.job;
-  const std::filesystem::path folder = event.path.parent_path();
+  const fs::path folder = event.path.parent_path();
   const bool is_beside_result =
       folder == left_folder(job.spool) && event.path.filename().string().starts_with(left_stem(job.spool));
   if (event.path != job.spool && checkpoint_of(event.path) != job.checkpoint && folder != job.failures &&
@@ -494,15 +496,13 @@ std::uint64_t Dispatcher::bytes_of_news() const {
   for (const WorkerEvent& event : news_) {
     const auto* const result = std::get_if<ResultSpooled>(&event);
     std::error_code absent;
-    const std::uintmax_t size = result == nullptr ? 0 : std::filesystem::file_size(result->spool, absent);
+    const std::uintmax_t size = result == nullptr ? 0 : fs::file_size(result->spool, absent);
     if (result != nullptr && !absent) bytes += 2 * size;
   }
   return bytes;
 }
 
-std::filesystem::path Dispatcher::root() const {
-  return std::filesystem::path(database_.connection().path()).parent_path();
-}
+fs::path Dispatcher::root() const { return fs::path(database_.connection().path()).parent_path(); }
 
 // Said once, however often it turns out that it is still in the way.
 void Dispatcher::begin_pause(const Hindrance& hindrance) {
@@ -544,8 +544,8 @@ void Dispatcher::end_pause() {
 bool Dispatcher::lacked_room(int number) {
   const Assignment& about = *at(number).assignment;
   if (about.lost_a_folder) return true;
-  const std::optional<std::filesystem::path> folder = unwritable_folder(about.given_seed.job);
-  if (folder && std::filesystem::exists(*folder)) {
+  const std::optional<fs::path> folder = unwritable_folder(about.given_seed.job);
+  if (folder && fs::exists(*folder)) {
     if (const int error = lack_of_room(*folder, 0); error != 0)
       begin_pause(lack_of_room_in(*folder, 0, error));
   }

@@ -18,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "runner/campaign/paths.h"
 #include "runner/engines/worker_process.h"
 #include "runner/owner/ledger.h"
 #include "runner/owner/pause.h"
@@ -94,7 +95,7 @@ class Dispatcher {
   // Does what follows the commit. False: something is in the way of the rest.
   bool follow_up();
   std::uint64_t bytes_of_news() const;
-  std::filesystem::path root() const;
+  fs::path root() const;
   void begin_pause(const Hindrance& hindrance);
   void look_whether_it_is_over();
   void end_pause();
@@ -133,6 +134,7 @@ class Dispatcher {
   Worker& at(int worker) { return now_.workers.at(static_cast<std::size_t>(worker)); }
   bool anyone_there() const;
   bool has_nothing_to_do() const;
+  int busy() const;
   const char* why_nothing() const;
 
   Database& database_;

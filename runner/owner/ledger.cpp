@@ -20,8 +20,6 @@
 namespace peclet::runner {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr std::size_t longest_list = 350;
 
 struct Out {
@@ -75,10 +73,6 @@ Ledger::Ledger(Database& database, const Campaign& campaign, CampaignDirectory d
     listener_.note(fmt::format("{} seeds that an earlier run left unfinished go on", recovered));
   }
   remove_files_of_the_dead(database_, directory_);
-  load();
-}
-
-void Ledger::load() {
   read_board();
   remove_late_checkpoints();
   Transaction booking(database_.connection());
@@ -354,8 +348,7 @@ std::optional<SeedId> Ledger::identify(std::int64_t point_id, int seed) const {
 
 bool Ledger::has_ended(SeedId id) { return seeds_.has_ended(point(id.point).id, id.seed); }
 
-void Ledger::end_handed_over(SeedId id, int task, const AttemptReport& report,
-                             const std::filesystem::path& checkpoint) {
+void Ledger::end_handed_over(SeedId id, int task, const AttemptReport& report, const fs::path& checkpoint) {
   const PointRecord& about = point(id.point);
   seeds_.attempt_elsewhere(about.id, id.seed, task, report);
   if (has_ended(id)) return;
@@ -492,7 +485,7 @@ void Ledger::take(const RealisationResult& result, const fs::path& spool) {
   const std::optional<double> value = is_lost ? std::nullopt : std::optional(stored.outcome.value);
   const double cpu_seconds = cost_of(result, "cpu_seconds");
   changes_.after.tell(SeedEnded{point_name(*place), result.seed, stored.cause, value, cpu_seconds});
-  if (!board_.has_seeds()) return;  // load() finds it
+  if (!board_.has_seeds()) return;  // it is found when they are read
   changes_.are_on_board = true;
   board_.add_cost(*place, cost_of(result, "wall_seconds"), cpu_seconds);
   if (is_lost) {
@@ -511,7 +504,7 @@ void Ledger::note_lacking(const RealisationResult& result) {
 
 void Ledger::turn_down(const fs::path& spool, const std::string& why) {
   const std::string message = fmt::format("{} is not taken: {}", plain_name(spool), why);
-  events_.write("rejected", std::nullopt, std::nullopt, message);
+  events_.write("rejected", message);
   // Of a crowd nobody reads every name.
   if (++turned_down_ <= most_told) {
     changes_.after.warn(

@@ -9,7 +9,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <set>
@@ -17,6 +16,7 @@
 #include <vector>
 
 #include "contract/errors.h"
+#include "runner/campaign/paths.h"
 #include "runner/engines/worker_process.h"
 #include "runner/owner/after_commit.h"
 #include "runner/owner/board.h"
@@ -81,8 +81,7 @@ class Ledger {
   // The seed has ended, with a result or without.
   bool has_ended(SeedId id);
   // Books how an attempt at a seed that was handed over ended on a node: as end_attempt().
-  void end_handed_over(SeedId id, int task, const AttemptReport& report,
-                       const std::filesystem::path& checkpoint);
+  void end_handed_over(SeedId id, int task, const AttemptReport& report, const fs::path& checkpoint);
   // A seed that was handed over comes back without an attempt.
   void take_back(SeedId id);
 
@@ -125,10 +124,9 @@ class Ledger {
   std::string name(SeedId id) const;
 
  private:
-  void load();
   void remove_late_checkpoints();
   // Nothing for a file that is no checkpoint of a point in the sweep.
-  std::optional<SeedId> seed_of_checkpoint(const std::filesystem::path& file) const;
+  std::optional<SeedId> seed_of_checkpoint(const fs::path& file) const;
   void read_board();
   void book_looks();
   void refuse_other_engine(const std::string& identity) const;
@@ -142,16 +140,16 @@ class Ledger {
   PointName point_name(const GivenSeed& given_seed) const;
   void leave_to_batch_system(int place);
   void ingest_spool_of(const CampaignDirectory& directory);
-  void ingest(const std::filesystem::path& spool);
+  void ingest(const fs::path& spool);
   using Reading = std::function<RealisationResult()>;
   using Booking = std::function<void(const RealisationResult&)>;
   // Reads a result and books it, wholly or not at all. Returns why it is turned down; "" when it is not.
-  std::string take_whole(const std::filesystem::path& spool, const Reading& read, const Booking& book);
-  void take(const RealisationResult& result, const std::filesystem::path& spool);
+  std::string take_whole(const fs::path& spool, const Reading& read, const Booking& book);
+  void take(const RealisationResult& result, const fs::path& spool);
   void note_lacking(const RealisationResult& result);
   void book_outcome(SeedId id, const Outcome& outcome);
   void store_looks(int place, std::size_t known);
-  void turn_down(const std::filesystem::path& spool, const std::string& why);
+  void turn_down(const fs::path& spool, const std::string& why);
 
   Database& database_;
   SeedStore seeds_;

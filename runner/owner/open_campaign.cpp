@@ -17,8 +17,6 @@
 namespace peclet::runner {
 namespace {
 
-namespace fs = std::filesystem;
-
 // Folders of campaigns whose file has gone.
 std::vector<fs::path> orphans_beside(const CampaignDirectory& directory) {
   std::vector<fs::path> orphans;

@@ -1,7 +1,13 @@
 #include "runner/owner/owned_campaign.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <string>
+#include <vector>
+
+#include "contract/durable_file.h"
+#include "contract/errors.h"
 #include "contract/guarded_file.h"
 #include "runner/campaign/quoting.h"
 #include "runner/owner/open_campaign.h"
@@ -9,16 +15,15 @@
 #include "runner/store/point_store.h"
 #include "runner/store/realisation_result.h"
 #include "runner/store/result_files.h"
-#include "runner/store/vocabulary.h"
 
 namespace peclet::runner {
+
 namespace {
 
 constexpr std::size_t fewest_digits = 6;  // of a hash that names an engine
 
-CampaignDirectory directory_for(const Campaign& campaign, const std::filesystem::path& file,
-                                const std::filesystem::path& chosen) {
-  if (chosen.empty() && !std::filesystem::is_regular_file(file)) {
+CampaignDirectory directory_for(const Campaign& campaign, const fs::path& file, const fs::path& chosen) {
+  if (chosen.empty() && !fs::is_regular_file(file)) {
     throw InputError(file.string(), "", "",
                      "is no file beside which the campaign could be kept: name its folder with --directory");
   }
@@ -49,7 +54,7 @@ const CampaignDirectory& created(const CampaignDirectory& directory, bool force)
         "--directory, or --force it at your own risk");
   }
   std::error_code error;
-  std::filesystem::create_directories(directory.root(), error);
+  fs::create_directories(directory.root(), error);
   if (error) {
     throw InputError(
         directory.root().string(), "", "",
@@ -60,7 +65,7 @@ const CampaignDirectory& created(const CampaignDirectory& directory, bool force)
 
 // A database that knows of fewer attempts than its backup is an older copy.
 void refuse_older_copy(const CampaignDirectory& directory, Database& database) {
-  const std::filesystem::path backup = newest_backup(directory.backup());
+  const fs::path backup = newest_backup(directory.backup());
   if (kind_of(backup).empty()) return;
   Connection saved(backup.string(), Connection::Access::read_only, 10'000);
   const Extent here = extent_of(database.connection());
@@ -93,10 +98,12 @@ void tell_of_points_left_behind(Database& database, const std::function<void(con
       results, left.size()));
 }
 
+constexpr std::chrono::seconds interval{1};
+
 }  // namespace
 
-ClaimedCampaign::ClaimedCampaign(const std::filesystem::path& file, const std::filesystem::path& chosen,
-                                 bool force, const std::string& accepted_engine)
+ClaimedCampaign::ClaimedCampaign(const fs::path& file, const fs::path& chosen, bool force,
+                                 const std::string& accepted_engine)
     : campaign(read_campaign(file)),
       command(resolve_engine(campaign, file)),
       scenes(check_scenes(campaign, file, command)),
@@ -107,11 +114,8 @@ ClaimedCampaign::ClaimedCampaign(const std::filesystem::path& file, const std::f
 Database open_for_owner(const ClaimedCampaign& claimed, const std::function<void(const std::string&)>& tell) {
   const CampaignDirectory& directory = claimed.directory;
   create_folders(directory);
-  for (const std::filesystem::path& folder :
-       {directory.root(), directory.spool(), directory.left(), directory.checkpoints(), directory.failures(),
-        directory.backup(), directory.requests()}) {
-    remove_unfinished_files(folder);
-  }
+  remove_unfinished_files(directory.root());
+  for (const fs::path& folder : folders_below(directory)) remove_unfinished_files(folder);
   refuse_lost_database(directory);
   try {
     Database database = Database::open_owner(directory.database());
@@ -125,8 +129,8 @@ Database open_for_owner(const ClaimedCampaign& claimed, const std::function<void
   }
 }
 
-OwnedCampaign::OwnedCampaign(const std::filesystem::path& file, const std::filesystem::path& chosen,
-                             bool force, const std::string& accepted_engine)
+OwnedCampaign::OwnedCampaign(const fs::path& file, const fs::path& chosen, bool force,
+                             const std::string& accepted_engine)
     : ClaimedCampaign(file, chosen, force, accepted_engine), database(open_for_owner(*this)) {}
 
 void accept_engine(Ledger& ledger, const Json& engine, RunListener& listener) {
@@ -141,6 +145,61 @@ std::string acceptance_hint(const std::string& verb_and_file, const Json& engine
       ". Run with the engine it was begun with, or accept this one with `peclet {} --accept-engine {}`: what "
       "points that are still to be run have is then kept apart, and they begin again",
       verb_and_file, engine.at("binary_sha256").get<std::string>().substr(0, 12));
+}
+
+FolderWatch::FolderWatch(const CampaignDirectory& directory, const OwnerLock& lock, Database& database,
+                         RunListener& listener)
+    : directory_(directory), lock_(lock), database_(database), listener_(listener) {}
+
+bool FolderWatch::attend(Time now) {
+  if (now - last_ < interval) return false;
+  last_ = now;
+  refuse_move();
+  refuse_deletion();
+  require_own_folders(directory_);
+  return mend_folders();
+}
+
+void FolderWatch::refuse_move() const {
+  const std::optional<fs::path> folder = lock_.folder();
+  std::error_code absent;
+  if (!folder || fs::equivalent(*folder, directory_.root(), absent)) return;
+  throw IntegrityError(
+      fmt::format("{}: was moved to {} while the campaign ran, which stops here; everything that was "
+                  "committed is there: move it back and run again, or go on there with --directory {}",
+                  directory_.root().string(), folder->string(), shell_word(folder->string())));
+}
+
+void FolderWatch::refuse_deletion() const {
+  if (lock_.folder() && fs::exists(directory_.database())) return;
+  const fs::path saved = free_name(directory_.root().string() + ".saved.db");
+  copy_database(database_.connection(), saved);
+  throw IntegrityError(fmt::format(
+      "{}: was deleted while the campaign ran, which stops here; all {} results in it were saved in {}: put "
+      "them back with `peclet restore {} {}`",
+      directory_.database().string(), extent_of(database_.connection()).results, saved.string(),
+      shell_word(saved.string()), shell_word(directory_.root().string())));
+}
+
+bool FolderWatch::mend_folders() const {
+  std::vector<std::string> gone;
+  for (const fs::path& folder : folders_below(directory_)) {
+    // One that went with the folder above it is not named.
+    if (kind_of(folder).empty() && !kind_of(folder.parent_path()).empty())
+      gone.push_back(folder.lexically_relative(directory_.root()).string() + "/");
+  }
+  if (gone.empty()) return false;
+  try {
+    create_folders(directory_);
+  } catch (const fs::filesystem_error& error) {
+    if (!means_machine_fault(error.code().value())) throw;
+    return false;  // looked at again in a second
+  }
+  listener_.warn(
+      fmt::format("{}: somebody deleted {} while the campaign runs; made anew: the database keeps what it "
+                  "has, and a seed whose checkpoint or unbooked result was there runs again",
+                  directory_.root().string(), fmt::join(gone, ", ")));
+  return true;
 }
 
 }  // namespace peclet::runner

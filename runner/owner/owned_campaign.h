@@ -1,10 +1,11 @@
 // A campaign in the hands of the process that may write it.
 #pragma once
 
-#include <filesystem>
+#include <chrono>
 #include <functional>
 #include <string>
 
+#include "runner/campaign/paths.h"
 #include "runner/engines/engine_process.h"
 #include "runner/engines/scene_check.h"
 #include "runner/owner/ledger.h"
@@ -32,7 +33,7 @@ struct ClaimedCampaign {
   // campaign_directory(); `force`: on a network file system, too; `accepted_engine`: a name of the engine
   // here, its version or 6 or more leading digits of its binary's hash, or nothing. Throws InputError before
   // anything is written, OwnedByAnother.
-  ClaimedCampaign(const std::filesystem::path& file, const std::filesystem::path& chosen, bool force,
+  ClaimedCampaign(const fs::path& file, const fs::path& chosen, bool force,
                   const std::string& accepted_engine = "");
 };
 
@@ -44,7 +45,7 @@ Database open_for_owner(
 
 struct OwnedCampaign : ClaimedCampaign {
   Database database;  // has adopted the campaign
-  OwnedCampaign(const std::filesystem::path& file, const std::filesystem::path& chosen, bool force,
+  OwnedCampaign(const fs::path& file, const fs::path& chosen, bool force,
                 const std::string& accepted_engine = "");
 };
 
@@ -54,5 +55,33 @@ void accept_engine(Ledger& ledger, const Json& engine, RunListener& listener);
 // What accepts the engine that an OtherEngine was thrown for: "; accept it with `peclet run FILE
 // --accept-engine 1a2b3c4d5e6f`: ...".
 std::string acceptance_hint(const std::string& verb_and_file, const Json& engine);
+
+// The files that the owner has open live on without their names until it ends, and all that was committed
+// with them: so a database whose name is gone is copied before that. Requires folder and database to be
+// whole.
+class FolderWatch {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  // References must outlive the watch.
+  FolderWatch(const CampaignDirectory& directory, const OwnerLock& lock, Database& database,
+              RunListener& listener);
+
+  // Looks about once a second. Makes folders below anew, says so, and returns whether it did. Throws
+  // IntegrityError when folder or database are no longer where they were: it says what was saved where, and
+  // how to go on.
+  bool attend(Time now);
+
+ private:
+  void refuse_move() const;
+  void refuse_deletion() const;
+  bool mend_folders() const;
+
+  const CampaignDirectory& directory_;
+  const OwnerLock& lock_;
+  Database& database_;
+  RunListener& listener_;
+  Time last_{};
+};
 
 }  // namespace peclet::runner

@@ -16,8 +16,6 @@
 namespace peclet::runner {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr std::chrono::seconds patience{3}, vain_patience{20};
 
 }  // namespace

@@ -5,16 +5,17 @@
 #include <chrono>
 #include <cstdint>
 #include <exception>
-#include <filesystem>
 #include <optional>
 #include <string>
+
+#include "runner/campaign/paths.h"
 
 namespace peclet::runner {
 
 struct Hindrance {
-  std::string text;                // a sentence without its end: what it is
-  std::string end;                 // "when there is room"
-  std::filesystem::path folder{};  // that lacks room for `bytes`; empty: it is not room that is lacking
+  std::string text;   // a sentence without its end: what it is
+  std::string end;    // "when there is room"
+  fs::path folder{};  // that lacks room for `bytes`; empty: it is not room that is lacking
   std::uint64_t bytes = 0;
 
   // Returns what is in the way, the same text for as long as it is: `text` has figures that change. A full
@@ -23,11 +24,11 @@ struct Hindrance {
 };
 
 // Too little room for `bytes` in `folder`, for which `error` is ENOSPC or EDQUOT.
-Hindrance lack_of_room_in(const std::filesystem::path& folder, std::uint64_t bytes, int error);
+Hindrance lack_of_room_in(const fs::path& folder, std::uint64_t bytes, int error);
 
 // The hindrance that an exception tells of, in the way of an owner whose database is in `root`; nothing if it
 // is none that passes. `bytes` were to be written where the exception does not say how many.
-std::optional<Hindrance> hindrance_in(const std::exception& error, const std::filesystem::path& root,
+std::optional<Hindrance> hindrance_in(const std::exception& error, const fs::path& root,
                                       std::uint64_t bytes = 0);
 
 class Pause {
@@ -45,7 +46,7 @@ class Pause {
 
   // Why waiting in the campaign's folder `root` is in vain; "" unless that has been so for twenty seconds,
   // in which workers may have ended and freed what they had.
-  std::string in_vain(const std::filesystem::path& root, Time now);
+  std::string in_vain(const fs::path& root, Time now);
 
  private:
   std::optional<Hindrance> hindrance_;

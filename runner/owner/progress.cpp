@@ -1,19 +1,17 @@
 #include "runner/owner/progress.h"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <spdlog/details/null_mutex.h>
-#include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/ansicolor_sink.h>
-#include <spdlog/sinks/base_sink.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 
 #include "runner/campaign/number_text.h"
-#include "runner/store/rotating_file.h"
 
 namespace peclet::runner {
 
@@ -38,25 +36,9 @@ std::size_t terminal_width() {
   return size.ws_col;
 }
 
-constexpr std::uint64_t largest_file = 4 << 20;
-constexpr int older_files = 4;
+constexpr std::uint64_t largest_log = 4 << 20;
+constexpr int older_logs = 4;
 constexpr double seconds_between_entries = 600;
-
-class FileSink : public spdlog::sinks::base_sink<spdlog::details::null_mutex> {
- public:
-  explicit FileSink(const std::filesystem::path& path) : file_(path, largest_file, older_files) {}
-
- protected:
-  void sink_it_(const spdlog::details::log_msg& message) override {
-    spdlog::memory_buf_t line;
-    formatter_->format(message, line);
-    file_.append({line.data(), line.size()});
-  }
-  void flush_() override {}
-
- private:
-  RotatingFile file_;
-};
 
 }  // namespace
 
@@ -126,30 +108,33 @@ void Progress::report(const RunReport& report) {
   }
 }
 
-RunLog::RunLog(const std::filesystem::path& file, RunListener& audience)
-    : audience_(audience), log_(std::make_shared<spdlog::logger>("log", std::make_shared<FileSink>(file))) {
-  log_->set_formatter(std::make_unique<spdlog::pattern_formatter>("%Y-%m-%dT%H:%M:%S.%eZ %l %v",
-                                                                  spdlog::pattern_time_type::utc));
+RunLog::RunLog(const fs::path& file, RunListener& audience)
+    : audience_(audience), file_(file, largest_log, older_logs) {}
+
+void RunLog::write(const char* level, const std::string& message) {
+  using namespace std::chrono;
+  const auto now = system_clock::now();
+  const auto millisecond = duration_cast<milliseconds>(now.time_since_epoch()).count() % 1000;
+  file_.append(fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z {} {}\n", fmt::gmtime(system_clock::to_time_t(now)),
+                           millisecond, level, message));
 }
 
 void RunLog::note(const std::string& message) {
-  log_->info(message);
+  write("info", message);
   audience_.note(message);
 }
 
 void RunLog::warn(const std::string& message) {
-  log_->warn(message);
+  write("warning", message);
   audience_.warn(message);
 }
 
 void RunLog::report(const RunReport& report) {
   if (report.elapsed >= next_report_) {
-    log_->info(progress_line(report));
+    write("info", progress_line(report));
     next_report_ = report.elapsed + seconds_between_entries;
   }
   audience_.report(report);
 }
-
-void RunLog::record(const std::string& message) { log_->info(message); }
 
 }  // namespace peclet::runner

@@ -4,11 +4,12 @@
 
 #include <spdlog/logger.h>
 
-#include <filesystem>
 #include <memory>
 #include <string>
 
+#include "runner/campaign/paths.h"
 #include "runner/owner/run_listener.h"
+#include "runner/store/rotating_file.h"
 
 namespace peclet::runner {
 
@@ -39,11 +40,12 @@ class Progress : public RunListener {
   double next_line_ = 0;  // seconds of the run at which a log line is due
 };
 
-// Writes down what a run tells, and passes it on.
+// The run's own log, logs/peclet.log: one line an event, times in UTC, bounded in size. Writes down what a
+// run tells, and passes it on.
 class RunLog : public RunListener {
  public:
   // `audience` must outlive the log.
-  RunLog(const std::filesystem::path& file, RunListener& audience);
+  RunLog(const fs::path& file, RunListener& audience);
 
   void note(const std::string& message) override;
   void warn(const std::string& message) override;
@@ -51,11 +53,13 @@ class RunLog : public RunListener {
   void report(const RunReport& report) override;  // into the file once in ten minutes
 
   // For the file alone: how the run began and ended.
-  void record(const std::string& message);
+  void record(const std::string& message) { write("info", message); }
 
  private:
+  void write(const char* level, const std::string& message);
+
   RunListener& audience_;
-  std::shared_ptr<spdlog::logger> log_;
+  RotatingFile file_;
   double next_report_ = 0;  // seconds of the run
 };
 

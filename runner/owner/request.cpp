@@ -23,8 +23,6 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Retry, points, seeds)
 
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr int request_version = 1;
 // Of the names of a thousand points and their seeds there are some 100 kB.
 constexpr std::uint64_t largest_request = 1 << 20;

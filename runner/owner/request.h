@@ -2,7 +2,6 @@
 // durably by the verb and removed by the owner when it has carried it out.
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -10,13 +9,14 @@
 #include <vector>
 
 #include "contract/key_table.h"
+#include "runner/campaign/paths.h"
 #include "runner/store/campaign_directory.h"
 
 namespace peclet::runner {
 
 // The campaign is that of its file from now on.
 struct TakeOver {
-  std::filesystem::path file;
+  fs::path file;
   std::string sha256;  // of the text whose scenes the engine has been asked about
 };
 // Points are named as people name them: by label, or by digits of the hash.
@@ -53,15 +53,15 @@ class RequestError : public std::runtime_error {
 Request write_request(const CampaignDirectory& directory, const Wish& wish);
 
 // Throws RequestError.
-Request read_request(const std::filesystem::path& file);
+Request read_request(const fs::path& file);
 
-std::filesystem::path request_file(const CampaignDirectory& directory, const std::string& name);
+fs::path request_file(const CampaignDirectory& directory, const std::string& name);
 
 // The requests that wait, oldest first.
-std::vector<std::filesystem::path> waiting_requests(const CampaignDirectory& directory);
+std::vector<fs::path> waiting_requests(const CampaignDirectory& directory);
 
 // Gives a file that is no request a name under which it waits no longer, and says where it is now. Nothing:
 // it may not be moved.
-std::optional<std::filesystem::path> set_request_aside(const std::filesystem::path& file);
+std::optional<fs::path> set_request_aside(const fs::path& file);
 
 }  // namespace peclet::runner

@@ -13,12 +13,21 @@
 #include "contract/sha256.h"
 #include "runner/campaign/number_text.h"
 #include "runner/campaign/quoting.h"
+#include "runner/store/point_store.h"
+#include "runner/store/seed_store.h"
 
 namespace peclet::runner {
 
 namespace {
 
-namespace fs = std::filesystem;
+template <typename Item>
+std::string listed(const std::vector<Item>& items, const char* separator = ", ") {
+  constexpr std::size_t most = 12;
+  const auto shown = static_cast<std::ptrdiff_t>(std::min(most, items.size()));
+  std::string text = fmt::format("{}", fmt::join(items.begin(), items.begin() + shown, separator));
+  if (items.size() > most) text += fmt::format("{}and {} more", separator, items.size() - most);
+  return text;
+}
 
 // "10 0.5" of "peclet=10 volume_fraction=0.5": what stands in the row of a table.
 std::string values_in(const std::string& label) {
@@ -68,17 +77,6 @@ void check_named(Database& database, const std::vector<PointRecord>& points, con
   }
 }
 
-template <typename Item>
-std::string listed(const std::vector<Item>& items, const char* separator = ", ") {
-  constexpr std::size_t most = 12;
-  const auto shown = static_cast<std::ptrdiff_t>(std::min(most, items.size()));
-  std::string text = fmt::format("{}", fmt::join(items.begin(), items.begin() + shown, separator));
-  if (items.size() > most) text += fmt::format("{}and {} more", separator, items.size() - most);
-  return text;
-}
-
-std::string plural(std::size_t count) { return fmt::format("{} seed{}", count, count == 1 ? "" : "s"); }
-
 void compare(std::vector<std::string>& changes, const char* what, const std::string& before,
              const std::string& after) {
   if (before != after) changes.push_back(fmt::format("{} {} -> {}", what, before, after));
@@ -101,20 +99,18 @@ void compare_realisations(std::vector<std::string>& changes, const TargetRecord&
 
 std::string exact_percent(double share) { return fmt::format("{:.6g} %", 100 * share); }
 
-std::string points_text(std::ptrdiff_t count, const char* what) {
-  return fmt::format("{} point{} {}", count, count == 1 ? "" : "s", what);
-}
-
 void compare_points(std::vector<std::string>& changes, Database& database, const Campaign& campaign) {
   std::set<std::string> before, after;
   for (const PointRecord& point : database.points()) before.insert(point.hash);
   for (const StatePoint& point : campaign.points) after.insert(point.hash);
   const auto missing_in = [](const std::set<std::string>& those, const std::set<std::string>& these) {
-    return std::count_if(these.begin(), these.end(),
-                         [&](const std::string& hash) { return !those.contains(hash); });
+    return static_cast<std::size_t>(std::count_if(
+        these.begin(), these.end(), [&](const std::string& hash) { return !those.contains(hash); }));
   };
-  if (const auto added = missing_in(before, after); added > 0) changes.push_back(points_text(added, "added"));
-  if (const auto left = missing_in(after, before); left > 0) changes.push_back(points_text(left, "left out"));
+  if (const auto added = missing_in(before, after); added > 0)
+    changes.push_back(counted(added, "point") + " added");
+  if (const auto left = missing_in(after, before); left > 0)
+    changes.push_back(counted(left, "point") + " left out");
 }
 
 // One that is larger is not taken over while the campaign runs; `peclet run` reads it.
@@ -131,11 +127,9 @@ std::vector<PointRecord> named(const std::vector<PointRecord>& points,
 }
 
 std::string labels(const std::vector<PointRecord>& points) {
-  constexpr std::size_t most = 12;
   std::vector<std::string> labels;
-  for (std::size_t i = 0; i < std::min(most, points.size()); ++i) labels.push_back(points[i].label);
-  if (points.size() > most) labels.push_back(fmt::format("and {} more", points.size() - most));
-  return fmt::format("{}", fmt::join(labels, ", "));
+  for (const PointRecord& point : points) labels.push_back(point.label);
+  return listed(labels);
 }
 
 std::optional<std::int64_t> only(const std::vector<PointRecord>& points) {
@@ -171,9 +165,10 @@ RetryPlan plan_retry(Database& database, const std::vector<PointRecord>& points,
     plan.seeds[point.id] = std::move(chosen);
   }
   plan.message = retried == 0 ? "no seed was given up: there is nothing to retry"
-                              : fmt::format("{} queued again, with a clean record: {}", plural(retried),
-                                            listed(where, "; "));
-  if (failed > 0 && seeds.empty()) plan.message += fmt::format("; {} {}", plural(failed), would_repeat);
+                              : fmt::format("{} queued again, with a clean record: {}",
+                                            counted(retried, "seed"), listed(where, "; "));
+  if (failed > 0 && seeds.empty())
+    plan.message += fmt::format("; {} {}", counted(failed, "seed"), would_repeat);
   return plan;
 }
 
@@ -224,7 +219,7 @@ bool RequestHandler::carry_out() {
     if (left_alone_.contains(file)) continue;
     try {
       const Request request = read_request(file);
-      if (!events_.has_answered(request.name)) {
+      if (!EventStore(database_.connection()).has_answered(request.name)) {
         carry_out(request);
         any = true;
       }
@@ -249,7 +244,7 @@ void RequestHandler::carry_out(const Request& request) {
     Transaction booking(database_.connection());
     Done done = std::visit([&](const auto& wish) { return apply(wish); }, request.wish);
     ledger_.refresh();
-    events_.write(done.kind, done.point, std::nullopt, done.message, request.name);
+    EventStore(database_.connection()).write(done.kind, done.point, std::nullopt, done.message, request.name);
     booking.commit();
     ledger_.after_commit();
     listener_.note(fmt::format("{}: {}", done.kind, done.message));
@@ -260,13 +255,9 @@ void RequestHandler::carry_out(const Request& request) {
     why = fmt::format("{}: stop the run first, then `peclet run` says how to accept it", error.what());
   }
   ledger_.roll_back();
-  refuse(request, why);
-}
-
-void RequestHandler::refuse(const Request& request, const std::string& why) {
-  Transaction booking(database_.connection());
-  events_.write("refused", std::nullopt, std::nullopt, why, request.name);
-  booking.commit();
+  Transaction refusal(database_.connection());
+  EventStore(database_.connection()).write("refused", std::nullopt, std::nullopt, why, request.name);
+  refusal.commit();
   listener_.note("a request is refused: " + why);
 }
 
@@ -294,13 +285,13 @@ RequestHandler::Done RequestHandler::apply(const TakeOver& wish) {
 
 RequestHandler::Done RequestHandler::apply(const Prioritise& wish) {
   const std::vector<PointRecord> points = named(database_.points(), wish.points);
-  for (const PointRecord& point : points) rows_.set_priority(point.id, wish.priority);
+  for (const PointRecord& point : points) PointStore(database_).set_priority(point.id, wish.priority);
   return {"set", fmt::format("priority {}: {}", wish.priority, labels(points)), only(points)};
 }
 
 RequestHandler::Done RequestHandler::apply(const Cancel& wish) {
   const std::vector<PointRecord> points = named(database_.points(), wish.points);
-  for (const PointRecord& point : points) rows_.set_cancelled(point.id, !wish.undo);
+  for (const PointRecord& point : points) PointStore(database_).set_cancelled(point.id, !wish.undo);
   return {"cancel", fmt::format("{}: {}", wish.undo ? "taken up again" : "no more seeds", labels(points)),
           only(points)};
 }
@@ -310,7 +301,7 @@ RequestHandler::Done RequestHandler::apply(const Retry& wish) {
   const std::vector<PointRecord> points = wish.points.empty() ? all : named(all, wish.points);
   const RetryPlan plan = plan_retry(database_, points, wish.seeds);
   for (const auto& [point, seeds] : plan.seeds) {
-    for (const int seed : seeds) seeds_.retry(point, seed);
+    for (const int seed : seeds) SeedStore(database_).retry(point, seed);
   }
   return {"retry", plan.message, only(points)};
 }

@@ -4,19 +4,17 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <map>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "runner/campaign/paths.h"
 #include "runner/owner/ledger.h"
 #include "runner/owner/request.h"
 #include "runner/owner/run_listener.h"
 #include "runner/store/campaign_directory.h"
 #include "runner/store/database.h"
-#include "runner/store/point_store.h"
-#include "runner/store/seed_store.h"
 
 namespace peclet::runner {
 
@@ -29,13 +27,7 @@ class RequestHandler {
  public:
   // All references must outlive it.
   RequestHandler(Database& database, Ledger& ledger, CampaignDirectory directory, RunListener& listener)
-      : database_(database),
-        seeds_(database),
-        rows_(database),
-        events_(database.connection()),
-        ledger_(ledger),
-        directory_(std::move(directory)),
-        listener_(listener) {}
+      : database_(database), ledger_(ledger), directory_(std::move(directory)), listener_(listener) {}
 
   bool any_waits() const { return !waiting_requests(directory_).empty(); }
 
@@ -56,16 +48,12 @@ class RequestHandler {
   Done apply(const Prioritise& wish);
   Done apply(const Cancel& wish);
   Done apply(const Retry& wish);
-  void refuse(const Request& request, const std::string& why);
 
   Database& database_;
-  SeedStore seeds_;
-  PointStore rows_;
-  EventStore events_;
   Ledger& ledger_;
   CampaignDirectory directory_;
   RunListener& listener_;
-  std::set<std::filesystem::path> left_alone_;  // no requests, and could not be set aside
+  std::set<fs::path> left_alone_;  // no requests, and could not be set aside
 };
 
 }  // namespace peclet::runner

@@ -1,11 +1,11 @@
 // What a run tells about itself. The dispatcher reports; progress.cpp alone puts it into words on a terminal.
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <variant>
 
+#include "runner/campaign/paths.h"
 #include "runner/statistics/cohorts.h"
 #include "runner/statistics/forecast.h"
 #include "runner/store/blame.h"
@@ -15,7 +15,7 @@ namespace peclet::runner {
 // What happens in a run, for programs that follow it: schema/events.schema.json describes each as JSON.
 struct RunBegan {
   std::string campaign;
-  std::filesystem::path directory;
+  fs::path directory;
   int process = 0, points = 0, workers = 0, threads = 0;
 };
 

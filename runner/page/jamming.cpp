@@ -19,7 +19,7 @@
 #include "runner/owner/open_campaign.h"
 #include "runner/page/swept.h"
 #include "runner/statistics/cohorts.h"
-#include "runner/store/own_files.h"
+#include "runner/store/campaign_directory.h"
 
 namespace peclet::runner {
 namespace {

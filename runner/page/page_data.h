@@ -13,7 +13,7 @@
 #include "contract/json.h"
 #include "runner/reports/status.h"
 #include "runner/store/database.h"
-#include "runner/store/vocabulary.h"
+#include "runner/store/point_store.h"
 
 namespace peclet::runner {
 

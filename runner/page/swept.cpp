@@ -8,7 +8,7 @@
 
 #include "contract/errors.h"
 #include "contract/text.h"
-#include "runner/store/vocabulary.h"
+#include "runner/store/point_store.h"
 
 namespace peclet::runner {
 namespace {

@@ -53,7 +53,7 @@ struct Totals {
   Expected<double> seeds, cpu_seconds, cpu_seconds_to_come, wall_seconds_to_come;
 };
 
-// What a realisation of one point may cost where none has ended: see cost_trial.h.
+// What a realisation of one point may cost where none has ended: see scene_check.h.
 struct CostGuess {
   std::size_t point = 0;  // place in the sweep
   double seconds = 0;

@@ -64,8 +64,8 @@ struct Look {
   Estimate controlled;               // of value + control
   double controlled_half_width = 0;  // the rule's: see stop_rule.h; NaN where there is no interval
   double skewness = std::numeric_limits<double>::quiet_NaN();  // of value + control
-  bool transient = false;  // the beginning of the window differs from its end: see transient.h
-  bool untested = false;   // for transients: lacks_blocks(), see transient.h; made again, never stored
+  bool transient = false;  // the beginning of the window differs from its end: see window_advice.h
+  bool untested = false;   // for transients: lacks_blocks(), see window_advice.h; made again, never stored
   Verdict verdict = Verdict::more;
   // Made again, never stored: the convergence may be luck (is_near_maximum()), and seeds that are no
   // independent ones (repeated_seeds()).

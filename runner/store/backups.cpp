@@ -22,8 +22,6 @@
 namespace peclet::runner {
 namespace {
 
-namespace fs = std::filesystem;
-
 // Copied at a time, with a breath in between: the owner's commits go to the same disk.
 constexpr std::int64_t bytes_at_a_time = 1 << 20;
 constexpr std::chrono::milliseconds breath{1};
@@ -138,7 +136,7 @@ Contents campaign_in(const fs::path& path) {
   }
 }
 
-Contents examine(const std::filesystem::path& path) {
+Contents examine(const fs::path& path) {
   Connection database(path.string(), Connection::Access::read_only, 10'000);
   if (!is_campaign_database(database)) {
     throw IntegrityError(path.string() + ": is no database of a peclet campaign");

@@ -3,11 +3,11 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <string>
 
 #include "contract/json.h"
+#include "runner/campaign/paths.h"
 #include "runner/store/campaign_directory.h"
 #include "runner/store/sqlite.h"
 
@@ -18,11 +18,11 @@ namespace peclet::runner {
 // foreign_key_check) and durable before it gets its name, and replaces what had that name; `amend` may add to
 // it before that. Throws IntegrityError (the source is damaged), DatabaseError, std::system_error; nothing is
 // left behind then.
-void copy_database(const std::filesystem::path& from, const std::filesystem::path& to,
+void copy_database(const fs::path& from, const fs::path& to,
                    const std::function<void(Connection& copy)>& amend);
 
 // The same from a connection that is in no transaction, whose file may have lost its name.
-void copy_database(Connection& from, const std::filesystem::path& to,
+void copy_database(Connection& from, const fs::path& to,
                    const std::function<void(Connection& copy)>& amend = {});
 
 // What is wrong inside a database: the first complaint of integrity_check or foreign_key_check, or "".
@@ -45,13 +45,13 @@ struct Contents : Extent {
 };
 
 // Returns the same without extent, document and check; nothing of a damaged database.
-Contents campaign_in(const std::filesystem::path& database);
+Contents campaign_in(const fs::path& database);
 
 // Checks a whole database and says what it holds. Throws IntegrityError, DatabaseError.
-Contents examine(const std::filesystem::path& database);
+Contents examine(const fs::path& database);
 
-std::filesystem::path newest_backup(const std::filesystem::path& folder);
-std::filesystem::path previous_backup(const std::filesystem::path& folder);
+fs::path newest_backup(const fs::path& folder);
+fs::path previous_backup(const fs::path& folder);
 
 // Throws IntegrityError when the database of a campaign that has backups is gone or empty: starting afresh
 // would in time replace them. Throws UnsuitableFile when something else bears its name.

@@ -51,12 +51,17 @@ struct SeedFate {
 // answer to a realisation that does not fit into memory looks like that) end it all the same.
 SeedFate judge(std::span<const PastAttempt> attempts, int retries);
 
-// How an attempt at a seed went on a node.
-struct AttemptReport {
-  AttemptOutcome outcome = AttemptOutcome::running;
+struct AttemptEnd {
+  AttemptOutcome outcome = AttemptOutcome::result;
   std::int64_t step = 0;
   ExitStatus ending{};
-  std::string message{}, host{}, started_at{};
+  std::string message{};
+  double held_seconds = 0;  // processor time at most: that it lasted, times its threads
+};
+
+// How an attempt at a seed went on a node.
+struct AttemptReport : AttemptEnd {
+  std::string host{}, started_at{};
   std::int64_t process = 0;
   Json engine{};  // provenance
 };

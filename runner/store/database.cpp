@@ -80,25 +80,21 @@ void create_tables(Connection& connection) {
   connection.empty_log();  // what is to become larger later has its place now
 }
 
-bool may_write(const std::filesystem::path& folder) {
-  return faccessat(AT_FDCWD, folder.c_str(), W_OK, AT_EACCESS) == 0;
-}
+bool may_write(const fs::path& folder) { return faccessat(AT_FDCWD, folder.c_str(), W_OK, AT_EACCESS) == 0; }
 
-bool may_read(const std::filesystem::path& file) {
-  return faccessat(AT_FDCWD, file.c_str(), R_OK, AT_EACCESS) == 0;
-}
+bool may_read(const fs::path& file) { return faccessat(AT_FDCWD, file.c_str(), R_OK, AT_EACCESS) == 0; }
 
 // A log of some 4 MB, and less on a small disk: a full one whose log takes most of it has no room to bring
 // the log into the database either, and nobody could ever go on.
-int pages_of_log(const std::filesystem::path& database) {
+int pages_of_log(const fs::path& database) {
   constexpr std::uintmax_t page = 16384, part = 8, least = 8, most = 250;
-  const std::uintmax_t available = std::filesystem::space(database.parent_path()).available;
+  const std::uintmax_t available = fs::space(database.parent_path()).available;
   return static_cast<int>(std::clamp(available / (part * page), least, most));
 }
 
 // SQLite keeps an index of its log beside a database that somebody reads, and cannot where nothing may be
 // written.
-std::unique_ptr<Connection> connection_of_reader(const std::filesystem::path& path) {
+std::unique_ptr<Connection> connection_of_reader(const fs::path& path) {
   constexpr int busy_milliseconds = 5'000;
   const bool is_frozen = is_frozen_for_us(path);
   try {
@@ -144,10 +140,10 @@ std::vector<PointRecord> read_points(Connection& connection, const std::string& 
                        Json::parse(row.text(4)),
                        row.text(5),
                        row.text(6),
-                       row.integer(7) != 0,
+                       row.flag(7),
                        row.number(8),
-                       row.integer(9) != 0,
-                       row.integer(10) != 0};
+                       row.flag(9),
+                       row.flag(10)};
   });
 }
 
@@ -184,7 +180,7 @@ Look read_look(const Statement& query) {
   look.estimate.values = stored_values(look.estimate, look.half_width);
   look.verdict = stored_verdict(query.text(9));
   look.skewness = query.real(10);
-  look.transient = query.integer(11) != 0;
+  look.transient = query.flag(11);
   look.each = stored_observables(query.text(12));
   look.untested =
       std::any_of(look.each.begin(), look.each.end(), [](const ObservableLook& one) { return one.untested; });
@@ -210,7 +206,7 @@ constexpr const char* result_columns =
 
 }  // namespace
 
-bool is_frozen_for_us(const std::filesystem::path& path) {
+bool is_frozen_for_us(const fs::path& path) {
   return kind_of(path.string() + "-wal").empty() && !may_write(path.parent_path());
 }
 
@@ -258,7 +254,7 @@ SeedState seed_state(const std::string& text) {
 
 Database::Database(std::unique_ptr<Connection> connection) : connection_(std::move(connection)) {}
 
-Database Database::open_owner(const std::filesystem::path& path) {
+Database Database::open_owner(const fs::path& path) {
   // Readers never hold a lock that blocks the writer in WAL mode; only a checkpoint may have to wait.
   Database database(std::make_unique<Connection>(path.string(), Connection::Access::create, 10'000));
   Connection& connection = database.connection();
@@ -282,7 +278,7 @@ Database Database::open_owner(const std::filesystem::path& path) {
   return database;
 }
 
-Database Database::open_reader(const std::filesystem::path& path) {
+Database Database::open_reader(const fs::path& path) {
   if (kind_of(path).empty()) {
     throw InputError(path.string(), "", "",
                      "no such database; has the campaign been started with `peclet run`?");
@@ -380,8 +376,8 @@ std::vector<AttemptRecord> Database::attempts(std::int64_t point) {
                          row.text(4),
                          row.text(5),
                          row.text(6),
-                         row.integer(7) != 0,
-                         row.integer(8) != 0,
+                         row.flag(7),
+                         row.flag(8),
                          row.integer(9),
                          row.optional_integer(10),
                          row.optional_integer(11),

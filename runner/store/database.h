@@ -7,7 +7,6 @@
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
@@ -18,6 +17,7 @@
 #include "contract/errors.h"
 #include "contract/json.h"
 #include "runner/campaign/campaign.h"
+#include "runner/campaign/paths.h"
 #include "runner/statistics/forecast.h"
 #include "runner/store/sqlite.h"
 
@@ -158,7 +158,7 @@ std::string other_version(Connection& connection);
 // Whether a reader reads this database without locks and without a log: there is no log, and its folder may
 // not be written, so that a run of ours cannot write it. Its owner may: what is read while a run begins may
 // then look damaged.
-bool is_frozen_for_us(const std::filesystem::path& path);
+bool is_frozen_for_us(const fs::path& path);
 
 // A file that calls itself a campaign's database may have been made by anybody: where a table should be there
 // may be a view that never ends, and a trigger may write what nobody asked for. Nothing of such a file is
@@ -180,11 +180,11 @@ class Database {
   // Opens or creates the database for its owner. Requires the campaign's lock.
   // Throws IntegrityError for a file that is no campaign database or is damaged, InputError for one of
   // another version, and DatabaseError.
-  static Database open_owner(const std::filesystem::path& path);
+  static Database open_owner(const fs::path& path);
   // Opens it for reading. All that one Database reads is one snapshot, taken at the first read.
   // In a folder that may not be written, and without a log, the file is read as it is. Throws as above;
   // InputError when there is no such file, or a log beside it that cannot be read there.
-  static Database open_reader(const std::filesystem::path& path);
+  static Database open_reader(const fs::path& path);
 
   CampaignRecord campaign();
   // The points that the sweep contains, in its order.

@@ -86,12 +86,6 @@ CountsByPoint counts_by_point(Connection& connection, const char* sql) {
   return counts;
 }
 
-CountsByPoint read_losses(Connection& connection) {
-  return counts_by_point(connection,
-                         "SELECT point_id, cause, count(*) FROM realisation WHERE state IN ('failed',"
-                         " 'quarantined') GROUP BY point_id, cause");
-}
-
 // What engines said of results without a value, and the last attempts of seeds that were given up.
 std::map<std::int64_t, std::map<std::string, std::string>> read_loss_reasons(Connection& connection) {
   Statement query(
@@ -107,12 +101,6 @@ std::map<std::int64_t, std::map<std::string, std::string>> read_loss_reasons(Con
                                       fmt::format("{} (seed {})", query.text(4), query.integer(2)));
   }
   return reasons;
-}
-
-CountsByPoint read_flags(Connection& connection) {
-  return counts_by_point(connection,
-                         "SELECT point_id, message, count(DISTINCT seed) FROM event WHERE kind = 'flag'"
-                         " GROUP BY point_id, message");
 }
 
 // Returns, by point, the largest number of seeds at a look that was made for an earlier target of the
@@ -173,9 +161,13 @@ std::vector<PointSummary> summarise_points(Database& database, const TargetRecor
   Connection& connection = database.connection();
   std::map<std::int64_t, Aggregate> aggregates = read_aggregates(connection);
   std::map<std::int64_t, std::vector<Look>> looks = database.looks_by_point();
-  CountsByPoint losses = read_losses(connection);
+  CountsByPoint losses = counts_by_point(connection,
+                                         "SELECT point_id, cause, count(*) FROM realisation WHERE state IN "
+                                         "('failed', 'quarantined') GROUP BY point_id, cause");
   std::map<std::int64_t, std::map<std::string, std::string>> reasons = read_loss_reasons(connection);
-  CountsByPoint flags = read_flags(connection);
+  CountsByPoint flags = counts_by_point(connection,
+                                        "SELECT point_id, message, count(DISTINCT seed) FROM event WHERE "
+                                        "kind = 'flag' GROUP BY point_id, message");
   const bool any_apart = connection.integer("SELECT count(*) FROM point WHERE kept_apart = 1") > 0;
   std::map<std::int64_t, int> earlier = read_largest_earlier_looks(connection);
   const std::map<std::int64_t, StoredPrediction> predictions = database.predictions();
@@ -191,17 +183,14 @@ std::vector<PointSummary> summarise_points(Database& database, const TargetRecor
     summary.losses = std::move(losses[point.id]);
     summary.loss_reasons = std::move(reasons[point.id]);
     summary.flags = std::move(flags[point.id]);
-    if (const auto known = looks.find(point.id); known != looks.end())
-      summary.looks = std::move(known->second);
+    summary.looks = std::move(looks[point.id]);
     if (!summary.looks.empty() && summary.looks.back().each.empty()) {
       summary.looks.back().untested = aggregate.lacks_blocks_of(summary.looks.back());
     }
     make_again(database, point, target, summary);
-    const int last_look =
-        summary.looks.empty() ? std::numeric_limits<int>::max() : summary.looks.back().seeds;
-    summary.endings = aggregate.endings_below(last_look);
-    summary.decided = !summary.looks.empty() && summary.looks.back().verdict != Verdict::more;
     const int seen = summary.looks.empty() ? 0 : summary.looks.back().seeds;
+    summary.endings = aggregate.endings_below(summary.looks.empty() ? std::numeric_limits<int>::max() : seen);
+    summary.decided = !summary.looks.empty() && summary.looks.back().verdict != Verdict::more;
     if (target.target.has_tolerance() && summary.decided && earlier[point.id] > seen)
       summary.earlier_look = earlier[point.id];
     summary.wanted = summary.decided ? seen : *std::upper_bound(schedule.begin(), schedule.end() - 1, seen);

@@ -16,8 +16,6 @@
 namespace peclet::runner {
 namespace {
 
-namespace fs = std::filesystem;
-
 // Less than this is no room: a campaign that goes on with the last free block stops again at the next result.
 constexpr std::uint64_t least = 1 << 20;
 // More than this is not tried, so that looking costs nothing.

@@ -7,8 +7,6 @@
 
 namespace peclet::runner {
 
-namespace fs = std::filesystem;
-
 // Signals are for the thread that waits for them.
 FileRemoval::FileRemoval() {
   sigset_t all, before;

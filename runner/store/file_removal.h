@@ -6,11 +6,12 @@
 #pragma once
 
 #include <condition_variable>
-#include <filesystem>
 #include <mutex>
 #include <system_error>
 #include <thread>
 #include <vector>
+
+#include "runner/campaign/paths.h"
 
 namespace peclet::runner {
 
@@ -23,7 +24,7 @@ class FileRemoval {
 
   // Removes the files soon, in this order; one that is not there is no matter. Throws std::system_error for
   // an earlier one that could not be removed.
-  void add(const std::vector<std::filesystem::path>& files);
+  void add(const std::vector<fs::path>& files);
   // Returns when none is left. Throws as add().
   void finish();
 
@@ -33,9 +34,9 @@ class FileRemoval {
 
   std::mutex mutex_;  // of all below
   std::condition_variable changed_;
-  std::vector<std::filesystem::path> files_;
+  std::vector<fs::path> files_;
   bool busy_ = false, ends_ = false;
-  std::filesystem::path path_;  // that could not be removed, and why
+  fs::path path_;  // that could not be removed, and why
   std::error_code error_;
   std::thread thread_;
 };

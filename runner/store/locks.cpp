@@ -48,8 +48,6 @@ std::int64_t process_that_locks(std::uint64_t inode, const std::string& kind, st
 
 namespace {
 
-namespace fs = std::filesystem;
-
 // Whether the file still has its name.
 bool is_there(int descriptor, const fs::path& file) {
   struct stat held {

@@ -2,12 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <stdexcept>
 #include <string>
 
 #include "contract/durable_file.h"
+#include "runner/campaign/paths.h"
 #include "runner/store/campaign_directory.h"
 
 namespace peclet::runner {
@@ -25,7 +25,7 @@ std::int64_t process_that_locks(std::uint64_t inode, const std::string& kind, st
 class FileLock {
  public:
   // Throws std::system_error naming the path.
-  explicit FileLock(const std::filesystem::path& path);
+  explicit FileLock(const fs::path& path);
 
  private:
   Descriptor file_;
@@ -47,7 +47,7 @@ class OwnerLock {
   explicit OwnerLock(const CampaignDirectory& directory);
 
   // Where the folder is now: another place when it was moved; nothing when it was deleted.
-  std::optional<std::filesystem::path> folder() const;
+  std::optional<fs::path> folder() const;
 
  private:
   Descriptor folder_, file_;

@@ -1,10 +1,11 @@
-// The campaign, its points and its events in the database.
+// The campaign, its points, its events and the words of its engine in the database.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 #include <string>
 
+#include "contract/json.h"
 #include "runner/store/database.h"
 #include "runner/store/sqlite.h"
 
@@ -20,6 +21,9 @@ class EventStore {
   // `request`: the name of the request that caused it, "" when none did.
   void write(const std::string& kind, std::optional<std::int64_t> point, std::optional<int> seed,
              const std::string& message, const std::string& request = "");
+  void write(const std::string& kind, const std::string& message) {
+    write(kind, std::nullopt, std::nullopt, message);
+  }
   // Whether the request has been carried out, or refused.
   bool has_answered(const std::string& request);
 
@@ -62,5 +66,31 @@ class PointStore {
   Connection& connection_;
   EventStore events_;
 };
+
+class Vocabulary {
+ public:
+  // Knows no names.
+  Vocabulary() = default;
+  // From the members "scene_schema" and "derived" of a checked_frame(), both optional; other members are left
+  // out.
+  explicit Vocabulary(const Json& hello);
+
+  // {"pointer", "words", "symbol", "unit", "meaning"}: texts, "" where the engine says nothing.
+  Json key(const std::string& pointer) const;
+  // Numbers by name in the order in which people look for them: [{"name", "words", "symbol", "unit"}].
+  Json derived() const { return document_.value("derived", Json::array()); }
+
+  // The two members, as they are kept.
+  const Json& document() const { return document_; }
+
+ private:
+  Json document_ = Json::object();
+};
+
+// Replaces what an earlier engine has said; within a Transaction of its own.
+void keep_vocabulary(Database& database, const Vocabulary& vocabulary);
+
+// Knows no names in a campaign that no engine has spoken for.
+Vocabulary kept_vocabulary(Database& database);
 
 }  // namespace peclet::runner

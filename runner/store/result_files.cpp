@@ -24,8 +24,6 @@ namespace peclet::runner {
 
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr const char* letters_and_digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789";
 
 // Neither hidden nor an option, no path, and not how unfinished files are called.
@@ -61,7 +59,7 @@ std::vector<FileRecord> files_where(Connection& connection, const char* conditio
       point_id, seed);
   return query.rows([](const Statement& row) {
     const LeftFile file{row.text(3), static_cast<std::uint64_t>(row.integer(4)), row.text(5)};
-    return checked({row.text(0), row.integer(1), row.number(2), file, row.integer(6) != 0});
+    return checked({row.text(0), row.integer(1), row.number(2), file, row.flag(6)});
   });
 }
 
@@ -197,7 +195,7 @@ bool belongs_to_another(const fs::path& path, const RealisationResult& result) {
   return parts[1] != result.point.substr(0, 16) || std::stoi(parts[2]) != result.seed;
 }
 
-CampaignDirectory home_of_spool_file(const std::filesystem::path& path) {
+CampaignDirectory home_of_spool_file(const fs::path& path) {
   return CampaignDirectory(path.parent_path().parent_path());
 }
 

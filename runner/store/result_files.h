@@ -1,4 +1,5 @@
-// Files that a realisation leaves beside its result, which lists them with their sizes and hashes.
+// The spool, which holds durable results that the owner has not committed yet, and the files that a
+// realisation leaves beside its result, which lists them with their sizes and hashes.
 //
 // An engine makes them durable before the result: beside SPOOL/STEM.json they are SPOOL/files/STEM@NAME. No
 // name has an "@", so that no two jobs, and no two attempts at a seed, have a file in common. The result is
@@ -7,12 +8,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "contract/durable_file.h"
 #include "contract/json.h"
+#include "runner/campaign/paths.h"
 #include "runner/store/campaign_directory.h"
 #include "runner/store/realisation_result.h"
 #include "runner/store/sqlite.h"
@@ -35,23 +36,23 @@ std::vector<LeftFile> left_files(const Json& result);
 
 // Where the files of the job with this spool file are: the folder, what their names begin with there, and
 // one.
-std::filesystem::path left_folder(const std::filesystem::path& spool);
-std::string left_stem(const std::filesystem::path& spool);
-std::filesystem::path left_file(const std::filesystem::path& spool, const std::string& name);
+fs::path left_folder(const fs::path& spool);
+std::string left_stem(const fs::path& spool);
+fs::path left_file(const fs::path& spool, const std::string& name);
 
 // Those that are there, listed or not, without unfinished ones.
-std::vector<std::filesystem::path> left_files_of(const std::filesystem::path& spool);
+std::vector<fs::path> left_files_of(const fs::path& spool);
 
 // Returns the regular file of that size and hash at `path`, open for reading; its bytes are then on disk.
 // Throws ResultError, which says what is wrong with the file, and std::system_error if the machine fails to
 // read it.
-Descriptor open_left_file(const std::filesystem::path& path, std::uint64_t bytes, const std::string& sha256);
+Descriptor open_left_file(const fs::path& path, std::uint64_t bytes, const std::string& sha256);
 
 // Returns what is wrong with the file at `path`, or with the machine that reads it; "" if nothing is.
-std::string fault_of_file(const std::filesystem::path& path, std::uint64_t bytes, const std::string& sha256);
+std::string fault_of_file(const fs::path& path, std::uint64_t bytes, const std::string& sha256);
 
 // Returns the files of the result, in its order, as open_left_file(). The ResultError names the file.
-std::vector<Descriptor> open_files_in_spool(const Json& result, const std::filesystem::path& spool);
+std::vector<Descriptor> open_files_in_spool(const Json& result, const fs::path& spool);
 
 // The files that realisations have left, as the table `file` has them.
 struct FileRecord {
@@ -61,7 +62,7 @@ struct FileRecord {
   LeftFile file;
   bool kept = true;  // false: thrown away, as the campaign asked for
 
-  std::filesystem::path place(const CampaignDirectory& directory) const {
+  fs::path place(const CampaignDirectory& directory) const {
     return directory.left_files(hash, point_id, seed) / file.name;
   }
 };
@@ -76,32 +77,32 @@ std::vector<FileRecord> files_of_seed(Connection& connection, std::int64_t point
 
 // Reads one spool file; `sha256` is what the engine says about its bytes ("" when nobody is left to say it).
 // Throws ResultError when it is absent, differs, is too large or is no result.
-RealisationResult read_spool_file(const std::filesystem::path& path, const std::string& sha256);
+RealisationResult read_spool_file(const fs::path& path, const std::string& sha256);
 
 // Whether the file bears the name of another point's or seed's result. Files with names of other forms are
 // accepted.
-bool belongs_to_another(const std::filesystem::path& path, const RealisationResult& result);
+bool belongs_to_another(const fs::path& path, const RealisationResult& result);
 
 // The folder whose spool the file lies in: the campaign's own, or one that is shared with a batch system.
-CampaignDirectory home_of_spool_file(const std::filesystem::path& path);
+CampaignDirectory home_of_spool_file(const fs::path& path);
 
 // Complete spool files, by name.
-std::vector<std::filesystem::path> spool_files(const CampaignDirectory& directory);
+std::vector<fs::path> spool_files(const CampaignDirectory& directory);
 
 // Whether anything bears that name, be it no file or a link that leads nowhere.
-bool is_there(const std::filesystem::path& path);
+bool is_there(const fs::path& path);
 // The files in a folder that are regular ones, not links to some, and no temporary ones; by name.
-std::vector<std::filesystem::path> whole_files(const std::filesystem::path& folder);
+std::vector<fs::path> whole_files(const fs::path& folder);
 // A checkpoint may be large; what is larger than this is none, and is not copied into a backup or out of it.
 constexpr std::uint64_t largest_copied_file = std::uint64_t{16} << 30;
 
 // Moves a file to spool/rejected/, with what its realisation left, under names that are free there, and says
 // where it is now.
-std::filesystem::path reject(const CampaignDirectory& directory, const std::filesystem::path& path);
+fs::path reject(const CampaignDirectory& directory, const fs::path& path);
 
 // The unfinished temporary files in `folder` whose writers no longer run.
-std::vector<std::filesystem::path> unfinished_files(const std::filesystem::path& folder);
+std::vector<fs::path> unfinished_files(const fs::path& folder);
 // Removes the unfinished temporary files in `folder` whose writers no longer run.
-void remove_unfinished_files(const std::filesystem::path& folder);
+void remove_unfinished_files(const fs::path& folder);
 
 }  // namespace peclet::runner

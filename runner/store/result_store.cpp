@@ -164,7 +164,7 @@ StoredResult ResultStore::store(const RealisationResult& result, const Target& t
       result.seed, result.point, identity);
   if (!known.step()) return {Stored::unknown_point};
   const std::int64_t point = known.integer(0);
-  const bool apart = known.integer(4) != 0;
+  const bool apart = known.flag(4);
   const std::string other = known.text(1);
   if (!other.empty() && other != identity) {
     events_.write(

@@ -13,8 +13,6 @@
 
 namespace peclet::runner {
 
-namespace fs = std::filesystem;
-
 RotatingFile::RotatingFile(fs::path path, std::uint64_t limit, int older)
     : path_(std::move(path)), limit_(limit), older_(older) {}
 

@@ -2,8 +2,9 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <string_view>
+
+#include "runner/campaign/paths.h"
 
 namespace peclet::runner {
 
@@ -13,7 +14,7 @@ namespace peclet::runner {
 class RotatingFile {
  public:
   // Each file has at most `limit` bytes; `older` of them are kept beside the one that is written.
-  RotatingFile(std::filesystem::path path, std::uint64_t limit, int older);
+  RotatingFile(fs::path path, std::uint64_t limit, int older);
   ~RotatingFile();
   RotatingFile& operator=(RotatingFile&&) = delete;
 
@@ -26,7 +27,7 @@ class RotatingFile {
   void rotate();
   void write(std::string_view bytes);
 
-  std::filesystem::path path_;
+  fs::path path_;
   std::uint64_t limit_;
   int older_;
   int descriptor_ = -1;

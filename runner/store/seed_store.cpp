@@ -15,8 +15,7 @@ int SeedStore::recover() {
                   utc_now());
   const int count = connection_.run("UPDATE realisation SET state = 'queued' WHERE state = 'running'");
   if (count > 0) {
-    events_.write("recovered", std::nullopt, std::nullopt,
-                  fmt::format("{} seeds of an owner that died are queued again", count));
+    events_.write("recovered", fmt::format("{} seeds of an owner that died are queued again", count));
   }
   recovery.commit();
   return count;
@@ -29,6 +28,16 @@ void SeedStore::enqueue(std::int64_t point, int end) {
       end, point);
 }
 
+std::int64_t SeedStore::add_attempt(std::int64_t point, int seed, int worker, std::int64_t process,
+                                    const std::string& host, std::int64_t engine,
+                                    const std::string& started_at) {
+  connection_.run(
+      "INSERT INTO attempt (point_id, seed, worker, process, host, engine_id, started_at) "
+      "VALUES (?, ?, ?, ?, ?, ?, ?)",
+      point, seed, worker, process, host, engine, started_at);
+  return connection_.last_insert_id();
+}
+
 std::int64_t SeedStore::begin_attempt(std::int64_t point, int seed, int worker, std::int64_t process,
                                       std::int64_t engine) {
   const std::string now = utc_now();
@@ -36,11 +45,7 @@ std::int64_t SeedStore::begin_attempt(std::int64_t point, int seed, int worker, 
       "INSERT INTO realisation (point_id, seed, state) VALUES (?, ?, 'running') "
       "ON CONFLICT DO UPDATE SET state = 'running', cause = NULL",
       point, seed);
-  connection_.run(
-      "INSERT INTO attempt (point_id, seed, worker, process, host, engine_id, started_at) "
-      "VALUES (?, ?, ?, ?, ?, ?, ?)",
-      point, seed, worker, process, host_name(), engine, now);
-  const std::int64_t attempt = connection_.last_insert_id();
+  const std::int64_t attempt = add_attempt(point, seed, worker, process, host_name(), engine, now);
   connection_.run(
       "INSERT INTO lease (point_id, seed, attempt_id, worker, phase, step, steps, strain, "
       "renewed_at) VALUES (?, ?, ?, ?, 'starting', 0, 0, 0, ?)",
@@ -49,12 +54,8 @@ std::int64_t SeedStore::begin_attempt(std::int64_t point, int seed, int worker, 
 }
 
 void SeedStore::attempt_elsewhere(std::int64_t point, int seed, int task, const AttemptReport& report) {
-  connection_.run(
-      "INSERT INTO attempt (point_id, seed, worker, process, host, engine_id, started_at, ended_at, outcome, "
-      "blamed, step, exit_status, signal, message) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-      point, seed, task, report.process, report.host, engine_row(database_, report.engine), report.started_at,
-      utc_now(), to_string(report.outcome), is_blamed(report.outcome), report.step, report.ending.status,
-      report.ending.signal, unless_empty(report.message));
+  const std::int64_t engine = engine_row(database_, report.engine);
+  end_attempt(add_attempt(point, seed, task, report.process, report.host, engine, report.started_at), report);
 }
 
 void SeedStore::renew_lease(std::int64_t attempt, const char* phase, std::int64_t step, std::int64_t steps,

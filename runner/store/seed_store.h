@@ -11,14 +11,6 @@
 
 namespace peclet::runner {
 
-struct AttemptEnd {
-  AttemptOutcome outcome = AttemptOutcome::result;
-  std::int64_t step = 0;
-  ExitStatus ending{};
-  std::string message{};
-  double held_seconds = 0;  // processor time at most: that it lasted, times its threads
-};
-
 class SeedStore {
  public:
   // Requires a Database of open_owner, which must outlive it. recover() commits by itself; the others are for
@@ -50,6 +42,9 @@ class SeedStore {
   bool retry(std::int64_t point, int seed);
 
  private:
+  std::int64_t add_attempt(std::int64_t point, int seed, int worker, std::int64_t process,
+                           const std::string& host, std::int64_t engine, const std::string& started_at);
+
   Database& database_;
   Connection& connection_;
   EventStore events_;

@@ -21,10 +21,11 @@
 namespace peclet::runner {
 namespace {
 
+int primary(int code) { return code & 0xff; }
+
 // Whether SQLite's code comes with an errno that says why.
 bool comes_from_the_system(int code) {
-  const int primary = code & 0xff;
-  return primary == SQLITE_IOERR || primary == SQLITE_CANTOPEN || primary == SQLITE_FULL;
+  return primary(code) == SQLITE_IOERR || primary(code) == SQLITE_CANTOPEN || primary(code) == SQLITE_FULL;
 }
 
 // Says who has locked a database: "campaign.db: is locked by sqlite3 (process 4711), which writes to it:
@@ -59,33 +60,22 @@ std::string lock_text(const std::string& database) {
 // after COMMIT it remembers nothing.
 [[noreturn]] void complain(const std::string& path, sqlite3* handle, int code, std::string_view doing,
                            int error) {
-  if ((code & 0xff) == SQLITE_BUSY) throw DatabaseError(lock_text(path), code);
+  if (primary(code) == SQLITE_BUSY) throw DatabaseError(lock_text(path), code);
   const bool is_said = handle != nullptr && sqlite3_extended_errcode(handle) == code;
   std::string said = is_said ? sqlite3_errmsg(handle) : sqlite3_errstr(code);
   if (!comes_from_the_system(code)) error = 0;
   if (error != 0) said += ": " + std::generic_category().message(error);
-  const std::string message = fmt::format("{}: {} (SQLite code {}) while: {}", path, said, code, doing);
-  const int primary = code & 0xff;
-  if (primary == SQLITE_CORRUPT) {
-    throw IntegrityError(
-        fmt::format("{}: is damaged: {} (SQLite code {}) while: {}", path, said, code, doing));
-  }
-  if (primary == SQLITE_NOTADB) throw IntegrityError(message);
+  const bool is_damaged = primary(code) == SQLITE_CORRUPT;
+  const std::string message = fmt::format("{}: {}{} (SQLite code {}) while: {}", path,
+                                          is_damaged ? "is damaged: " : "", said, code, doing);
+  if (is_damaged || primary(code) == SQLITE_NOTADB) throw IntegrityError(message);
   throw DatabaseError(message, code, error);
 }
 
 int flags_of(Connection::Access access) {
-  switch (access) {
-    case Connection::Access::create:
-      return SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
-    case Connection::Access::read_write:
-      return SQLITE_OPEN_READWRITE;
-    case Connection::Access::read_only:
-      break;
-    case Connection::Access::frozen:
-      return SQLITE_OPEN_READONLY | SQLITE_OPEN_URI;
-  }
-  return SQLITE_OPEN_READONLY;
+  if (access == Connection::Access::create) return SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
+  if (access == Connection::Access::read_write) return SQLITE_OPEN_READWRITE;
+  return SQLITE_OPEN_READONLY | (access == Connection::Access::frozen ? SQLITE_OPEN_URI : 0);
 }
 
 // What has a meaning in a URI (https://sqlite.org/uri.html) is escaped.
@@ -102,23 +92,21 @@ std::string uri_of_frozen(const std::string& path) {
 }
 
 // SQLITE_OPEN_NOFOLLOW minds links anywhere in the path; the folder is where its user wanted it to be.
-std::string without_links_above(const std::filesystem::path& path) {
+std::string without_links_above(const fs::path& path) {
   if (path == Connection::in_memory) return path.string();  // no file at all
   std::error_code absent;                                   // then SQLite says so
-  const std::filesystem::path folder =
-      std::filesystem::canonical(path.has_parent_path() ? path.parent_path() : ".", absent);
+  const fs::path folder = fs::canonical(path.has_parent_path() ? path.parent_path() : ".", absent);
   return absent ? path.string() : (folder / path.filename()).string();
 }
 
 }  // namespace
 
 bool DatabaseError::no_room() const {
-  const int primary = code_ & 0xff;
-  if (primary == SQLITE_FULL) return true;
-  return (primary == SQLITE_IOERR || primary == SQLITE_CANTOPEN) && peclet::means_no_room(system_error_);
+  if (primary(code_) == SQLITE_FULL) return true;
+  return comes_from_the_system(code_) && peclet::means_no_room(system_error_);
 }
 
-bool DatabaseError::is_locked() const { return (code_ & 0xff) == SQLITE_BUSY; }
+bool DatabaseError::is_locked() const { return primary(code_) == SQLITE_BUSY; }
 
 bool means_no_room(const std::exception& error) {
   if (const auto* database = dynamic_cast<const DatabaseError*>(&error)) return database->no_room();
@@ -127,8 +115,8 @@ bool means_no_room(const std::exception& error) {
 }
 
 bool DatabaseError::refuses_values() const {
-  const int primary = code_ & 0xff;
-  return primary == SQLITE_CONSTRAINT || primary == SQLITE_MISMATCH || primary == SQLITE_TOOBIG;
+  const int what = primary(code_);
+  return what == SQLITE_CONSTRAINT || what == SQLITE_MISMATCH || what == SQLITE_TOOBIG;
 }
 
 Connection::Connection(const std::string& path, Access access, int busy_milliseconds)
@@ -202,8 +190,8 @@ void Connection::empty_log() {
   const int code = sqlite3_wal_checkpoint_v2(handle_, nullptr, SQLITE_CHECKPOINT_TRUNCATE, nullptr, nullptr);
   const int system_error = errno;
   sqlite3_busy_timeout(handle_, busy_milliseconds_);
-  const int primary = code & 0xff;
-  if (primary == SQLITE_OK || primary == SQLITE_BUSY || primary == SQLITE_LOCKED) return;
+  const int what = primary(code);
+  if (what == SQLITE_OK || what == SQLITE_BUSY || what == SQLITE_LOCKED) return;
   const DatabaseError error(fmt::format("{}: cannot empty its write-ahead log", path_), code, system_error);
   if (!error.no_room()) throw error;
 }

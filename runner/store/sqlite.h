@@ -136,6 +136,7 @@ class Statement {
   bool is_null(int column) const;
   std::int64_t integer(int column) const;
   int number(int column) const { return static_cast<int>(integer(column)); }
+  bool flag(int column) const { return integer(column) != 0; }
   double real(int column) const;       // NULL is NaN
   std::string text(int column) const;  // or the bytes of a blob; NULL is empty
   std::optional<double> optional_real(int column) const;

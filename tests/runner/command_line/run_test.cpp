@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "contract/durable_file.h"
-#include "runner/engines/stop_signals.h"
+#include "runner/engines/engine_process.h"
 #include "runner/store/result_files.h"
 #include "tests/runner/campaign_process.h"
 

@@ -1,12 +1,11 @@
 // What somebody does to the folder of a campaign that runs.
-#include "runner/owner/folder_watch.h"
-
 #include <gtest/gtest.h>
 
 #include <csignal>
 #include <filesystem>
 
 #include "runner/maintenance/backup.h"
+#include "runner/owner/owned_campaign.h"
 #include "runner/store/backups.h"
 #include "runner/store/locks.h"
 #include "tests/runner/campaign_process.h"

@@ -3,7 +3,7 @@
 
 #include "contract/errors.h"
 #include "runner/page/jamming.h"
-#include "runner/store/vocabulary.h"
+#include "runner/store/point_store.h"
 #include "tests/runner/page/jamming_campaign.h"
 
 namespace peclet::runner {

@@ -11,7 +11,7 @@
 #include "runner/page/page_data.h"
 #include "runner/page/page_html.h"
 #include "runner/reports/export.h"
-#include "runner/store/vocabulary.h"
+#include "runner/store/point_store.h"
 #include "tests/runner/stored_campaign.h"
 
 namespace peclet::runner {

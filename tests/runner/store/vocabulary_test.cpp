@@ -1,10 +1,9 @@
 // What an engine calls things, from its hello.
-#include "runner/store/vocabulary.h"
-
 #include <gtest/gtest.h>
 
 #include "contract/documents.h"
 #include "contract/frames.h"
+#include "runner/store/point_store.h"
 
 namespace peclet::runner {
 namespace {

@@ -1,0 +1,10 @@
+// Paths have a short name in the runner.
+#pragma once
+
+#include <filesystem>
+
+namespace peclet::runner {
+
+namespace fs = std::filesystem;
+
+}  // namespace peclet::runner
