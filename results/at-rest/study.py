@@ -1,25 +1,15 @@
 #!/usr/bin/python3
-"""The viscosity of frictionless suspensions at rest, by linear response.
-
-study.py BIN [FOLDER] [--quick | --from-table]
-"""
+"""The viscosity of frictionless suspensions at rest, by linear response."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.at_rest import SLOWEST, slow_rows
-from studies.command_line import main
-from studies.estimates import difference, estimate, over, quotient
-from studies.figure import BLUE, GREEN, RED, Figure, shade
-from studies.prices import ERROR, flow_over_rest, price, seconds_of_window
-from studies.published import JAMMED_AT_REST, diverging
-from studies.scenes import REFERENCE_SCENE, at_peclet, during, merged
-from studies.spectra import storage_by_loss, viscosity_at_high_frequency
-from studies.tables import entries, number, read_rows, write_table
-from studies.verdicts import Check, Finding
-
+from studies.driver import BLUE, Check, ERROR, Figure, Finding, GREEN, JAMMED_AT_REST, RED, REFERENCE_SCENE, SLOWEST
+from studies.driver import at_peclet, difference, diverging, during, entries, estimate, flow_over_rest, main, merged
+from studies.driver import number, over, price, quotient, read_rows, seconds_of_window, shade, slow_rows
+from studies.driver import storage_by_loss, viscosity_at_high_frequency, where, write_table
 import numpy as np
 
 TITLE = "Viscosity at rest by linear response"
@@ -249,8 +239,8 @@ def draw_curves(figure, curves):
     moduli = figure.panel("ω τ_B", "G′, G″ (dashed) a³/kT", log="xy", key="top left", y_range=(1e-3, None))
     for fraction in WINDOWS:
         colour, label = colour_of(fraction), f"φ = {fraction:g}"
-        rows = [r for r in curves if r["fraction"] == fraction and r["curve"] == "viscosity"]
-        rise.points([(r["at"], *number(r, "value")) for r in rows[::3]], label, colour, size=0.4)
+        rows = where(curves, fraction=fraction, curve="viscosity")
+        rise.rows(rows[::3], "at", "value", label, colour, size=0.4)
         storage, loss = (zip(*modulus(curves, fraction, name)) for name in ("storage", "loss"))
         moduli.points([row for row in storage if row[1] > row[2]], label, colour, size=0.6)
         moduli.line([row[:2] for row in loss], None, colour, dash=2)
@@ -258,8 +248,8 @@ def draw_curves(figure, curves):
 
 def draw_viscosities(figure, table):
     divergence = figure.panel("φ", "η_r at rest", log="y", x_range=(0.25, 0.58), y_range=(1, 300), key="top left")
-    rows = [r for r in table if (r["by"], r["count"], r["step"]) == ("momentum", 100, "automatic")]
-    divergence.points([(r["fraction"], *number(r, "viscosity")) for r in rows], "at rest", BLUE)
+    rows = where(table, by="momentum", count=100, step="automatic")
+    divergence.rows(rows, "fraction", "viscosity", "at rest", BLUE)
     sheared = [(f, *number(r, "viscosity")) for f, r in slow_rows().items()]
     divergence.points(sheared, f"Pe = {SLOWEST}", RED, size=0.8)
     divergence.curve(

@@ -1,22 +1,14 @@
 #!/usr/bin/python3
-"""Contacts in weak and in strong flow: how long they last, and what they connect.
-
-study.py BIN [FOLDER] [--quick | --from-table]
-"""
+"""Contacts in weak and in strong flow: how long they last, and what they connect."""
 import os
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import estimate, quotient
-from studies.figure import BLUE, GREEN, RED, Figure
-from studies.networks import contacts_per_sphere, frames_of, largest_cluster, lifetime
-from studies.scenes import TABLE_SCENE, at_peclet, during, merged
-from studies.tables import entries, number, read_rows, write_table
-from studies.verdicts import Finding, Statement
-
+from studies.driver import BLUE, Figure, Finding, GREEN, RED, Statement, TABLE_SCENE, at_peclet, contacts_per_sphere
+from studies.driver import during, entries, estimate, first, frames_of, largest_cluster, lifetime, main, merged, number
+from studies.driver import read_rows, row_ratio, write_rows
 import numpy as np
 
 TITLE = "Contacts in weak and in strong flow"
@@ -73,19 +65,19 @@ def row_at(program, peclet, seeds, patch):
 
 def measure(program):
     rows = [row_at(program, peclet, SEEDS, {}) for peclet in PECLETS]
-    write_table(HERE / "table.csv", list(rows[0]), rows, 5)
+    write_rows(HERE / "table.csv", rows, 5)
 
 
 def rows_judged(table, degrees):
-    weak, strong = (next(r for r in table if r["peclet"] == peclet) for peclet in (WEAK, STRONG))
+    weak, strong = (first(table, peclet=peclet) for peclet in (WEAK, STRONG))
     lasts = f"Pe = {WEAK:g}: strain that a contact lasts (published: short-lived)"
     yield Statement(lasts, "L 4.2.5", *number(weak, "strain"), 0, SHORT, degrees)
     lasts = f"Pe = {WEAK:g}: Brownian times ηa³/k_BT that a contact lasts"
     yield Statement(lasts, "L 4.2.5", *number(weak, "brownian_times"), 0, SHORT, degrees)
     text = f"strain that a contact lasts at Pe = {STRONG:g} over that at {WEAK:g}: lasting only in strong flow"
-    yield Statement(text, "L 4.2.5", *quotient(number(strong, "strain"), number(weak, "strain")), 1, degrees=degrees)
+    yield Statement(text, "L 4.2.5", *row_ratio(strong, weak, "strain"), 1, degrees=degrees)
     for name, text in (("contacts", "contacts of a sphere"), ("largest", "spheres in the largest cluster of contacts")):
-        ratio = quotient(number(strong, name), number(weak, name))
+        ratio = row_ratio(strong, weak, name)
         text = f"{text} at Pe = {STRONG:g} over that at {WEAK:g}: chains"
         yield Statement(text, "L 4.2.5", *ratio, 1, degrees=degrees)
     row = max(table, key=lambda r: r["overlap"])
@@ -112,10 +104,10 @@ def draw():
     x = {"log": "xy", "powers": "x", "x_range": (0.005, 2e4), "key": "top left"}
     panel = figure.panel("Pe", "time that a contact lasts", **x)
     for name, text, colour in (("strain", "in strains", RED), ("brownian_times", "in ηa³/k_{B}T", BLUE)):
-        panel.points([(r["peclet"], *number(r, name)) for r in table], text, colour, joined=True)
+        panel.rows(table, "peclet", name, text, colour, joined=True)
     panel = figure.panel("Pe", "contacts of a sphere; share in the largest cluster", **x)
     for name, text, colour in (("contacts", "contacts", RED), ("largest", "largest cluster", GREEN)):
-        panel.points([(r["peclet"], *number(r, name)) for r in table], text, colour, joined=True)
+        panel.rows(table, "peclet", name, text, colour, joined=True)
     figure.draw()
 
 

@@ -1,22 +1,13 @@
 #!/usr/bin/python3
 """What the stress B of the random forces takes away from the scatter: as a part of the stress, which is a control
-variate with the coefficient -1 of the rest, and by regression of the rest on its components.
-
-study.py BIN [FOLDER] [--quick | --from-table]
-"""
+variate with the coefficient -1 of the rest, and by regression of the rest on its components."""
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.controls import cross_fitted, variance_ratio
-from studies.estimates import estimate, jackknife
-from studies.figure import BLUE, GREEN, RED, Figure
-from studies.scenes import REFERENCE_SCENE, at_peclet, during, merged
-from studies.tables import entries, number, read_rows, write_table
-from studies.verdicts import Check, Finding
-
+from studies.driver import BLUE, Check, Figure, Finding, GREEN, RED, REFERENCE_SCENE, at_peclet, cross_fitted, during
+from studies.driver import entries, estimate, jackknife, main, merged, number, read_rows, variance_ratio, write_rows
 import numpy as np
 
 TITLE = "What control variates save"
@@ -83,8 +74,8 @@ def measure(program):
         results = results_at(program, peclet, SEEDS)
         table += rows_of(peclet, [r["mean"] for r in results])
         windows += window_rows(peclet, results)
-    write_table(HERE / "table.csv", list(table[0]), table, 5)
-    write_table(HERE / "windows.csv", list(windows[0]), windows, 4)
+    write_rows(HERE / "table.csv", table, 5)
+    write_rows(HERE / "windows.csv", windows, 4)
 
 
 def change_of(row, most=3):

@@ -1,23 +1,14 @@
 #!/usr/bin/python3
-"""Relative spread of the viscosity against the number of samples, with and without the control variate.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+"""Relative spread of the viscosity against the number of samples, with and without the control variate."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import difference, estimate, jackknife, over, quotient
-from studies.figure import BLACK, BLUE, GREEN, RED, Figure
-from studies.fits import line_through
-from studies.published import JAMMED_AT_REST, diverging
-from studies.scenes import REFERENCE_SCENE, at_peclet, during, merged
-from studies.tables import entries, read_numbers, read_rows, write_numbers, write_table
-from studies.verdicts import Check, Finding, Statement
-
+from studies.driver import BLACK, BLUE, Check, Figure, Finding, GREEN, JAMMED_AT_REST, RED, REFERENCE_SCENE, Statement
+from studies.driver import at_peclet, difference, diverging, during, entries, estimate, jackknife, line_through, main
+from studies.driver import merged, over, quotient, read_numbers, read_rows, write_numbers, write_rows
 import numpy as np
 
 TITLE = "Convergence of the viscosity"
@@ -204,7 +195,7 @@ def measure(program):
         numbers[f"Pe = {number:g}: {BROWNIAN_MEAN}"] = (*mean, seeds * program.times - 1)
         savings[number] = [(blocks * series.steps / BLOCKS, *saving(series, blocks)) for blocks in WINDOWS]
     for name, table in (("table", summary), ("spread", spreads)):
-        write_table(HERE / f"{name}.csv", list(table[0]), table, 5)
+        write_rows(HERE / f"{name}.csv", table, 5)
     write_numbers(HERE / "numbers.csv", numbers | dict(comparisons(program, found)))
     draw(spreads, savings)
 

@@ -1,22 +1,14 @@
 #!/usr/bin/python3
-"""Mean squared displacements of dilute spheres, and self-diffusion from dilute to dense.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+"""Mean squared displacements of dilute spheres, and self-diffusion from dilute to dense."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import difference, estimate, over, quotient, weighted_mean
-from studies.figure import BLACK, BLUE, GREEN, RED, Figure
-from studies.fits import line_through
-from studies.scenes import REFERENCE_SCENE, during, merged
-from studies.tables import read_rows, read_table, write_table
-from studies.verdicts import Check, Finding, Statement
-
+from studies.driver import BLACK, BLUE, Check, Figure, Finding, GREEN, RED, REFERENCE_SCENE, Statement, difference
+from studies.driver import during, estimate, line_through, main, merged, over, quotient, read_rows, weighted_mean, where
+from studies.driver import write_rows
 import numpy as np
 
 TITLE = "Mean squared displacement and self-diffusion"
@@ -269,20 +261,20 @@ def ballistic_rows(table):
 
 
 def rows_with(table, method, ratio):
-    return [r for r in table if (r["method"], r["ratio"]) == (method, ratio)]
+    return where(table, method=method, ratio=ratio)
 
 
 def judge():
     curves = {}
-    for row in read_table(HERE / "displacement.csv"):
+    for row in read_rows(HERE / "displacement.csv"):
         curves.setdefault(row["ratio"], []).append(row)
     table = read_rows(HERE / "table.csv")
-    crowded, (explicit,) = ([r for r in table if r["method"] == method] for method in ("implicit", "explicit"))
+    crowded, (explicit,) = (where(table, method=method) for method in ("implicit", "explicit"))
     of, seeds = {(r["ratio"], r["fraction"]): r for r in crowded}, min(r["seeds"] for r in crowded)
     long = {ratio: rows_with(table, "implicit, windows of 90", ratio) for ratio in (WARM, COLD)}
     yield from dilute_statements(curves, seeds, 0.02)
     yield crossover_row(curves[COLD], COLD, seeds)
-    yield from ballistic_rows(read_table(HERE / "ballistic.csv"))
+    yield from ballistic_rows(read_rows(HERE / "ballistic.csv"))
     yield from temperature_rows(long, of)
     yield from long_time_rows(long[COLD])
     yield from constant_rows({(r["method"], r["fraction"]): r for r in table if r["ratio"] == COLD})
@@ -301,16 +293,16 @@ def measure(program):
     rows = [{"method": "implicit", **row} for row in diffusion(program, RATIOS, FRACTIONS, seeds)]
     rows += [{"method": "explicit", **row} for row in diffusion(program, [WARM], [0.3], 8, one, "crowded-explicit")]
     rows += long_times(program)
-    write_table(HERE / "table.csv", list(rows[0]), rows, 5)
+    write_rows(HERE / "table.csv", rows, 5)
     rows = [row for rows in curves.values() for row in rows]
-    write_table(HERE / "displacement.csv", list(rows[0]), rows, 5)
+    write_rows(HERE / "displacement.csv", rows, 5)
     rows = list(short_times(program))
-    write_table(HERE / "ballistic.csv", list(rows[0]), rows, 5)
+    write_rows(HERE / "ballistic.csv", rows, 5)
 
 
 def draw():
     table, curves = read_rows(HERE / "table.csv"), {}
-    for row in read_table(HERE / "displacement.csv"):
+    for row in read_rows(HERE / "displacement.csv"):
         curves.setdefault(row["ratio"], []).append(row)
     figure = Figure(HERE / "chart.png", columns=2)
     colours = dict(zip(RATIOS, (RED, GREEN, BLUE)))

@@ -1,26 +1,16 @@
 #!/usr/bin/python3
-"""How the viscosity of frictionless spheres diverges with their volume fraction, at rest, at Pe = 4.6 and at Pe = 10^4.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+"""How the viscosity of frictionless spheres diverges with their volume fraction, at rest, at Pe = 4.6 and at
+Pe = 10^4."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.at_rest import rows_at_rest
-from studies.command_line import main
-from studies.estimates import difference, jackknife, propagated, quotient
-from studies.figure import BLUE, GREEN, ORANGE, RED, Figure
-from studies.fits import jammed_and_exponent, lines, shapes_of
-from studies.green_kubo import table_at_rest
-from studies.published import JAMMED_AT_REST, JAMMED_IN_STRONG_FLOW, diverging
-from studies.scenes import TABLE_SCENE, during, merged
-from studies.tables import columns_of, entries, number, read_rows, write_table
-from studies.verdicts import Check, Finding, Statement
-from studies.viscosities import viscosity_row
-
+from studies.driver import BLUE, Check, Figure, Finding, GREEN, JAMMED_AT_REST, JAMMED_IN_STRONG_FLOW, ORANGE, RED
+from studies.driver import Statement, TABLE_SCENE, columns_of, difference, diverging, during, entries, first, jackknife
+from studies.driver import jammed_and_exponent, lines, main, merged, number, propagated, read_rows, row_ratio
+from studies.driver import rows_at_rest, shapes_of, table_at_rest, viscosity_row, where, write_rows, write_table
 import numpy as np
 
 TITLE = "Divergence of the viscosity with volume fraction"
@@ -151,24 +141,24 @@ def lowest_rows(curves, name):
     middle = {r["fraction"]: r for r in curves[4.6]}
     for peclet, of in ((0, name), (1e4, NAMES[1e4])):
         both = [(middle[r["fraction"]], r) for r in curves[peclet] if r["fraction"] in middle]
-        ratios = [(quotient(number(a, "pairs"), number(b, "pairs")), b) for a, b in both]
+        ratios = [(row_ratio(a, b, "pairs"), b) for a, b in both]
         ratio, row = max(ratios, key=lambda r: r[0][0])
         text = f"largest η_r of pairs at Pe = 4.6 over that at {of} (at φ = {row['fraction']:g})"
         yield Statement(text, "L4.9a", *ratio, high=1, degrees=SEEDS - 1)
     for fraction in (FRACTIONS[0], FRACTIONS[-1]):
         pair = (next(r for r in curves[p] if r["fraction"] == fraction) for p in PECLET)
         text = f"φ = {fraction:g}: η_r of pairs at Pe = 4.6 over that at 10⁴ (one φ_J for both: the same at every φ)"
-        yield Finding(text, "form", *quotient(*(number(r, "pairs") for r in pair)), SEEDS - 1)
+        yield Finding(text, "form", *row_ratio(*pair, "pairs"), SEEDS - 1)
     for peclet in PECLET:
-        steps = [quotient(number(b, "pairs"), number(a, "pairs")) for a, b in zip(curves[peclet], curves[peclet][1:])]
+        steps = [row_ratio(b, a, "pairs") for a, b in zip(curves[peclet], curves[peclet][1:])]
         text = f"{NAMES[peclet]}: least η_r of pairs at a φ over that at the next lower one (increasing sharply)"
         yield Statement(text, "L4.5d", *min(steps), 1, degrees=SEEDS - 1)
 
 
 def curves_of_table():
     table = read_rows(HERE / "table.csv")
-    rows = [r for r in table if r["method"] == "implicit"]
-    return {p: [r for r in rows if r["peclet"] == p] for p in (0, *PECLET)}, table
+    rows = where(table, method="implicit")
+    return {p: where(rows, peclet=p) for p in (0, *PECLET)}, table
 
 
 def judge():
@@ -182,9 +172,9 @@ def judge():
     yield from shift_rows(curves)
     yield from lowest_rows(curves, name)
     yield from recipe_rows(recipe)
-    methods = [next(r for r in table if r["method"] == f"{m} at rate 0.045") for m in ("implicit", "explicit")]
+    methods = [first(table, method=f"{m} at rate 0.045") for m in ("implicit", "explicit")]
     text = "φ = 0.5, Pe = 10⁴, rate 0.045: η_r with implicit steps over that with explicit ones"
-    ratio = quotient(*(number(r, "viscosity") for r in methods))
+    ratio = row_ratio(*methods, "viscosity")
     yield Check(text, "method", *ratio, 0.9, 1.1, methods[1]["seeds"] - 1)
 
 
@@ -200,12 +190,12 @@ def write_tables(curves, methods, fits):
     write_table(HERE / "fits.csv", columns, rows, 4)
     cases = [(p, q, f) for p in curves for q in ("pairs", "viscosity") for f in (0.40, 0.48)]
     rows = [{"peclet": p, "quantity": q, "lowest": f, **other_forms(curves[p], q, f)} for p, q, f in cases]
-    write_table(HERE / "forms.csv", list(rows[0]), rows, 4)
+    write_rows(HERE / "forms.csv", rows, 4)
 
 
 def measure(program):
     rows = sheared(program, "sheared", [(p, f) for p in PECLET for f in FRACTIONS], SEEDS)
-    curves = {0: at_rest(program), **{p: [r for r in rows if r["peclet"] == p] for p in PECLET}}
+    curves = {0: at_rest(program), **{p: where(rows, peclet=p) for p in PECLET}}
     fits = {(p, q): fit_with_error(c, q) for p, c in curves.items() for q in ("pairs", "viscosity")}
     fast = {"limits": {"shear_rate": 0.045}, "duration": {"production": {"strain": 2}}}
     methods = {}
@@ -250,7 +240,7 @@ def quick_measure(program):
     *fast, slow = sheared(program, "quick", cases, 8, {"particles": {"count": 150}})
     found = propagated([number(r, "pairs") for r in fast], lambda values: jammed_and_exponent(fractions, values), 100)
     jammed, exponent = zip(*found)
-    ratio = quotient(number(slow, "pairs"), number(fast[1], "pairs"))
+    ratio = row_ratio(slow, fast[1], "pairs")
     return [
         Statement("Pe = 10⁴: φ_J of η_r of pairs", "L4.9a", *jammed, 0.58, 0.72, 7),
         Statement("Pe = 10⁴: its λ", "L4.9a", *exponent, 1, 2.2, 7),

@@ -1,20 +1,13 @@
 #!/usr/bin/python3
-"""The pressure of Brownian spheres at rest beside the equation of state of hard spheres.
-
-study.py BIN [FOLDER] [--quick | --from-table]
-"""
+"""The pressure of Brownian spheres at rest beside the equation of state of hard spheres."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import over
-from studies.figure import BLUE, RED, Figure
-from studies.scenes import REFERENCE_SCENE, during, merged
-from studies.tables import entries, number, read_rows, write_table
-from studies.verdicts import Check
+from studies.driver import BLUE, Check, Figure, RED, REFERENCE_SCENE, during, entries, main, merged, number, over
+from studies.driver import read_rows, write_rows
 
 TITLE = "The pressure at rest"
 FRACTIONS = (0.20, 0.30, 0.40, 0.45, 0.50)
@@ -89,7 +82,7 @@ def measure(program):
         for sizes in SIZES
         for fraction in FRACTIONS
     ]
-    write_table(HERE / "table.csv", list(rows[0]), rows, 5)
+    write_rows(HERE / "table.csv", rows, 5)
 
 
 def judged(row, width):

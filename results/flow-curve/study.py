@@ -1,26 +1,15 @@
 #!/usr/bin/python3
-"""The published flow curves, split by term, at three volume fractions, and with other contact stiffnesses.
-
-study.py BIN [FOLDER] [--quick] [--long] [--from-table]
-"""
+"""The published flow curves, split by term, at three volume fractions, and with other contact stiffnesses."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.at_rest import SLOWEST, rows_at_rest
-from studies.command_line import main
-from studies.estimates import estimate, logarithm, over, propagated, quotient
-from studies.figure import BLACK, BLUE, GREEN, GREY, RED, Figure
-from studies.fits import log_minimum
-from studies.green_kubo import table_at_rest
-from studies.published import JAMMED_AT_REST, JAMMED_IN_STRONG_FLOW, diverging
-from studies.scenes import TABLE_SCENE, during, merged
-from studies.tables import columns_of, entries, number, read_rows, write_table
-from studies.verdicts import Check, Finding, Statement
-from studies.viscosities import term, viscosity_row
-
+from studies.driver import BLACK, BLUE, Check, Figure, Finding, GREEN, GREY, JAMMED_AT_REST, JAMMED_IN_STRONG_FLOW, RED
+from studies.driver import SLOWEST, Statement, TABLE_SCENE, columns_of, diverging, during, entries, estimate, first
+from studies.driver import log_minimum, logarithm, main, merged, number, over, propagated, quotient, read_rows
+from studies.driver import row_ratio, rows_at_rest, table_at_rest, term, viscosity_row, where, write_table
 import numpy as np
 
 TITLE = "Flow curves of Brownian suspensions"
@@ -94,7 +83,7 @@ class Curve:
         return kind(f"φ = {self.fraction:g}: {text}", SOURCES[self.fraction], *found, degrees=degrees, **bounds)
 
     def ratio(self, name, a, b):
-        return quotient(number(self.at[a], name), number(self.at[b], name))
+        return row_ratio(self.at[a], self.at[b], name)
 
     def over_least(self, name):
         """What is at 4.6 over the least of all other points."""
@@ -168,44 +157,38 @@ def rest_rows(curves):
     for fraction, curve in curves.items():
         if "by" in rest.get(fraction, {}) and fraction != 0.55:  # of linear response
             text = f"η_r of pairs at Pe = {SLOWEST:g} over that at rest ({how}): plateau"
-            found = quotient(number(curve.at[SLOWEST], "pairs"), number(rest[fraction], "pairs"))
+            found = row_ratio(curve.at[SLOWEST], rest[fraction], "pairs")
             yield curve.row(Statement, text, found, SLOWEST, low=0.8, high=1.25)
     known = [f for f in FRACTIONS if f in rest]
     for low, high in zip(known, known[1:]):
         text = f"η_r of pairs at rest ({how}) over that at φ = {low:g}"
-        yield curves[high].row(
-            Statement, text, quotient(*(number(rest[f], "pairs") for f in (high, low))), SLOWEST, low=1
-        )
+        yield curves[high].row(Statement, text, row_ratio(rest[high], rest[low], "pairs"), SLOWEST, low=1)
 
 
 def high_rows(curves):
     """Beside the same suspensions without noise, of the study literature."""
     steady = read_rows(HERE.parent / "literature" / "table.csv")
     for fraction, curve in curves.items():
-        bare = next(
-            r
-            for r in steady
-            if (r["method"], r["fraction"], r["friction"], r["gap"]) == ("implicit", fraction, 0, 0.05)
-        )
+        bare = first(steady, method="implicit", fraction=fraction, friction=0, gap=0.05)
         text = "η_r of pairs at Pe = 10⁴ over that without noise"
-        found = quotient(number(curve.at[1e4], "pairs"), number(bare, "pairs"))
+        found = row_ratio(curve.at[1e4], bare, "pairs")
         yield curve.row(Statement, text, found, low=0.9, high=1.1)
     noisy = read_rows(HERE.parent / "literature" / "peclet.csv")
     for fraction in FRACTIONS[:2]:
         wide = {r["peclet"]: r for r in noisy if (r["fraction"], r["gap"]) == (fraction, 0.5)}
         text = f"φ = {fraction:g}, μ = 1, outer gap 0.5: lubrication at Pe = 10⁴ over that at 1"
-        found = quotient(*(number(wide[p], "lubrication") for p in (1e4, 1)))
+        found = row_ratio(wide[1e4], wide[1], "lubrication")
         yield Finding(text, "literature", *found, wide[1]["seeds"] - 1)
 
 
 def comparison(kind, text, source, a, b, width, degrees):
     """That the viscosities of two rows are the same within `width`."""
-    ratio = quotient(number(a, "viscosity"), number(b, "viscosity"))
+    ratio = row_ratio(a, b, "viscosity")
     return kind(text, source, *ratio, 1 - width, 1 + width, degrees)
 
 
 def rows_with(table, method, count=250):
-    return [r for r in table if (r["method"], r["count"]) == (method, count)]
+    return where(table, method=method, count=count)
 
 
 def comparison_rows(table):
@@ -312,8 +295,8 @@ def quick_measure(program):
     parts = during({"brownian_times": 10}, {"brownian_times": 20, "strain": 3})
     cases = [(0.5, 1e4, p) for p in (0.22, 4.6, 1e4)]
     low, middle, high = rows_of(program, "quick", cases, 8, {"particles": {"count": 100}, **parts})
-    thickening = quotient(number(high, "pairs"), number(middle, "pairs"))
-    lubrication = quotient(number(middle, "lubrication"), number(high, "lubrication"))
+    thickening = row_ratio(high, middle, "pairs")
+    lubrication = row_ratio(middle, high, "lubrication")
     structural = number(low, "structural_over_contact")
     name = "φ = 0.5: η_r of pairs at Pe"
     text = "φ = 0.5: structural Brownian stress over contact stress at Pe = 0.22"

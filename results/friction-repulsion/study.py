@@ -1,23 +1,14 @@
 #!/usr/bin/python3
-"""Flow curves with friction and with a repulsion whose strength is a multiple of kT.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+"""Flow curves with friction and with a repulsion whose strength is a multiple of kT."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import difference, propagated, quotient
-from studies.figure import BLUE, GREEN, ORANGE, RED, Figure
-from studies.fits import log_of_share, thickening_decades
-from studies.scenes import TABLE_SCENE, during, merged
-from studies.tables import columns_of, number, read_rows, write_table
-from studies.verdicts import Check, Finding, Statement
-from studies.viscosities import viscosity_row
-
+from studies.driver import BLUE, Check, Figure, Finding, GREEN, ORANGE, RED, Statement, TABLE_SCENE, columns_of
+from studies.driver import difference, during, first, log_of_share, main, merged, number, propagated, quotient
+from studies.driver import read_rows, row_ratio, thickening_decades, viscosity_row, where, write_table
 import numpy as np
 
 TITLE = "Friction and repulsion in flow curves"
@@ -111,7 +102,7 @@ def middle_stress(curve, scale):
 
 
 def ratio_of(a, b):
-    return quotient(number(a, "pairs"), number(b, "pairs"))
+    return row_ratio(a, b, "pairs")
 
 
 def plateau(curve, share):
@@ -198,7 +189,7 @@ def stress_rows(rows, degrees):
 
 def judge():
     table = read_rows(HERE / "table.csv")
-    rows = [r for r in table if r["method"] == "implicit"]
+    rows = where(table, method="implicit")
     degrees = min(r["seeds"] for r in rows) - 1
     yield from friction_rows(rows, degrees)
     for case in THICKENING:
@@ -206,8 +197,8 @@ def judge():
     yield from plateau_rows(rows, degrees)
     yield from stress_rows(rows, degrees)
     text = "φ = 0.5, μ = 0.5, A = 1000 kT, Pe = 10⁴: η_r with implicit steps over that with explicit ones"
-    methods = [next(r for r in table if r["method"] == f"{m} at rate 0.045") for m in ("implicit", "explicit")]
-    ratio = quotient(*(number(r, "viscosity") for r in methods))
+    methods = [first(table, method=f"{m} at rate 0.045") for m in ("implicit", "explicit")]
+    ratio = row_ratio(*methods, "viscosity")
     yield Check(text, "method", *ratio, 0.9, 1.1, methods[1]["seeds"] - 1)
 
 
@@ -248,8 +239,7 @@ def draw(rows):
             label, "η_r of pairs", log="xy", powers="x", key="top left", x_range=x_range, y_range=y_range
         )
         for case, title, colour, mark in curves:
-            points = [(r[x], *number(r, "pairs")) for r in curve_of(rows, *case)]
-            axes.points(points, title, colour, mark, 0.8, joined=True)
+            axes.rows(curve_of(rows, *case), x, "pairs", title, colour, mark, 0.8, joined=True)
 
     ends = (0.5, 2e6), (2, 300)
     rough = [((0.5, m, 0), f"φ = 0.5, A = 0, μ = {m}", c, 7) for m, c in zip(FRICTIONS, colours)]

@@ -1,24 +1,14 @@
 #!/usr/bin/python3
-"""Viscosity against inertia: of the flow without noise, and of the thermal motion.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+"""Viscosity against inertia: of the flow without noise, and of the thermal motion."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import over, quotient, weighted_mean
-from studies.figure import BLUE, GREEN, ORANGE, PURPLE, RED, Figure
-from studies.fits import line_through
-from studies.published import DENSITY, STIFFNESS, TABLE_4_1, VISCOSITY, mari_fit
-from studies.scenes import REFERENCE_SCENE, during, merged
-from studies.tables import read_rows, write_table
-from studies.verdicts import Check, Finding, Statement
-from studies.viscosities import counts_text, flags
-
+from studies.driver import BLUE, Check, DENSITY, Figure, Finding, GREEN, ORANGE, PURPLE, RED, REFERENCE_SCENE, STIFFNESS
+from studies.driver import Statement, TABLE_4_1, VISCOSITY, counts_text, during, first, flags, line_through, main
+from studies.driver import mari_fit, merged, over, quotient, read_rows, weighted_mean, where, write_rows
 import numpy as np
 
 TITLE = "Viscosity and inertia"
@@ -197,10 +187,10 @@ def judge():
     table = read_rows(HERE / "table.csv")
 
     def curve(name, method="implicit"):
-        return [r for r in table if (r["curve"], r["method"]) == (name, method)]
+        return where(table, curve=name, method=method)
 
     def at(rows, ratio):
-        return next(r for r in rows if r["ratio"] == ratio)
+        return first(rows, ratio=ratio)
 
     flow, curves = curve("flow"), {run[0]: curve(f"Pe {run[0]:g}") for run in THERMAL_RUNS}
     yield from flow_judged(flow)
@@ -231,7 +221,7 @@ def measure(program):
         "explicit": [*flow_explicit, *thermal_explicit],
     }
     table = [{"method": method, **row} for method, rows in by_method.items() for row in rows]
-    write_table(HERE / "table.csv", list(table[0]), table, 5)
+    write_rows(HERE / "table.csv", table, 5)
     draw(flow, flow_explicit, curves, thermal_explicit)
 
 

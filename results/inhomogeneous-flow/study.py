@@ -1,26 +1,17 @@
 #!/usr/bin/python3
 """Suspensions driven by waves of the flow: profiles with errors, the balance of momentum, and what a uniform flow at
-the same local stress would do (Li 2023, ch. 6, Fig. 6.1 and Eqs 6.7 to 6.9).
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+the same local stress would do (Li 2023, ch. 6, Fig. 6.1 and Eqs 6.7 to 6.9)."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import difference, estimate, jackknife, propagated, quotient
-from studies.figure import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, Figure
-from studies.fits import divergence
-from studies.hours import Hours
-from studies.inhomogeneous import FIGURE, FLOWS, OTHER, PUBLISHED, QUANTITIES, SCENE, TRAINING, UNSEEN
-from studies.inhomogeneous import Flow, bin_rows, growth, profile_of, symmetric_bin_rows, symmetries, wave
-from studies.scenes import during, merged
-from studies.tables import columns_of, entries, number, read_numbers, read_rows, write_numbers, write_table
-from studies.verdicts import Check, Finding, Statement
-
+from studies.driver import BLACK, BLUE, Check, Figure, Finding, GREEN, GREY, Hours, ORANGE, PURPLE, RED, Statement
+from studies.driver import columns_of, difference, divergence, during, entries, estimate, jackknife, main, merged
+from studies.driver import number, propagated, quotient, read_numbers, read_rows, write_numbers, write_table
+from studies.inhomogeneous import FIGURE, FLOWS, Flow, OTHER, PUBLISHED, QUANTITIES, SCENE, TRAINING, UNSEEN, bin_rows
+from studies.inhomogeneous import growth, profile_of, symmetric_bin_rows, symmetries, wave
 import numpy as np
 from scipy.optimize import least_squares
 
@@ -375,9 +366,9 @@ def draw():
     one = figure.panel(
         "J", "μ", "friction coefficient", log="xy", powers="x", key="top left", x_range=(1e-5, 1), y_range=(1e-3, 10)
     )
-    one.points([(r["J"], *number(r, "mu")) for r in tables.uniform], "uniform flow", BLACK, 7)
+    one.rows(tables.uniform, "J", "mu", "uniform flow", BLACK, 7)
     for some, name, colour in kinds:
-        one.points([(r["J"], *number(r, "mu")) for r in tables.bins(*some)], name, colour, 6)
+        one.rows(tables.bins(*some), "J", "mu", name, colour, 6)
     one = figure.panel(
         "J", "Θ^{1.44} μ^{2.5}", "Eq. 6.8: where the shear has a direction", log="xy", powers="xy", key="top left"
     )

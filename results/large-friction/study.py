@@ -1,24 +1,14 @@
 #!/usr/bin/python3
 """Friction of 1: where the viscosity diverges without noise, how many contacts spheres have there, and which Peclet
-numbers flow between the two volume fractions of jamming.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+numbers flow between the two volume fractions of jamming."""
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import difference, estimate, propagated, quotient
-from studies.figure import BLUE, RED, Figure
-from studies.fits import jammed_and_exponent
-from studies.published import JAMMED_AT_REST, mari_fit
-from studies.scenes import REFERENCE_SCENE, TABLE_SCENE, during, merged
-from studies.tables import columns_of, entries, number, read_rows, write_table
-from studies.verdicts import Finding, Statement
-from studies.viscosities import viscosity_row
-
+from studies.driver import BLUE, Figure, Finding, JAMMED_AT_REST, RED, REFERENCE_SCENE, Statement, TABLE_SCENE
+from studies.driver import columns_of, difference, during, entries, estimate, jammed_and_exponent, main, mari_fit
+from studies.driver import merged, number, propagated, read_rows, row_ratio, viscosity_row, write_table
 import numpy as np
 
 TITLE = "Large friction"
@@ -149,11 +139,11 @@ def between_rows(table):
     for peclet in (*SLOW_PECLET, 22, 1e4):
         row = rows[peclet]
         text = f"φ = {DENSE:g}, μ = 1: η_r of pairs at Pe = {peclet:g} over that at {LOWEST:g}"
-        ratio = quotient(number(row, "pairs"), number(middle, "pairs"))
+        ratio = row_ratio(row, middle, "pairs")
         yield Statement(text, "L 4.2.6", *ratio, 1, degrees=row["seeds"] - 1)
     (stiff,) = (r for r in table if r["stiffness"] == STIFF)
     text = f"φ = {DENSE:g}, μ = 1, Pe = 10⁴: η_r of pairs with four times k_n over that with k_n (jammed: above 1)"
-    yield Finding(text, "L 4.2.6", *quotient(number(stiff, "pairs"), number(rows[1e4], "pairs")), stiff["seeds"] - 1)
+    yield Finding(text, "L 4.2.6", *row_ratio(stiff, rows[1e4], "pairs"), stiff["seeds"] - 1)
     for peclet in (LOWEST, 22):
         text = f"φ = {DENSE:g}, μ = 1, Pe = {peclet:g}: contacts of a sphere that carries"
         yield Finding(text, "L 4.2.7", *number(rows[peclet], "contacts"), rows[peclet]["seeds"] - 1)
@@ -174,13 +164,13 @@ def draw():
     )
     for friction, colour in ((0, BLUE), (1, RED)):
         rows = without_noise(table, friction)
-        panel.points([(r["fraction"], *number(r, "pairs")) for r in rows], f"μ = {friction}", colour, 7, 0.9)
-        contacts.points([(r["fraction"], *number(r, "contacts")) for r in rows], f"μ = {friction}", colour, 7, 0.9)
+        panel.rows(rows, "fraction", "pairs", f"μ = {friction}", colour, 7, 0.9)
+        contacts.rows(rows, "fraction", "contacts", f"μ = {friction}", colour, 7, 0.9)
         contacts.level(PUBLISHED_CONTACTS[friction], None, colour, (0.38, 0.64), dash=2)
     panel.curve(lambda f: mari_fit(f, 1), "Mari fit (published), μ = 1", RED, (0.38, 0.57), dash=2)
     ends = {"x_range": (0.01, 3e4), "y_range": (10, 3e5)}
     panel = figure.panel("Pe", "η_r of pairs, μ = 1", f"φ = {DENSE:g}", log="xy", powers="xy", **ends)
-    panel.points([(r["peclet"], *number(r, "pairs")) for r in with_noise(table)], None, RED, 7, 0.9, joined=True)
+    panel.rows(with_noise(table), "peclet", "pairs", None, RED, 7, 0.9, joined=True)
     figure.draw()
 
 

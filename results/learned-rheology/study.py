@@ -2,8 +2,6 @@
 """Maps between local quantities of flows that vary along their gradient, learned from some and asked of others, beside
 what fitted laws and mechanics know (Li 2023, ch. 6, Figs 6.2 to 6.4).
 
-study.py BIN [FOLDER] [--quick] [--from-table]
-
 The bins are those of ../inhomogeneous-flow, which this study does not run again.
 """
 import json
@@ -14,42 +12,12 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import quotient
-from studies.figure import BLUE, GREEN, GREY, ORANGE, RED, Figure
-from studies.learned_maps import (
-    BALANCE,
-    BINS_FOLDER,
-    CANDIDATES,
-    CASES,
-    DEGREES,
-    ERRORS,
-    MAPS,
-    OTHER,
-    PUBLISHED,
-    SOLVED,
-    TRAINING,
-    UNSEEN,
-    all_numbers,
-    bins_by_flow,
-    error_rows,
-    solver_rows,
-    together,
-)
-from studies.learning import METHODS, LawOfFraction, all_methods, columns_of_rows, taken
-from studies.pages import rewrite_part
-from studies.tables import (
-    markdown_head,
-    markdown_row,
-    number,
-    number_text,
-    read_numbers,
-    read_rows,
-    write_numbers,
-    write_table,
-)
-from studies.verdicts import Check, Finding, Statement
-
+from studies.driver import BLUE, Check, Figure, Finding, GREEN, GREY, ORANGE, RED, Statement, main, markdown_head
+from studies.driver import markdown_row, number, number_text, quotient, read_numbers, read_rows, rewrite_part, row_ratio
+from studies.driver import write_numbers, write_table
+from studies.learned_maps import BALANCE, BINS_FOLDER, CANDIDATES, CASES, DEGREES, ERRORS, MAPS, OTHER, PUBLISHED
+from studies.learned_maps import SOLVED, TRAINING, UNSEEN, all_numbers, bins_by_flow, error_rows, solver_rows, together
+from studies.learning import LawOfFraction, METHODS, all_methods, columns_of_rows, taken
 import numpy as np
 
 TITLE = "Learned rheology of flows that vary"
@@ -113,12 +81,12 @@ def baseline_rows(rows, distinct):
     """The learned method over the baseline, each that which is best with training flows left out."""
     for map_, output in CASES:
         (method, best), (base, its) = best_of(rows, map_, output), best_of(rows, map_, output, BASELINES)
-        ratio = quotient(number(best, "unseen"), number(its, "unseen"))
+        ratio = row_ratio(best, its, "unseen")
         text = f"{name_of(map_, output)}, flows never used: {method} over the best baseline, {base}"
         yield Finding(text, "baselines", *ratio, DEGREES)
     for output in ("fraction", "mu"):
         method, best = best_of(rows, 2, output)
-        ratio = quotient(number(distinct[2, output, method], "published"), number(best, "published"))
+        ratio = row_ratio(distinct[2, output, method], best, "published")
         text = f"{name_of(2, output)}: error of {method} with bins averaged over symmetries, over that"
         yield Finding(text, "symmetries", *ratio, DEGREES)
 

@@ -1,22 +1,13 @@
 #!/usr/bin/python3
-"""Viscosities beside published fits, without noise, and with noise and friction for two outer gaps of lubrication.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+"""Viscosities beside published fits, without noise, and with noise and friction for two outer gaps of lubrication."""
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import difference, over, propagated, quotient
-from studies.figure import BLUE, GREEN, RED, Figure
-from studies.fits import jammed_and_exponent, log_minimum
-from studies.published import mari_fit
-from studies.scenes import REFERENCE_SCENE, TABLE_SCENE, during, merged
-from studies.tables import columns_of, entries, number, read_rows, write_table
-from studies.verdicts import Check, Finding, Statement
-from studies.viscosities import viscosity_row
+from studies.driver import BLUE, Check, Figure, Finding, GREEN, RED, REFERENCE_SCENE, Statement, TABLE_SCENE, columns_of
+from studies.driver import difference, during, entries, first, jammed_and_exponent, log_minimum, main, mari_fit, merged
+from studies.driver import number, over, propagated, quotient, read_rows, row_ratio, viscosity_row, where, write_table
 
 TITLE = "Published viscosities, and the outer gap"
 GAPS = (0.05, 0.2, 0.5)
@@ -128,13 +119,13 @@ def jamming_rows(rows):
 
 def judge():
     table, curves = read_rows(HERE / "table.csv"), read_rows(HERE / "peclet.csv")
-    rows = [r for r in table if r["method"] == "implicit"]
+    rows = where(table, method="implicit")
     yield from noisy_rows(curves)
     yield from steady_rows(rows)
     yield from jamming_rows(rows)
     (explicit,) = (r for r in table if r["method"] == "explicit")
-    implicit = next(r for r in rows if (r["fraction"], r["friction"], r["gap"]) == (0.45, 1, 0.05))
-    ratio = quotient(number(implicit, "viscosity"), number(explicit, "viscosity"))
+    implicit = first(rows, fraction=0.45, friction=1, gap=0.05)
+    ratio = row_ratio(implicit, explicit, "viscosity")
     text = "φ = 0.45, μ = 1, no noise: implicit steps over explicit ones"
     yield Check(text, "method", *ratio, 0.9, 1.1, explicit["seeds"] - 1)
 
@@ -178,7 +169,7 @@ def draw(rows, curves):
         )
     for friction in (0, 1):
         for gap in GAPS:
-            chosen = [r for r in rows if (r["friction"], r["gap"]) == (friction, gap)]
+            chosen = where(rows, friction=friction, gap=gap)
             points = [(r["fraction"], *number(r, "viscosity")) for r in chosen]
             if points:
                 title = f"μ = {friction}, outer gap {gap}"
@@ -187,8 +178,16 @@ def draw(rows, curves):
     panel = figure.panel("Pe", "η_r of pairs, μ = 1", log="xy", powers="x", key="top left", **ends)
     for fraction, mark in zip(NOISY_FRACTIONS, (6, 7)):
         for gap in NOISY_GAPS:
-            points = [(r["peclet"], *number(r, "pairs")) for r in curve_of(curves, fraction, gap)]
-            panel.points(points, f"φ = {fraction:g}, outer gap {gap}", colours[gap], mark, 0.8, joined=True)
+            panel.rows(
+                curve_of(curves, fraction, gap),
+                "peclet",
+                "pairs",
+                f"φ = {fraction:g}, outer gap {gap}",
+                colours[gap],
+                mark,
+                0.8,
+                joined=True,
+            )
     figure.draw()
 
 
@@ -200,7 +199,7 @@ def quick_measure(program):
         text = f"φ = {row['fraction']:g}, μ = {row['friction']}: η_r over the fit"
         yield Check(text, "Mari fit", *number(row, "viscosity_over_fit"), 0.8, 1.2, row["seeds"] - 1)
     text = "φ = 0.45, μ = 0: η_r of pairs at outer gap 0.5 over that at 0.05"
-    yield Statement(text, "L4.7", *quotient(number(wide, "pairs"), number(narrow[0], "pairs")), 1.1, 1.8, 7)
+    yield Statement(text, "L4.7", *row_ratio(wide, narrow[0], "pairs"), 1.1, 1.8, 7)
 
 
 main(HERE, TITLE, measure, quick_measure, judge)

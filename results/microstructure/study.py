@@ -1,21 +1,14 @@
 #!/usr/bin/python3
-"""Where neighbours are in the plane of flow and gradient, from weak to strong flow.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+"""Where neighbours are in the plane of flow and gradient, from weak to strong flow."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import difference, estimate, over, propagated, quotient
-from studies.figure import BLUE, GREEN, RED, Figure
-from studies.scenes import REFERENCE_SCENE, at_peclet, during, merged
-from studies.tables import entries, number, read_numbers, read_rows, write_numbers, write_table
-from studies.verdicts import Check, Finding, Statement
-
+from studies.driver import BLUE, Check, Figure, Finding, GREEN, RED, REFERENCE_SCENE, Statement, at_peclet, difference
+from studies.driver import during, entries, estimate, main, merged, number, over, propagated, quotient, read_numbers
+from studies.driver import read_rows, row_ratio, where, write_numbers, write_rows
 import numpy as np
 
 TITLE = "Microstructure in the flow"
@@ -142,7 +135,7 @@ def anisotropy_rows(found, sectors, degrees):
         name = f"ring at {ring:g} a"
         text = f"{name}, Pe = {weak:g}: compressive less extensional quadrant over their sum: isotropic"
         yield Statement(text, "L4.8", *number(found[weak][ring], "anisotropy"), -0.05, 0.05, degrees)
-        varied = {p: variation([r for r in sectors if (r["peclet"], r["distance"]) == (p, ring)]) for p in peclets}
+        varied = {p: variation(where(sectors, peclet=p, distance=ring)) for p in peclets}
         for low, high in zip(peclets, peclets[1:]):
             text = f"{name}: relative rms of g over the angle, at Pe = {high:g} less that at {low:g}: anisotropy grows"
             yield Statement(text, "L4.8", *difference(varied[high], varied[low]), 0, degrees=degrees)
@@ -169,7 +162,7 @@ def touching(structure):
 
 def method_row(peclet, implicit, explicit):
     text = f"Pe = {peclet}: ring at 2 a by implicit steps over that by explicit ones"
-    ratio = quotient(number(implicit, "height"), number(explicit, "height"))
+    ratio = row_ratio(implicit, explicit, "height")
     return Check(text, "method", *ratio, 0.9, 1.1, explicit["seeds"] - 1)
 
 
@@ -225,7 +218,7 @@ def measure(program):
     table += ring_rows("implicit, 10 Brownian times", 0.01, weak_implicit)
     radial, sectors = [*radial_rows(structures)], [*sector_rows(structures)]
     for name, rows in (("table", table), ("radial", radial), ("sectors", sectors)):
-        write_table(HERE / f"{name}.csv", list(rows[0]), rows, 5)
+        write_rows(HERE / f"{name}.csv", rows, 5)
     draw(structures, radial)
     write_numbers(HERE / "numbers.csv", {TOUCHING: touching(structures[0.01])})
 

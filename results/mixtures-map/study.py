@@ -1,26 +1,17 @@
 #!/usr/bin/python3
 """The jamming map of colloids and grains: the volume fraction at which mixtures of radii 1, 1.4, 5 and 7 jam, over the
-share of grains and the Peclet number of the mean radius, found by bisection (Li 2023, Figs 5.4, 5.5 and 5.6).
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+share of grains and the Peclet number of the mean radius, found by bisection (Li 2023, Figs 5.4, 5.5 and 5.6)."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
 from studies.compositions import ALIKE, ALIKE_NOISE, DENSITY, MIXTURE_SCENE, NOISE, STIFFNESS, THERMAL_ENERGY
 from studies.compositions import composition_row, mean_peclet, packing_models, setting_of, windows
-from studies.estimates import difference, over, place_of_largest, propagated, quotient
-from studies.figure import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, Figure
-from studies.hours import Hours
-from studies.scenes import merged
-from studies.tables import columns_of, number, read_numbers, read_rows, write_numbers, write_table
-from studies.verdicts import Check, Statement
-from studies.viscosities import viscosity_row
-
+from studies.driver import BLACK, BLUE, Check, Figure, GREEN, GREY, Hours, ORANGE, PURPLE, RED, Statement, columns_of
+from studies.driver import difference, main, merged, number, over, place_of_largest, propagated, quotient, read_numbers
+from studies.driver import read_rows, row_ratio, viscosity_row, write_numbers, write_table
 import numpy as np
 
 TITLE = "The jamming map of colloids and grains"
@@ -214,9 +205,7 @@ class Map:
         """Of the viscosity between neighbours that are no further apart than 0.01; infinite to what is jammed."""
         curve = self.curve(row, alpha)
         near = [(a, b) for a, b in zip(curve, curve[1:]) if b["fraction"] - a["fraction"] < 0.0101 and a["seeds"]]
-        steps = [
-            quotient(number(b, "viscosity"), number(a, "viscosity")) if b["seeds"] else (math.inf, 0.0) for a, b in near
-        ]
+        steps = [row_ratio(b, a, "viscosity") if b["seeds"] else (math.inf, 0.0) for a, b in near]
         return max(steps)
 
 

@@ -1,26 +1,18 @@
 #!/usr/bin/python3
 """Colloids and grains with noise: flow curves while grains are added to colloids and colloids to grains, with friction
-(Li 2023, Figs 5.2, 5.3 a, b and 5.6).
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+(Li 2023, Figs 5.2, 5.3 a, b and 5.6)."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.compositions import ALIKE, ALIKE_NOISE, MIXTURE_SCENE, NOISE, STIFFNESS, THERMAL_ENERGY
-from studies.compositions import colloids_added, composition_row, grains_added, mean_peclet, setting_of, windows
-from studies.estimates import estimate, logarithm, over, place_of_largest, propagated, quotient
-from studies.figure import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, Figure
-from studies.fits import log_minimum, log_of_rise, log_of_share, thickening_decades
-from studies.scenes import merged
-from studies.tables import columns_of, number, read_numbers, read_rows, write_numbers, write_table
-from studies.verdicts import Check, Finding, Statement
-from studies.viscosities import viscosity_row
-
+from studies.compositions import ALIKE, ALIKE_NOISE, MIXTURE_SCENE, NOISE, STIFFNESS, THERMAL_ENERGY, colloids_added
+from studies.compositions import composition_row, grains_added, mean_peclet, setting_of, windows
+from studies.driver import BLUE, Check, Figure, Finding, GREEN, GREY, ORANGE, PURPLE, RED, Statement, columns_of
+from studies.driver import estimate, log_minimum, log_of_rise, log_of_share, logarithm, main, merged, number, over
+from studies.driver import place_of_largest, propagated, quotient, read_numbers, read_rows, row_ratio
+from studies.driver import thickening_decades, viscosity_row, write_numbers, write_table
 import numpy as np
 
 TITLE = "Colloids and grains with noise"
@@ -459,7 +451,7 @@ def quick_measure(program):
     """Grains that friction holds flow many times better with colloids among them, at Pe_c = 1."""
     cases = [(alpha, colloids_added(alpha, BASE), 1) for alpha in (1, 0.7)]
     of = {r["alpha"]: r for r in rows_of(program, "quick", cases, count_times=0.5)}
-    ratio = quotient(number(of[0.7], "viscosity"), number(of[1], "viscosity"))
+    ratio = row_ratio(of[0.7], of[1], "viscosity")
     yield Statement("Pe_c = 1: η_r at α = 0.7 over that of grains alone", "L5.2c", *ratio, 0, 0.5, DEGREES)
 
 

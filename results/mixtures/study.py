@@ -1,25 +1,17 @@
 #!/usr/bin/python3
 """Colloids and grains without noise: where mixtures of radii 1, 1.4, 5 and 7 jam, with and without friction, beside two
-models of packings; and whether dense grains flow better when colloids are added to them.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+models of packings; and whether dense grains flow better when colloids are added to them."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.compositions import COLLOIDS, GRAINS, MIXTURE_SCENE, colloids_added, packing_models
-from studies.compositions import composition_row, setting_of
-from studies.estimates import difference, estimate, over, place_of_largest, propagated, quotient
-from studies.figure import BLUE, GREEN, ORANGE, RED, Figure
-from studies.scenes import during, merged
-from studies.tables import columns_of, entries, number, read_rows, write_table
-from studies.verdicts import Check, Finding, Statement
-from studies.viscosities import viscosity_row
-
+from studies.compositions import COLLOIDS, GRAINS, MIXTURE_SCENE, colloids_added, composition_row, packing_models
+from studies.compositions import setting_of
+from studies.driver import BLUE, Check, Figure, Finding, GREEN, ORANGE, RED, Statement, columns_of, difference, during
+from studies.driver import entries, estimate, main, merged, number, over, place_of_largest, propagated, quotient
+from studies.driver import read_rows, row_ratio, viscosity_row, where, write_table
 import numpy as np
 
 TITLE = "Colloids and grains without noise"
@@ -239,7 +231,7 @@ def consistency_rows(rows):
         name = f"μ = {friction}, α = {TESTED:g}"
         sizes = sorted(of_part["size"], key=lambda r: r["count"])
         for one, other in zip(sizes, sizes[1:]):
-            ratio = quotient(number(other, "viscosity"), number(one, "viscosity"))
+            ratio = row_ratio(other, one, "viscosity")
             text = f"{name}: η_r of {other['count']:.0f} spheres over that of {one['count']:.0f}"
             yield Check(text, "size", *ratio, 0.9, 1.1, SEEDS - 1)
         for part, what in (
@@ -247,7 +239,7 @@ def consistency_rows(rows):
             ("light", f"a density {LIGHTER} times less"),
         ):
             (changed,) = of_part[f"{part}-{STIFFER if part == 'stiff' else LIGHTER}"]
-            ratio = quotient(number(changed, "viscosity"), number(sizes[0], "viscosity"))
+            ratio = row_ratio(changed, sizes[0], "viscosity")
             yield Check(f"{name}: η_r with {what} over η_r", "Table 5.1", *ratio, 0.95, 1.05, SEEDS - 1)
     curves = [r for r in rows if r["part"] == "curve" and r["seeds"]]
     flowing = [number(r, "mean_overlap") for r in curves if r["viscosity"] < 1000]
@@ -289,7 +281,7 @@ def draw():
         for alpha, colour in ((0, BLUE), (0.5, GREEN), (0.8, ORANGE), (1, RED)):
             if alpha not in of:
                 continue
-            curve = [r for r in rows if (r["part"], r["friction"], r["alpha"]) == ("curve", friction, alpha)]
+            curve = where(rows, part="curve", friction=friction, alpha=alpha)
             jammed = of[alpha]["jammed"]
             places = [(1 - r["fraction"] / jammed, *number(r, "viscosity")) for r in curve if r["seeds"]]
             panel.points(places, f"α = {alpha:g}, μ = {friction}", colour, mark)
@@ -303,7 +295,7 @@ def quick_measure(program):
         for friction, cases in ((0, [(0, 300, 0.6), (0.7, 1000, 0.6)]), (1, [(0, 300, 0.54), (0.7, 1000, 0.54)]))
     )
     for name, of in (("μ = 0, φ = 0.6", smooth), ("μ = 1, φ = 0.54", rough)):
-        ratio = quotient(number(of[0.7], "viscosity"), number(of[0], "viscosity"))
+        ratio = row_ratio(of[0.7], of[0], "viscosity")
         yield Statement(f"{name}: η_r at α = 0.7 over that of colloids alone", "L5.3b", *ratio, 0, 0.8)
 
 

@@ -1,34 +1,17 @@
 #!/usr/bin/python3
 """Flow curves of silica spheres that repel and attract each other, with two concentrations of salt, of Monti et al.
-(2021), Fig. 8.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+(2021), Fig. 8."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import logarithm, over, propagated, quotient, relative_difference
-from studies.figure import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, Figure
-from studies.monti import (
-    DRAG,
-    PROGRAM_RATIO,
-    PUBLISHED_RANGE,
-    SCENE,
-    TABLE_RATIO,
-    contact,
-    electrochemistry,
-    lubrication,
-    spheres,
-)
-from studies.published import mari_fit
-from studies.scenes import during, merged
-from studies.tables import columns_of, number, read_numbers, read_table, write_numbers, write_table
-from studies.verdicts import Check, Finding, Statement
-from studies.viscosities import flags, viscosity_row
+from studies.driver import BLUE, Check, Figure, Finding, GREEN, GREY, ORANGE, PURPLE, RED, Statement, columns_of, during
+from studies.driver import flags, logarithm, main, mari_fit, merged, number, over, propagated, read_numbers, read_rows
+from studies.driver import relative_difference, row_ratio, viscosity_row, where, write_numbers, write_table
+from studies.monti import DRAG, PROGRAM_RATIO, PUBLISHED_RANGE, SCENE, TABLE_RATIO, contact, electrochemistry
+from studies.monti import lubrication, spheres
 
 TITLE = "Silica with two concentrations of salt"
 FRACTION, FRICTION = 0.46, 0.5
@@ -80,13 +63,13 @@ def row_of(case, point):
 
 
 def curve_of(rows, length, ratio):
-    chosen = [r for r in rows if (r["length"], r["ratio"]) == (length, ratio)]
+    chosen = where(rows, length=length, ratio=ratio)
     return sorted(chosen, key=lambda r: r["rate"])
 
 
 def slope(low, high):
     """d ln eta / d ln rate between two rows."""
-    rise = logarithm(quotient(number(high, "viscosity"), number(low, "viscosity")))
+    rise = logarithm(row_ratio(high, low, "viscosity"))
     return over(rise, math.log(high["rate"] / low["rate"]))
 
 
@@ -140,7 +123,7 @@ def method_numbers(program):
 
 
 def judge():
-    table = read_table(HERE / "table.csv")
+    table = read_rows(HERE / "table.csv")
     # The slope at 1 has campaigns of its own, with more seeds.
     most = max(r["seeds"] for r in table)
     ends = sorted((r for r in table if r["seeds"] == most), key=lambda r: r["rate"])
@@ -176,12 +159,21 @@ def draw(rows):
         panel.upright(x)
         panel.text(text, x * 0.8, 90, "right", rotation=90, fontsize=9)
     for length, colour in ((FREE, BLUE), (SALTED, RED)):
-        points = [(r["rate"], *number(r, "viscosity")) for r in curve_of(rows, length, TABLE_RATIO)]
-        panel.points(points, f"{SALTS[length]}, λ = {length} a", colour, 7, 0.8, joined=True)
+        panel.rows(
+            curve_of(rows, length, TABLE_RATIO),
+            "rate",
+            "viscosity",
+            f"{SALTS[length]}, λ = {length} a",
+            colour,
+            7,
+            0.8,
+            joined=True,
+        )
     panel = figure.panel("γ̇/γ̇_0, F(0) = F_R + F_A", "η_r", f"λ = {SALTED} a (0.4 M)", **ends)
     for ratio, colour in zip((TABLE_RATIO, *SCANNED[SALTED]), (RED, ORANGE, GREEN, BLUE, PURPLE)):
-        points = [(r["rate"], *number(r, "viscosity")) for r in curve_of(rows, SALTED, ratio)]
-        panel.points(points, f"F_R/F_A = {ratio}", colour, 7, 0.8, joined=True)
+        panel.rows(
+            curve_of(rows, SALTED, ratio), "rate", "viscosity", f"F_R/F_A = {ratio}", colour, 7, 0.8, joined=True
+        )
     figure.draw()
 
 
@@ -191,10 +183,10 @@ def quick_measure(program):
     slow, least, fast, sticky, torn = rows_of(program, "quick", cases, 6, small)
     name = f"salt-free, F_R/F_A = {TABLE_RATIO}"
     for text, row, low, high in (("10⁻⁵", slow, 1.05, 1.6), ("0.1", fast, 1.7, 4)):
-        ratio = quotient(number(row, "viscosity"), number(least, "viscosity"))
+        ratio = row_ratio(row, least, "viscosity")
         yield Check(f"{name}: η_r at rate {text} over that at 10⁻³", "expected", *ratio, low, high, 5)
     text = "0.4 M, F_R/F_A = 0.5: η_r at rate 10⁻³ over that at 1"
-    ratio = quotient(number(sticky, "viscosity"), number(torn, "viscosity"))
+    ratio = row_ratio(sticky, torn, "viscosity")
     yield Check(text, "expected", *ratio, 1.3, 6, 5)
 
 

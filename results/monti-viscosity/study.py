@@ -1,9 +1,6 @@
 #!/usr/bin/python3
 """Viscosities without noise of the suspensions of Monti et al. (2021), without and with friction, beside the fits of
-their Fig. 7.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+their Fig. 7."""
 import itertools
 import math
 import sys
@@ -11,17 +8,11 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import over, propagated, quotient, relative_difference
-from studies.figure import BLUE, GREY, RED, Figure
-from studies.fits import divergence
+from studies.driver import BLUE, Check, Figure, Finding, GREY, MARI_FITS, RED, Statement, columns_of, divergence
+from studies.driver import diverging, during, entries, flags, main, mari_fit, merged, number, over, propagated, quotient
+from studies.driver import read_numbers, read_rows, relative_difference, row_ratio, viscosity_row, write_numbers
+from studies.driver import write_table
 from studies.monti import PAIRS, contact, in_units, kim_karrila, lubrication
-from studies.published import MARI_FITS, diverging, mari_fit
-from studies.scenes import during, merged
-from studies.tables import columns_of, entries, number, read_numbers, read_rows, write_numbers, write_table
-from studies.verdicts import Check, Finding, Statement
-from studies.viscosities import flags, viscosity_row
-
 import numpy as np
 
 TITLE = "Viscosities of Monti et al. with and without friction"
@@ -207,7 +198,7 @@ def start_rows(rows, later):
     for row in later:
         friction = {v: k for k, v in NAMES.items()}[row["system"]]
         (early,) = (r for r in chosen(rows, friction, row["gap"]) if r["fraction"] == row["fraction"])
-        ratio = quotient(number(row, "viscosity"), number(early, "viscosity"))
+        ratio = row_ratio(row, early, "viscosity")
         text = f"{row['system']}, φ = {row['fraction']:g}: η_r after a strain of 20 over that after 2"
         yield Check(text, "start", *ratio, 0.95, 1.05, row["seeds"] - 1)
 
@@ -298,7 +289,7 @@ def draw(rows, fits):
         panel.curve(lambda phi, m=friction: mari_fit(phi, m), "Mari fit (published)", span=span, width=2)
         for gap, colour in zip(GAPS, (BLUE, RED)):
             points = chosen(rows, friction, gap)
-            panel.points([(r["fraction"], *number(r, "viscosity")) for r in points], f"gap {gap} a", colour, 7, 0.9)
+            panel.rows(points, "fraction", "viscosity", f"gap {gap} a", colour, 7, 0.9)
             factor, jammed, exponent = (n[0] for n in fits[friction, gap, "one power"])
             ends = (0.28, min(0.58, jammed - 0.002))
             panel.curve(
@@ -327,7 +318,7 @@ def quick_measure(program):
     text = "FL, φ = 0.45: rms of ln(η_r/fit) with the pairs' stress counted twice, less that counted once"
     yield Check(text, "M eq 8", *distance_from([smooth]), low=0.1)
     text = "FR, φ = 0.45: η_r with rolling resistance over that without"
-    yield Statement(text, "M app B", *quotient(number(rolled, "viscosity"), number(rough, "viscosity")), 1.1, 2, 7)
+    yield Statement(text, "M app B", *row_ratio(rolled, rough, "viscosity"), 1.1, 2, 7)
     yield from unit_rows(dict(unit_numbers(program)))
 
 

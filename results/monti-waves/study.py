@@ -1,9 +1,6 @@
 #!/usr/bin/python3
 """Shear with and without a wave of the rate, large and small spheres with friction, repulsion and attraction: Monti et
-al. (2021), Table 3 and Fig. 10.
-
-study.py BIN [FOLDER] [--quick | --long | --from-table]
-"""
+al. (2021), Table 3 and Fig. 10."""
 import math
 import os
 import sys
@@ -11,14 +8,10 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import difference, estimate, quotient, relative_difference
-from studies.figure import BLACK, BLUE, GREEN, ORANGE, RED, Figure
+from studies.driver import BLACK, BLUE, Check, Figure, Finding, GREEN, ORANGE, RED, Statement, columns_of, difference
+from studies.driver import during, entries, estimate, main, merged, number, quotient, read_numbers, read_rows
+from studies.driver import relative_difference, write_numbers, write_table
 from studies.monti import DRAG, PROGRAM_RATIO, SCENE, TABLE_RATIO, contact, electrochemistry, lubrication, spheres
-from studies.scenes import during, merged
-from studies.tables import columns_of, entries, number, read_numbers, read_rows, write_numbers, write_table
-from studies.verdicts import Check, Finding, Statement
-
 import numpy as np
 
 TITLE = "A wave in the shear of Monti et al."

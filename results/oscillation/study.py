@@ -1,21 +1,14 @@
 #!/usr/bin/python3
 """Storage and loss of a Brownian suspension by shear to and fro, beside those of linear response, and from which
-amplitude on they are no longer those.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+amplitude on they are no longer those."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import difference, estimate, over, quotient
-from studies.figure import BLUE, GREEN, ORANGE, RED, Figure
-from studies.scenes import REFERENCE_SCENE, merged
-from studies.tables import columns_of, entries, number, read_rows, write_table
-from studies.verdicts import Check, Finding
+from studies.driver import BLUE, Check, Figure, Finding, GREEN, ORANGE, RED, REFERENCE_SCENE, columns_of, difference
+from studies.driver import entries, estimate, main, merged, number, over, quotient, read_rows, write_table
 
 TITLE = "Shear to and fro beside linear response"
 AT_REST = HERE.parent / "at-rest" / "curves.csv"

@@ -1,20 +1,14 @@
 #!/usr/bin/python3
-"""Shear that is reversed, stopped or shaken across, and planar extension beside shear.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+"""Shear that is reversed, stopped or shaken across, and planar extension beside shear."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import estimate, over, quotient
-from studies.figure import BLUE, GREEN, ORANGE, RED, Figure
-from studies.scenes import REFERENCE_SCENE, during, merged
-from studies.tables import columns_of, entries, number, read_numbers, read_rows, write_numbers, write_table
-from studies.verdicts import Check, Finding
+from studies.driver import BLUE, Check, Figure, Finding, GREEN, ORANGE, RED, REFERENCE_SCENE, columns_of, during
+from studies.driver import entries, estimate, main, merged, number, over, quotient, read_numbers, read_rows, row_ratio
+from studies.driver import where, write_numbers, write_table
 
 TITLE = "Reversal, extension and shear across"
 SCENE = merged(
@@ -151,7 +145,7 @@ def judge():
         yield Finding(f"{name}: strain at which nine tenths of it are back", "reversal", again, AFTER / BINS, degrees)
     still, *shaken = read_rows(HERE / "shaken.csv")
     best = min(shaken, key=lambda row: row["viscosity"])
-    ratio = quotient(number(best, "viscosity"), number(still, "viscosity"))
+    ratio = row_ratio(best, still, "viscosity")
     text = f"shaken across by {best['amplitude']:g} at {best['frequency']:g} γ̇: viscosity over that without"
     yield Check(text, "Lin et al. 2016: it falls", *ratio, 0, 0.8, best["seeds"] - 1)
     for row in shaken:
@@ -171,16 +165,14 @@ def draw():
     two = figure.panel("φ", "η_r", "planar extension and shear", log="y", key="top left")
     rows = read_rows(HERE / "extension.csv")
     for name, colour, mark in (("shear", BLUE, 7), ("extension", RED, 6)):
-        two.points([(r["fraction"], *number(r, name)) for r in rows], name, colour, mark, 1.2)
+        two.rows(rows, "fraction", name, name, colour, mark, 1.2)
     still, *shaken = read_rows(HERE / "shaken.csv")
     place = {"log": "x", "key": "top right", "x_range": (0.2, 5), "y_range": (0, 1.4)}
     title = f"shaken across, φ = {SHAKEN:.2f}"
     three = figure.panel("largest rate across / γ̇", "viscosity over that of shear alone", title, **place)
     for amplitude, colour in ((0.01, BLUE), (0.03, GREEN), (0.1, ORANGE)):
-        mine = [r for r in shaken if r["amplitude"] == amplitude]
-        points = [
-            (amplitude * r["frequency"], *quotient(number(r, "viscosity"), number(still, "viscosity"))) for r in mine
-        ]
+        mine = where(shaken, amplitude=amplitude)
+        points = [(amplitude * r["frequency"], *row_ratio(r, still, "viscosity")) for r in mine]
         three.points(points, f"amplitude {amplitude:g}", colour, joined=True)
     figure.draw()
 

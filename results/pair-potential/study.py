@@ -1,21 +1,13 @@
 #!/usr/bin/python3
-"""Two spheres in a cube of edge 4 a: their distances, and the potential of mean force that follows.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+"""Two spheres in a cube of edge 4 a: their distances, and the potential of mean force that follows."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import difference, estimate, logarithm, over
-from studies.figure import BLUE, RED, Figure
-from studies.scenes import during
-from studies.tables import read_numbers, write_numbers, write_table
-from studies.verdicts import Check, Statement
-
+from studies.driver import BLUE, Check, Figure, RED, Statement, difference, during, estimate, logarithm, main, over
+from studies.driver import read_numbers, write_numbers, write_table
 import numpy as np
 
 TITLE = "Potential of mean force of two spheres"

@@ -1,22 +1,13 @@
 #!/usr/bin/python3
-"""Time of a run against the number of particles.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+"""Time of a run against the number of particles."""
 import statistics
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import estimate
-from studies.figure import BLUE, RED, Figure
-from studies.fits import line_through
-from studies.scenes import REFERENCE_SCENE, at_peclet, merged
-from studies.tables import read_numbers, write_numbers, write_table
-from studies.verdicts import Finding, Statement
-
+from studies.driver import BLUE, Figure, Finding, RED, REFERENCE_SCENE, Statement, at_peclet, estimate, line_through
+from studies.driver import main, merged, read_numbers, where, write_numbers, write_rows
 import numpy as np
 
 TITLE = "Time against the number of particles"
@@ -93,7 +84,7 @@ def measure(program):
     # Their steps cost little: more of them, or the difference of two packings is what is measured.
     explicit = times(program, [n for n in COUNTS[::2] if n <= PUBLISHED], 10, 2e7, "explicit")
     rows = [table_row(m, row) for m, table in (("implicit", implicit), ("explicit", explicit)) for row in table]
-    write_table(HERE / "table.csv", list(rows[0]), rows, 4)
+    write_rows(HERE / "table.csv", rows, 4)
     draw(rows)
     numbers = [
         number_of("implicit", implicit, PUBLISHED),
@@ -115,7 +106,7 @@ def draw(rows):
     middle = next(r["processor_ns"] for r in rows if r["method"] == "implicit" and r["particles"] == 1000)
     of_step.curve(lambda n: middle * 1e-9 * n, "proportional to N")
     for method, colour, mark in (("implicit", BLUE, 7), ("explicit", RED, 5)):
-        chosen = [r for r in rows if r["method"] == method]
+        chosen = where(rows, method=method)
         counts = np.array([r["particles"] for r in chosen])
         bars = np.array([[r[f"processor_{name}"] for name in ("ns", "lowest", "highest")] for r in chosen])
         in_all = np.column_stack((counts, bars * counts[:, None] * 1e-9))

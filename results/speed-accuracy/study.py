@@ -1,24 +1,16 @@
 #!/usr/bin/python3
 """What a step costs, and what it does to the viscosity: relative difference from the reference over the processor time
-to a standard error of 2 %, and the same of the pressure where it is known. lammps.csv has points of LAMMPS.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+to a standard error of 2 %, and the same of the pressure where it is known. lammps.csv has points of LAMMPS."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import estimate, relative_difference, student_quantile
-from studies.figure import BLUE, GREEN, RED, Figure
-from studies.scenes import REFERENCE_SCENE, during, merged
+from studies.driver import BLUE, Check, Figure, GREEN, RED, REFERENCE_SCENE, counts_text, during, estimate, flags, main
+from studies.driver import markdown_head, markdown_row, merged, read_texts, relative_difference, student_quantile, where
+from studies.driver import write_table
 from studies.speed_accuracy import COLUMNS, PANELS
-from studies.tables import markdown_head, markdown_row, read_texts, write_table
-from studies.verdicts import Check
-from studies.viscosities import counts_text, flags
-
 import numpy as np
 
 TITLE = "Speed and accuracy of steps"
@@ -268,9 +260,9 @@ def draw_chart(rows, picture):
     lines = -(-(len(names) + len(with_pressure) + 1) // ACROSS)
     figure = Figure(picture, ACROSS, lines, (ACROSS * 380, lines * 310))
     for name in names:
-        add_panel(figure, name, [r for r in rows if r["panel"] == name])
+        add_panel(figure, name, where(rows, panel=name))
     for name in with_pressure:
-        add_panel(figure, name, [r for r in rows if r["panel"] == name], "pressure_")
+        add_panel(figure, name, where(rows, panel=name), "pressure_")
     add_legend(figure)
     figure.draw()
 

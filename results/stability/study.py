@@ -1,22 +1,13 @@
 #!/usr/bin/python3
-"""Where each method fails, and how: a row for each case, a column for each step of each method.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+"""Where each method fails, and how: a row for each case, a column for each step of each method."""
 import collections
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.campaigns import Point
-from studies.command_line import main
-from studies.estimates import relative_difference, student_quantile
-from studies.figure import Figure
-from studies.scenes import REFERENCE_SCENE, at_peclet, during, merged
-from studies.tables import read_texts, write_table
-from studies.verdicts import Check
-from studies.viscosities import counts_text, flags
+from studies.driver import Check, Figure, Point, REFERENCE_SCENE, at_peclet, counts_text, during, flags, main, merged
+from studies.driver import read_texts, relative_difference, student_quantile, write_table
 
 TITLE = "Where each method fails, and how"
 BASE = merged(REFERENCE_SCENE, {"particles": {"count": 100}, **during({"strain": 0.5}, {"strain": 0.75})})

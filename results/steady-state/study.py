@@ -1,23 +1,14 @@
 #!/usr/bin/python3
-"""How long the viscosity takes to become steady, from a random packing, in weak and in strong flow.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+"""How long the viscosity takes to become steady, from a random packing, in weak and in strong flow."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import difference, estimate, jackknife, logarithm, over, quotient, scaled
-from studies.figure import BLUE, GREEN, RED, Figure
-from studies.fits import lines
-from studies.green_kubo import table_at_rest
-from studies.scenes import TABLE_SCENE, merged
-from studies.tables import entries, number, read_numbers, read_rows, write_numbers, write_table
-from studies.verdicts import Finding, Statement
-
+from studies.driver import BLUE, Figure, Finding, GREEN, RED, Statement, TABLE_SCENE, difference, entries, estimate
+from studies.driver import jackknife, lines, logarithm, main, merged, number, over, read_numbers, read_rows, row_ratio
+from studies.driver import scaled, table_at_rest, where, write_numbers, write_rows
 import numpy as np
 
 TITLE = "Time until the viscosity is steady"
@@ -94,7 +85,7 @@ def measure(program):
                 place = {"peclet": peclet, "fraction": fraction, "seeds": len(rows), "unit": unit}
                 place |= {"from": k * length / BLOCKS, "to": (k + 1) * length / BLOCKS}
                 table.append(place | entries("pairs", estimate(values)))
-    write_table(HERE / "table.csv", list(table[0]), table, 5)
+    write_rows(HERE / "table.csv", table, 5)
     write_numbers(HERE / "numbers.csv", numbers)
 
 
@@ -118,7 +109,7 @@ def weak_rows(numbers):
         answer = scaled(number(rest[fraction], "time"), MULTIPLE)
         text = f"φ = {fraction:g}, Pe → 0, from equilibrium: τ_B to 95 % of the answer to a flow, 3.0 τ_φ"
         yield Finding(text, "zero-shear", *answer, rest[fraction]["seeds"] - 1)
-    longer = quotient(*(number(rest[f], "time") for f in (0.56, 0.54)))
+    longer = row_ratio(rest[0.56], rest[0.54], "time")
     text = "τ_φ at φ = 0.56 over that at 0.54 (published: stretched for φ above 0.54)"
     yield Statement(text, "L 4.2.1", *longer, 1, degrees=rest[0.56]["seeds"] - 1)
     for low, high in ((0.45, 0.54), (0.54, 0.56)):
@@ -151,7 +142,7 @@ def draw():
         title = "η_r of pairs over its steady value"
         panel = figure.panel(labels[peclet], title, f"Pe = {peclet:g}", key="bottom right", **ends)
         for fraction, colour in zip(FRACTIONS, (BLUE, GREEN, RED)):
-            rows = [r for r in table if (r["peclet"], r["fraction"]) == (peclet, fraction)]
+            rows = where(table, peclet=peclet, fraction=fraction)
             steady = np.mean([r["pairs"] for r in rows if r["from"] >= late[0] - 1e-9])
             points = [((r["from"] + r["to"]) / 2, *over(number(r, "pairs"), steady)) for r in rows]
             panel.points(points, f"φ = {fraction:g}", colour, 7, 0.7, joined=True)

@@ -1,22 +1,15 @@
 #!/usr/bin/python3
 """Flow at a given stress: beside flow at a given rate, with and without noise; what noise makes of the strain; and
-discontinuous shear thickening, which a given rate jumps over.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+discontinuous shear thickening, which a given rate jumps over."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.at_rest import exact_rows
-from studies.command_line import main
-from studies.estimates import estimate, quotient
-from studies.figure import BLUE, GREEN, ORANGE, RED, Figure
-from studies.scenes import REFERENCE_SCENE, during, merged
-from studies.tables import columns_of, entries, number, read_numbers, read_rows, write_numbers, write_table
-from studies.verdicts import Check, Finding
+from studies.driver import BLUE, Check, Figure, Finding, GREEN, ORANGE, RED, REFERENCE_SCENE, columns_of, during
+from studies.driver import entries, estimate, exact_rows, main, merged, number, quotient, read_numbers, read_rows
+from studies.driver import row_ratio, where, write_numbers, write_table
 
 TITLE = "Flow at a given stress"
 # Lengths in radii, the solvent's viscosity 1. Of grains the critical load is the unit of force, of colloids kT the unit
@@ -121,13 +114,13 @@ def read():
 
 def pairs_of(rows, kind):
     """At the same stress: by rate, and by stress."""
-    mine = [r for r in rows if r["kind"] == kind]
+    mine = where(rows, kind=kind)
     return list(zip(mine[::2], mine[1::2]))
 
 
 def slopes(rows, fraction):
     """d ln viscosity / d ln stress between neighbours of the curve at given stresses, with errors."""
-    curve = [r for r in rows if (r["kind"], r["fraction"], r["control"]) == ("thickening", fraction, "stress")]
+    curve = where(rows, kind="thickening", fraction=fraction, control="stress")
     for low, high in zip(curve, curve[1:]):
         width = math.log(high["at"] / low["at"])
         value = math.log(high["viscosity"] / low["viscosity"]) / width
@@ -143,7 +136,7 @@ def judge():
     rows = read()
     for kind, unit in (("grains", "F_CL/ηa²"), ("colloids", "kT/ηa³")):
         for by_rate, by_stress in pairs_of(rows, kind):
-            ratio = quotient(number(by_stress, "viscosity"), number(by_rate, "viscosity"))
+            ratio = row_ratio(by_stress, by_rate, "viscosity")
             text = f"{kind}, rate {by_rate['at']:g} {unit}: viscosity at the stress over that at the rate"
             yield Check(text, "both controls", *ratio, 0.92, 1.08, by_rate["seeds"] - 1)
     value, error, degrees = read_numbers(HERE / "diffusion.csv")["diffusion"]
@@ -163,7 +156,7 @@ def judge():
         text = f"φ = {fraction:.2f}: largest d ln η / d ln σ, at σ = {stress:.2g} F_CL/a²"
         yield Finding(text, "steepness", value, error)
     for fraction in THICKENING:
-        curve = [r for r in rows if (r["kind"], r["fraction"], r["control"]) == ("thickening", fraction, "stress")]
+        curve = where(rows, kind="thickening", fraction=fraction, control="stress")
         share = sum(r["flowing"] * r["seeds"] for r in curve) / sum(r["seeds"] for r in curve)
         seeds = sum(r["seeds"] for r in curve)
         yield Finding(
@@ -199,9 +192,8 @@ def draw():
     figure = Figure(HERE / "chart.png", columns=3, size=(1500, 480))
     one = figure.panel("σ a²/F_{CL}", "η_r", "φ = 0.50 to 0.57; friction 1", log="xy", key="top left")
     for fraction, colour in zip(THICKENING, (BLUE, GREEN, ORANGE, RED)):
-        curve = [r for r in rows if (r["kind"], r["fraction"], r["control"]) == ("thickening", fraction, "stress")]
-        points = [(r["at"], *number(r, "viscosity")) for r in curve]
-        one.points(points, f"at a stress, {fraction:.2f}", colour, joined=True)
+        curve = where(rows, kind="thickening", fraction=fraction, control="stress")
+        one.rows(curve, "at", "viscosity", f"at a stress, {fraction:.2f}", colour, joined=True)
     by_rate = [(r["at"] * r["viscosity"], *number(r, "viscosity")) for r, _ in pairs_of(rows, "grains")]
     one.points(by_rate, "at a rate, 0.50", BLUE, 6)
     densest = JUMPING

@@ -8,8 +8,7 @@ import sys
 import tempfile
 
 from studies.campaigns import Program
-from studies.pages import rewrite, tables_of
-from studies.verdicts import verdict
+from studies.verdicts import rewrite, tables_of, verdict
 
 
 def processor():

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from studies.packings import gap_of, linear_mixture, rods
+from studies.published import gap_of, linear_mixture, rods
 from studies.scenes import REFERENCE_SCENE, merged
 
 COLLOIDS, GRAINS = (1.0, 1.4), (5.0, 7.0)

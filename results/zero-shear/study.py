@@ -1,21 +1,13 @@
 #!/usr/bin/python3
-"""Brownian viscosity of suspensions at rest, from the correlation of the structural Brownian stress.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+"""Brownian viscosity of suspensions at rest, from the correlation of the structural Brownian stress."""
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import estimate, logarithm, over, quotient
-from studies.figure import BLUE, GREEN, RED, Figure, shade
-from studies.green_kubo import curve, fit_with_errors
-from studies.scenes import REFERENCE_SCENE, during, merged
-from studies.tables import entries, number, read_numbers, read_rows, write_numbers, write_table
-from studies.verdicts import Finding, Statement
-
+from studies.driver import BLUE, Figure, Finding, GREEN, RED, REFERENCE_SCENE, Statement, during, entries, estimate
+from studies.driver import fit_with_errors, logarithm, main, merged, number, over, quotient, read_numbers, read_rows
+from studies.driver import row_ratio, shade, viscosity_up_to, write_numbers, write_rows
 import numpy as np
 
 TITLE = "Zero-shear viscosity by Green and Kubo"
@@ -41,7 +33,7 @@ def measured(program, fractions, seeds, patch=None, name="zero-shear"):
     points = program.run(name, merged(SCENE, patch or {}), settings, seeds, "green_kubo_viscosity")
     table, curves = [], {}
     for fraction, point in zip(fractions, points):
-        times, values = curve(point, BROWNIAN_TIME)
+        times, values = viscosity_up_to(point, BROWNIAN_TIME)
         (viscosity, tau), (viscosity_error, tau_error) = fit_with_errors(times, values)
         found = {**entries("viscosity", (viscosity, viscosity_error)), **entries("time", (tau, tau_error))}
         table.append({"fraction": fraction, "seeds": len(values), **found})
@@ -67,9 +59,9 @@ def growth_rows(rows, degrees):
     text = "growth rate d ln τ_φ / dφ above φ = 0.5 less that below: weakly varying, then growing quickly"
     yield Statement(text, "L4.3b", above - below, float(error), low=0, degrees=degrees)
     text = f"τ_φ at φ = {densest['fraction']:g} over that at 0.5: it grows"
-    yield Statement(text, "L4.3b", *quotient(*(number(r, "time") for r in (densest, dense))), low=1, degrees=degrees)
+    yield Statement(text, "L4.3b", *row_ratio(densest, dense, "time"), low=1, degrees=degrees)
     text = f"η_φ at φ = {densest['fraction']:g} over that at {lowest['fraction']:g}"
-    rise = quotient(*(number(r, "viscosity") for r in (densest, lowest)))
+    rise = row_ratio(densest, lowest, "viscosity")
     yield Statement(text, "L4.3b", *rise, low=1, degrees=degrees)
 
 
@@ -114,7 +106,7 @@ def draw(table, curves):
 
 def measure(program):
     table, curves = measured(program, FRACTIONS, 24)
-    write_table(HERE / "table.csv", list(table[0]), table, 5)
+    write_rows(HERE / "table.csv", table, 5)
     draw(table, curves)
     degrees, numbers = min(row["seeds"] for row in table) - 1, {}
     for row in table:
@@ -123,7 +115,7 @@ def measure(program):
             numbers[name] = (*distance_of(row, curves[row["fraction"]]), degrees)
     explicit = measured(program, [0.4], 4, EXPLICIT, "zero-shear-explicit")[0][0]
     implicit = next(row for row in table if row["fraction"] == 0.4)
-    ratio = quotient(number(implicit, "viscosity"), number(explicit, "viscosity"))
+    ratio = row_ratio(implicit, explicit, "viscosity")
     write_numbers(HERE / "numbers.csv", numbers | {EXPLICIT_NAME: (*ratio, explicit["seeds"] - 1)})
 
 
