@@ -7,9 +7,9 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.driver import BLUE, Check, ERROR, Figure, Finding, GREEN, JAMMED_AT_REST, RED, REFERENCE_SCENE, SLOWEST
-from studies.driver import at_peclet, difference, diverging, during, entries, estimate, flow_over_rest, main, merged
-from studies.driver import number, over, price, quotient, read_rows, seconds_of_window, shade, slow_rows
-from studies.driver import storage_by_loss, viscosity_at_high_frequency, where, write_table
+from studies.driver import at_peclet, difference, diverging, during, entries, estimate, flow_over_rest
+from studies.driver import in_brownian_times, main, merged, number, over, price, quotient, read_rows, seconds_of_window
+from studies.driver import shade, slow_rows, storage_by_loss, viscosity_at_high_frequency, where, write_table
 import numpy as np
 
 TITLE = "Viscosity at rest by linear response"
@@ -18,12 +18,10 @@ VISCOSITY, THERMAL_ENERGY = 0.1, 0.017
 BROWNIAN_TIME = VISCOSITY / THERMAL_ENERGY
 SCENE = merged(
     REFERENCE_SCENE,
-    {
-        "particles": {"count": 100},
-        "flow": {"shear_rate": 0},
-        "fluid": {"thermal_energy": THERMAL_ENERGY},
-        "observables": ["stress", "linear_response"],
-    },
+    particles={"count": 100},
+    flow={"shear_rate": 0},
+    fluid={"thermal_energy": THERMAL_ENERGY},
+    observables=["stress", "linear_response"],
 )
 EQUILIBRATION = 100  # Brownian times
 # Brownian times of the window, 80 times the viscosity or more, and seeds.
@@ -48,8 +46,8 @@ TIMES_OF_CORRELATION = 2.5
 
 
 def scene_at(fraction, patch=None):
-    window = during({"brownian_times": EQUILIBRATION}, {"brownian_times": WINDOWS[fraction][0]})
-    return merged(merged(SCENE, {"volume_fraction": fraction, **window}), patch or {})
+    window = in_brownian_times(EQUILIBRATION, WINDOWS[fraction][0])
+    return merged(SCENE, {"volume_fraction": fraction, **window}, patch or {})
 
 
 def point_of(program, name, scene, seeds):
@@ -100,7 +98,7 @@ def price_rows(program, fraction, viscosity):
         windows = EQUILIBRATION, PRICE_WINDOW
         patch = at_peclet(peclet) | {"observables": None, "volume_fraction": fraction}
         patch |= during(*({"brownian_times": time} for time in windows))
-        scene = merged(merged(SCENE, {"fluid": {"thermal_energy": None}}), patch)
+        scene = merged(SCENE, {"fluid": {"thermal_energy": None}}, patch)
         settings = [{"/volume_fraction": fraction}]
         (point,) = program.run(f"price-{fraction:g}-{peclet:g}", scene, settings, PRICE_SEEDS)
         foretold = flow_over_rest(peclet, fraction, SCENE["particles"]["species"])
@@ -282,8 +280,8 @@ def draw():
 
 
 def quick_measure(program):
-    scene = merged(SCENE, {"volume_fraction": 0.3, **during({"brownian_times": 10}, {"brownian_times": 60})})
-    momentum = point_of(program, "quick", merged(scene, {"particles": {"count": 60}}), 12).measured(TARGET)
+    scene = merged(SCENE, in_brownian_times(10, 60), volume_fraction=0.3)
+    momentum = point_of(program, "quick", merged(scene, particles={"count": 60}), 12).measured(TARGET)
     # Einstein's and Batchelor's 1 + 2.5 phi + 5.9 phi^2 below, slow shear (2.3) within 20 % above.
     return [Check("φ = 0.3: η_r at rest", "1 + 2.5 φ + 5.9 φ² (Batchelor 1977), ± 20 %", *momentum, 1.82, 2.9, 11)]
 

@@ -18,8 +18,7 @@ SEEDS = 8
 STEPS = 400  # each a frame
 FRACTION = 0.5
 SCENE = merged(
-    TABLE_SCENE,
-    {"volume_fraction": FRACTION, "observables": ["stress", "trajectory"], "trajectory": {"contacts": True}},
+    TABLE_SCENE, volume_fraction=FRACTION, observables=["stress", "trajectory"], trajectory={"contacts": True}
 )
 BEFORE = {"strain": 2, "brownian_times": 60}  # whichever is first
 # "Short-lived": as a share of the time in which the flow parts two spheres, a strain of 1, and of the Brownian time.
@@ -27,13 +26,13 @@ SHORT = 0.1
 
 
 def timestep_of(program, peclet):
-    scene = merged(SCENE, {**at_peclet(peclet), **during(BEFORE, {"strain": 1}), "observables": None})
-    return program.derived(merged(scene, {"trajectory": None}))["timestep"]
+    scene = merged(SCENE, at_peclet(peclet), during(BEFORE, {"strain": 1}), observables=None)
+    return program.derived(merged(scene, trajectory=None))["timestep"]
 
 
 def scene_at(peclet, step, patch):
     window = {"time": STEPS * step}
-    scene = merged(SCENE, {**at_peclet(peclet), **during(BEFORE, window), "trajectory": {"interval": {"time": step}}})
+    scene = merged(SCENE, at_peclet(peclet), during(BEFORE, window), trajectory={"interval": {"time": step}})
     return merged(scene, patch)
 
 

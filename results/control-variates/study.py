@@ -7,7 +7,8 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.driver import BLUE, Check, Figure, Finding, GREEN, RED, REFERENCE_SCENE, at_peclet, cross_fitted, during
-from studies.driver import entries, estimate, jackknife, main, merged, number, read_rows, variance_ratio, write_rows
+from studies.driver import entries, estimate, in_brownian_times, jackknife, main, merged, number, read_rows
+from studies.driver import variance_ratio, write_rows
 import numpy as np
 
 TITLE = "What control variates save"
@@ -15,7 +16,8 @@ PECLETS = (0.01, 1, 10, 100, 0.1)
 SEEDS = 400
 SCENE = merged(
     REFERENCE_SCENE,
-    {"particles": {"count": 60}, **during({"strain": 1, "brownian_times": 20}, {"strain": 2, "brownian_times": 40})},
+    during({"strain": 1, "brownian_times": 20}, {"strain": 2, "brownian_times": 40}),
+    particles={"count": 60},
 )
 BLOCKS = 32  # of a window
 XY = 3
@@ -111,7 +113,7 @@ def draw():
 
 
 def quick_measure(program):
-    scene = merged(SCENE, {"particles": {"count": 30}, **during({"brownian_times": 2}, {"brownian_times": 4})})
+    scene = merged(SCENE, in_brownian_times(2, 4), particles={"count": 30})
     for row in rows_of(1, [r["mean"] for r in results_at(program, 1, 200, scene)]):
         yield change_of(row, 6)
         # Over four Brownian times the white noise of B is most of the scatter.

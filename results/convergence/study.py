@@ -7,18 +7,19 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.driver import BLACK, BLUE, Check, Figure, Finding, GREEN, JAMMED_AT_REST, RED, REFERENCE_SCENE, Statement
-from studies.driver import at_peclet, difference, diverging, during, entries, estimate, jackknife, line_through, main
-from studies.driver import merged, over, quotient, read_numbers, read_rows, write_numbers, write_rows
+from studies.driver import at_peclet, difference, diverging, entries, estimate, in_brownian_times, in_strains, jackknife
+from studies.driver import line_through, main, merged, over, quotient, read_numbers, read_rows, write_numbers
+from studies.driver import write_rows
 import numpy as np
 
 TITLE = "Convergence of the viscosity"
-SCENE = merged(REFERENCE_SCENE, {"particles": {"count": 250}})
+SCENE = merged(REFERENCE_SCENE, particles={"count": 250})
 # Averages that a result has of consecutive parts of its window; seeds that are left out together.
 BLOCKS, SET = 32, 16
 WINDOWS = [2**k for k in range(6)]  # blocks that are averaged together
 GROUPS = (1, 2, 4, 8)  # seeds that are
-BROWNIAN = during({"brownian_times": 2}, {"brownian_times": 16})
-SHEARED = during({"strain": 1}, {"strain": 4})
+BROWNIAN = in_brownian_times(2, 16)
+SHEARED = in_strains(1, 4)
 # Pe, seeds, durations; log10 of the published number of samples for 10 %, a sample being an explicit step of one
 # realisation with N = 1000.
 RUNS = ((0.01, 96, BROWNIAN, 8), (1, 96, BROWNIAN, None), (1e4, 192, SHEARED, 5))
@@ -113,7 +114,7 @@ def saving(series, blocks=BLOCKS):
 def explicit_steps(program, number, series, particles):
     """Explicit steps of N = 1000 spheres, in the units of Table 4.1, that take as long as the window."""
     limits = {"limits": {"shear_rate": 0.009, "thermal_energy": 0.017}, "integrator": {"method": "explicit"}}
-    answer = program.derived(merged(REFERENCE_SCENE, {**at_peclet(number), **limits}))
+    answer = program.derived(merged(REFERENCE_SCENE, at_peclet(number), limits))
     rate = min(0.009, number * 0.017 / (6 * math.pi * 0.1))
     return series.strain / rate / answer["timestep"] * particles / 1000
 
@@ -127,7 +128,7 @@ def samples_for_target(steps, found):
 
 def run(program, number, seeds, duration, patch=None, name=None):
     name = name or f"convergence-{number:g}"
-    scene = merged(SCENE, {**at_peclet(number), **duration, **(patch or {})})
+    scene = merged(SCENE, at_peclet(number), duration, patch or {})
     program.run(name, scene, [{"/peclet": number}], seeds)
     return Series(program.stored_results(name)[0], PUBLISHED_MEAN.get(number))
 
@@ -210,7 +211,7 @@ def comparisons(program, found):
     large = run(program, 1e4, 48, SHEARED, {"particles": {"count": 1000}}, "convergence-1000")
     value, error = quotient(spread(large, "plain"), spread(found[1e4], "plain"))
     yield OF_COUNT, (4 * value**2, 4 * 2 * value * error, 47)
-    short = during({"brownian_times": 1}, {"brownian_times": 4})
+    short = in_brownian_times(1, 4)
     explicit = run(program, 1, 32, short, {"integrator": {"method": "explicit"}}, "convergence-explicit")
     values = explicit.whole("plain")
     implicit = math.sqrt(variance_over_seeds(averaged(found[1].plain, 8))), 0
@@ -304,8 +305,8 @@ def draw(spreads, savings):
 
 def quick_measure(program):
     small = {"particles": {"count": 50}}
-    brownian = run(program, 1, 96, during({"brownian_times": 1}, {"brownian_times": 8}), small)
-    sheared = run(program, 1e4, 96, during({"strain": 1}, {"strain": 2}), small)
+    brownian = run(program, 1, 96, in_brownian_times(1, 8), small)
+    sheared = run(program, 1e4, 96, in_strains(1, 2), small)
     rows = []
     for number, series in ((1, brownian), (1e4, sheared)):
         for name, (value, error, degrees) in exponents(number, series):

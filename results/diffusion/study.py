@@ -7,12 +7,12 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.driver import BLACK, BLUE, Check, Figure, Finding, GREEN, RED, REFERENCE_SCENE, Statement, difference
-from studies.driver import during, estimate, line_through, main, merged, over, quotient, read_rows, weighted_mean, where
-from studies.driver import write_rows
+from studies.driver import during, estimate, in_brownian_times, line_through, main, merged, over, quotient, read_rows
+from studies.driver import weighted_mean, where, write_rows
 import numpy as np
 
 TITLE = "Mean squared displacement and self-diffusion"
-AT_REST = merged(REFERENCE_SCENE, {"flow": {"shear_rate": 0}, "observables": ["stress", "mean_squared_displacement"]})
+AT_REST = merged(REFERENCE_SCENE, flow={"shear_rate": 0}, observables=["stress", "mean_squared_displacement"])
 
 # tau_I = 0.1, tau_C = 1e-3; explicit steps, because inertia is what is looked at.
 VISCOSITY, DENSITY, STIFFNESS = 1.0, 0.1, 1e5
@@ -21,27 +21,18 @@ RATIOS = (1.7, 0.17, 0.017)  # tau_I / tau_B
 HOT, WARM, COLD = RATIOS
 DILUTE = merged(
     AT_REST,
-    {
-        "particles": {"count": 100, "density": DENSITY},
-        "volume_fraction": 0.001,
-        "fluid": {"viscosity": VISCOSITY},
-        "contact": {"normal_stiffness": STIFFNESS},
-        "integrator": {"method": "explicit", "timestep": 2e-5},
-        "mean_squared_displacement": {"interval": 5e-4},
-        **during({"time": 0.5}, {"time": 6}),
-    },
+    during({"time": 0.5}, {"time": 6}),
+    particles={"count": 100, "density": DENSITY},
+    volume_fraction=0.001,
+    fluid={"viscosity": VISCOSITY},
+    contact={"normal_stiffness": STIFFNESS},
+    integrator={"method": "explicit", "timestep": 2e-5},
+    mean_squared_displacement={"interval": 5e-4},
 )
 
 # The published units, tau_I = 1.
 FRACTIONS = (0.001, 0.1, 0.2, 0.3, 0.4, 0.45, 0.5, 0.55)
-CROWDED = merged(
-    AT_REST,
-    {
-        "particles": {"count": 250},
-        "integrator": {"method": "implicit"},
-        **during({"brownian_times": 10}, {"brownian_times": 9}),
-    },
-)
+CROWDED = merged(AT_REST, in_brownian_times(10, 9), particles={"count": 250}, integrator={"method": "implicit"})
 
 # Displacements over windows ten and twenty times longer, for the limit of long times: volume fractions, ratios.
 LONG = {90: ((0.001, 0.1, 0.3, 0.5), (WARM, COLD)), 180: ((0.1, 0.3, 0.5), (COLD,))}
@@ -51,11 +42,9 @@ LONG_SEEDS = 18
 BALLISTIC_FRACTIONS, BALLISTIC_SEEDS = (0.001, 0.1, 0.3, 0.5, 0.55), 8
 BALLISTIC = merged(
     CROWDED,
-    {
-        "integrator": {"method": "explicit"},
-        "mean_squared_displacement": {"interval": 0.005},
-        **during({"brownian_times": 10}, {"time": 4}),
-    },
+    during({"brownian_times": 10}, {"time": 4}),
+    integrator={"method": "explicit"},
+    mean_squared_displacement={"interval": 0.005},
 )
 SHORT_LAG = 0.05  # over tau_I
 
@@ -139,7 +128,7 @@ def long_times(program):
 def short_times(program):
     """Displacements of the small spheres over those without any force, kT t^2 / m along each axis."""
     energy = thermal_energy(HOT, 0.1, 0.1)
-    scene = merged(BALLISTIC, {"fluid": {"thermal_energy": energy}})
+    scene = merged(BALLISTIC, fluid={"thermal_energy": energy})
     settings = [{"/volume_fraction": f} for f in BALLISTIC_FRACTIONS]
     points = program.run("ballistic", scene, settings, BALLISTIC_SEEDS, "kinetic_temperature")
     for fraction, point in zip(BALLISTIC_FRACTIONS, points):

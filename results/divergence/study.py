@@ -8,8 +8,8 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.driver import BLUE, Check, Figure, Finding, GREEN, JAMMED_AT_REST, JAMMED_IN_STRONG_FLOW, ORANGE, RED
-from studies.driver import Statement, TABLE_SCENE, columns_of, difference, diverging, during, entries, first, jackknife
-from studies.driver import jammed_and_exponent, lines, main, merged, number, propagated, read_rows, row_ratio
+from studies.driver import Statement, TABLE_SCENE, columns_of, difference, diverging, entries, first, in_brownian_times
+from studies.driver import jackknife, jammed_and_exponent, lines, main, merged, number, propagated, read_rows, row_ratio
 from studies.driver import rows_at_rest, shapes_of, table_at_rest, viscosity_row, where, write_rows, write_table
 import numpy as np
 
@@ -17,12 +17,12 @@ TITLE = "Divergence of the viscosity with volume fraction"
 PECLET = (4.6, 1e4)
 NAMES = {0: "Pe → 0, published recipe", 4.6: "Pe = 4.6", 1e4: "Pe = 10⁴"}
 FRACTIONS = (0.40, 0.45, 0.48, 0.50, 0.52, 0.54, 0.56, 0.58, 0.59, 0.60, 0.61)
-SHEARED = merged(TABLE_SCENE, {"duration": {"production": {"strain": 3}}})
+SHEARED = merged(TABLE_SCENE, duration={"production": {"strain": 3}})
 SEEDS = 5
 
 # At rest: what the zero-shear study has of these volume fractions, and lubrication at a small Peclet number.
 REST_FRACTIONS = FRACTIONS[:7]
-SLOW = merged(TABLE_SCENE, {"peclet": 0.22, **during({"brownian_times": 20}, {"brownian_times": 20})})
+SLOW = merged(TABLE_SCENE, in_brownian_times(20, 20), peclet=0.22)
 SLOW_SEEDS = 3
 
 PUBLISHED = {0: (JAMMED_AT_REST, 1.5), 4.6: (None, None), 1e4: (JAMMED_IN_STRONG_FLOW, 1.5)}  # phi_J and lambda
@@ -200,7 +200,7 @@ def measure(program):
     fast = {"limits": {"shear_rate": 0.045}, "duration": {"production": {"strain": 2}}}
     methods = {}
     for method in ("implicit", "explicit"):
-        patch = merged(fast, {"integrator": {"method": method}})
+        patch = merged(fast, integrator={"method": method})
         methods[method] = sheared(program, method, [(1e4, 0.5)], 6, patch)[0]
     write_tables(curves, methods, fits)
 

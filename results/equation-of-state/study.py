@@ -6,8 +6,8 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.driver import BLUE, Check, Figure, RED, REFERENCE_SCENE, during, entries, main, merged, number, over
-from studies.driver import read_rows, write_rows
+from studies.driver import BLUE, Check, Figure, RED, REFERENCE_SCENE, entries, in_brownian_times, main, merged, number
+from studies.driver import over, read_rows, write_rows
 
 TITLE = "The pressure at rest"
 FRACTIONS = (0.20, 0.30, 0.40, 0.45, 0.50)
@@ -19,13 +19,11 @@ DENSEST = 4  # times as many at the largest volume fraction and the automatic st
 WIDTH = 0.01  # of agreement
 SCENE = merged(
     REFERENCE_SCENE,
-    {
-        "particles": {"count": 250},
-        "flow": {"shear_rate": 0},
-        "fluid": {"thermal_energy": THERMAL_ENERGY},
-        "contact": {"normal_stiffness": STIFFNESS},
-        **during({"brownian_times": 30}, {"brownian_times": 60}),
-    },
+    in_brownian_times(30, 60),
+    particles={"count": 250},
+    flow={"shear_rate": 0},
+    fluid={"thermal_energy": THERMAL_ENERGY},
+    contact={"normal_stiffness": STIFFNESS},
 )
 
 
@@ -63,7 +61,7 @@ def number_density(fraction, radii):
 
 def row_of(program, sizes, fraction, step, seeds, patch):
     radii = SIZES[sizes]
-    scene = merged(SCENE, {"particles": {"species": species(radii)}, "volume_fraction": fraction, **patch})
+    scene = merged(SCENE, patch, particles={"species": species(radii)}, volume_fraction=fraction)
     if step != 1:
         # "auto" of this scene, not of its windows.
         scene["integrator"] = {"timestep": step * program.derived(scene, "pressure")["timestep"]}
@@ -110,7 +108,7 @@ def draw():
 
 
 def quick_measure(program):
-    patch = during({"brownian_times": 15}, {"brownian_times": 60})
+    patch = in_brownian_times(15, 60)
     yield judged(row_of(program, "1 : 1.4", 0.30, 1, 8, patch), 0.03)
 
 

@@ -7,8 +7,8 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.driver import BLUE, Check, Figure, Finding, GREEN, ORANGE, RED, Statement, TABLE_SCENE, columns_of
-from studies.driver import difference, during, first, log_of_share, main, merged, number, propagated, quotient
-from studies.driver import read_rows, row_ratio, thickening_decades, viscosity_row, where, write_table
+from studies.driver import difference, during, first, in_strains, log_of_share, main, merged, number, propagated
+from studies.driver import quotient, read_rows, row_ratio, thickening_decades, viscosity_row, where, write_table
 import numpy as np
 
 TITLE = "Friction and repulsion in flow curves"
@@ -23,11 +23,9 @@ CURVES = [
 ]
 SCENE = merged(
     TABLE_SCENE,
-    {
-        "contact": {"friction": 0},
-        "repulsion": {"form": "exponential", "strength": 0},
-        **during({"strain": 2, "brownian_times": 25}, {"strain": 4, "brownian_times": 30}),
-    },
+    during({"strain": 2, "brownian_times": 25}, {"strain": 4, "brownian_times": 30}),
+    contact={"friction": 0},
+    repulsion={"form": "exponential", "strength": 0},
 )
 SEEDS, SLOW_SEEDS, METHOD_SEEDS = 5, 8, 12
 # Largest rate and kT, eta, and kappa of two unit spheres.
@@ -206,7 +204,7 @@ def measured_method(program, method):
     """At five times the rate, where explicit steps cost a fifth; kT follows it."""
     fast = {
         "limits": {"shear_rate": 0.045},
-        **during({"strain": 1}, {"strain": 2}),
+        **in_strains(1, 2),
         "contact": {"friction": 0.5},
         "repulsion": {"strength": 1000 * thermal_energy(1e4) * 5},
         "integrator": {"method": method},

@@ -7,8 +7,9 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.driver import BLUE, Check, DENSITY, Figure, Finding, GREEN, ORANGE, PURPLE, RED, REFERENCE_SCENE, STIFFNESS
-from studies.driver import Statement, TABLE_4_1, VISCOSITY, counts_text, during, first, flags, line_through, main
-from studies.driver import mari_fit, merged, over, quotient, read_rows, weighted_mean, where, write_rows
+from studies.driver import Statement, TABLE_4_1, VISCOSITY, counts_text, first, flags, in_brownian_times, in_strains
+from studies.driver import line_through, main, mari_fit, merged, over, quotient, read_rows, weighted_mean, where
+from studies.driver import write_rows
 import numpy as np
 
 TITLE = "Viscosity and inertia"
@@ -19,18 +20,18 @@ FLAT = 0.1  # change that a published curve on logarithmic axes does not show
 FLOW_BOUND = 0.1
 STOKES = (0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10)
 SMALL = {"particles": {"count": 250}}
-FLOW = merged(REFERENCE_SCENE, {**SMALL, "volume_fraction": 0.55, "flow": {"shear_rate": RATE}})
+FLOW = merged(REFERENCE_SCENE, SMALL, volume_fraction=0.55, flow={"shear_rate": RATE})
 
 # With noise: tau_I / tau_B = rho kT / (eta^2 a), by the density too; tau_I / tau_S = Pe / (6 pi) tau_I / tau_B stays
 # below 0.01. Pe, seeds, values of tau_I / tau_B, equilibration and window.
 THERMAL_BOUND = 0.01
 THERMAL_RUNS = (
-    (0.1, 32, (0.01, 1.8), during({"brownian_times": 5}, {"brownian_times": 30})),
-    (0.3, 16, (0.01, 0.1, 0.6), during({"brownian_times": 5}, {"brownian_times": 30})),
-    (1, 24, (0.001, 0.003, 0.01, 0.03, 0.18), during({"brownian_times": 5}, {"brownian_times": 30})),
-    (10, 16, (0.001, 0.003, 0.01, 0.018), during({"strain": 1}, {"strain": 3})),
+    (0.1, 32, (0.01, 1.8), in_brownian_times(5, 30)),
+    (0.3, 16, (0.01, 0.1, 0.6), in_brownian_times(5, 30)),
+    (1, 24, (0.001, 0.003, 0.01, 0.03, 0.18), in_brownian_times(5, 30)),
+    (10, 16, (0.001, 0.003, 0.01, 0.018), in_strains(1, 3)),
 )
-THERMAL = merged(REFERENCE_SCENE, {**SMALL, "volume_fraction": 0.45, "fluid": {"thermal_energy": THERMAL_ENERGY}})
+THERMAL = merged(REFERENCE_SCENE, SMALL, volume_fraction=0.45, fluid={"thermal_energy": THERMAL_ENERGY})
 
 
 def row_of(point, curve, ratio):
@@ -50,7 +51,7 @@ def flow_rows(program, ratios, seeds, patch=None, name="flow", window=6):
     """The equilibration grows with the time in which velocities adapt."""
     settings = []
     for stokes in ratios:
-        parts = during({"strain": 2 + stokes}, {"strain": window})
+        parts = in_strains(2 + stokes, window)
         settings.append({"/particles/density": stokes * VISCOSITY / RATE, "/duration": parts["duration"]})
     points = program.run(name, merged(FLOW, patch or {}), settings, seeds)
     return [row_of(point, "flow", stokes) for stokes, point in zip(ratios, points)]
@@ -213,7 +214,7 @@ def measure(program):
     fine = thermal_rows(program, number, seeds, (0.001,), parts, step, "thermal-fine")
     explicit = {"integrator": {"method": "explicit"}}
     flow_explicit = flow_rows(program, (0.1, 10), 12, explicit, "flow-explicit")
-    parts = during({"brownian_times": 5}, {"brownian_times": 20})
+    parts = in_brownian_times(5, 20)
     thermal_explicit = thermal_rows(program, 1, 8, (0.18,), parts, explicit, "thermal-explicit")
     by_method = {
         "implicit": [*flow, *(r for rows in curves.values() for r in rows)],
@@ -252,7 +253,7 @@ def quick_measure(program):
     seeds, small = 8, {"particles": {"count": 100}}
     degrees = seeds - 1
     slow, flat, fast = flow_rows(program, (0.005, 0.1, 5), seeds, small, window=3)
-    parts = during({"brownian_times": 3}, {"brownian_times": 10})
+    parts = in_brownian_times(3, 10)
     little, more = thermal_rows(program, 1, seeds, (0.001, 0.01), parts, small)
     of_fit = over((flat["viscosity"] + 1 + 2.5 * 0.55, flat["standard_error"]), mari_fit(0.55, 0))
     text = "η_r with solvent and stresslet over Mari's fit"

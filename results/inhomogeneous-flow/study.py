@@ -8,8 +8,8 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.driver import BLACK, BLUE, Check, Figure, Finding, GREEN, GREY, Hours, ORANGE, PURPLE, RED, Statement
-from studies.driver import columns_of, difference, divergence, during, entries, estimate, jackknife, main, merged
-from studies.driver import number, propagated, quotient, read_numbers, read_rows, write_numbers, write_table
+from studies.driver import columns_of, difference, divergence, during, entries, estimate, in_strains, jackknife, main
+from studies.driver import merged, number, propagated, quotient, read_numbers, read_rows, write_numbers, write_table
 from studies.inhomogeneous import FIGURE, FLOWS, Flow, OTHER, PUBLISHED, QUANTITIES, SCENE, TRAINING, UNSEEN, bin_rows
 from studies.inhomogeneous import growth, profile_of, symmetric_bin_rows, symmetries, wave
 import numpy as np
@@ -38,9 +38,9 @@ def uniform_quantities(mean):
 
 def uniform_rows(program, hours):
     """Steady shear without waves: one J for each volume fraction."""
-    scene = merged(SCENE, {"box": None, "profiles": {"bins": 5}, "flow": None})
-    scene = merged(scene, {"flow": {"shear_rate": UNIFORM_RATE}, "particles": {"count": 1000}})
-    scene = merged(scene, during({"strain": 4}, {"strain": 12}))
+    scene = merged(SCENE, box=None, profiles={"bins": 5}, flow=None)
+    scene = merged(scene, flow={"shear_rate": UNIFORM_RATE}, particles={"count": 1000})
+    scene = merged(scene, in_strains(4, 12))
     settings = [{"/volume_fraction": fraction} for fraction in UNIFORM]
     hours.plan("uniform", scene, settings)
     hours.add(program.run("uniform", scene, settings, SEEDS))

@@ -7,8 +7,9 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.driver import BLUE, Figure, Finding, JAMMED_AT_REST, RED, REFERENCE_SCENE, Statement, TABLE_SCENE
-from studies.driver import columns_of, difference, during, entries, estimate, jammed_and_exponent, main, mari_fit
-from studies.driver import merged, number, propagated, read_rows, row_ratio, viscosity_row, write_table
+from studies.driver import columns_of, difference, during, entries, estimate, in_brownian_times, in_strains
+from studies.driver import jammed_and_exponent, main, mari_fit, merged, number, propagated, read_rows, row_ratio
+from studies.driver import viscosity_row, write_table
 import numpy as np
 
 TITLE = "Large friction"
@@ -17,32 +18,21 @@ FRACTIONS = {0: (0.58, 0.60, 0.61, 0.62), 1: (0.40, 0.45, 0.50, 0.53, 0.54, 0.55
 FITTED = 0.55  # of friction 1, the densest of the fit
 SOFT = {"guard": {"largest_overlap": 0.3}}  # jammed spheres of this stiffness overlap by more than the guard's 0.05
 NETWORK = {"observables": ["stress", "contact_network"]}
-STEADY = merged(
-    REFERENCE_SCENE,
-    {
-        "particles": {"count": 250},
-        "contact": {"friction": 0},
-        **NETWORK,
-        **SOFT,
-        **during({"strain": 2}, {"strain": 4}),
-    },
-)
+STEADY = merged(REFERENCE_SCENE, NETWORK, SOFT, in_strains(2, 4), particles={"count": 250}, contact={"friction": 0})
 SEEDS = 8
 # Spheres with fewer contacts carry nothing: forces balance with four of them without friction, with two with it.
 CARRYING = {0: 4, 1: 2}
 # With noise: between 0.57, where the fits for friction 1 diverge, and 0.587, that at rest.
 DENSE, PECLET, LOWEST = 0.58, (1, 4.6, 10, 22, 100, 1e3, 1e4), 4.6
 SLOW_PECLET = (0.02, 0.1)
-SLOW = during({"brownian_times": 100}, {"brownian_times": 100})
+SLOW = in_brownian_times(100, 100)
 STIFF = 4  # times
 NOISY = merged(
     TABLE_SCENE,
-    {
-        "contact": {"friction": 1},
-        **NETWORK,
-        **SOFT,
-        **during({"strain": 1, "brownian_times": 40}, {"strain": 2, "brownian_times": 40}),
-    },
+    NETWORK,
+    SOFT,
+    during({"strain": 1, "brownian_times": 40}, {"strain": 2, "brownian_times": 40}),
+    contact={"friction": 1},
 )
 NOISY_SEEDS = 6
 PUBLISHED_CONTACTS = {0: 6, 1: 4}
@@ -69,13 +59,13 @@ def rows_of(program, name, scene, settings, keys, seeds):
 
 
 def steady(program, name, friction, fractions, seeds, patch=None):
-    scene = merged(merged(STEADY, {"contact": {"friction": friction}}), patch or {})
+    scene = merged(STEADY, {"contact": {"friction": friction}}, patch or {})
     rows = rows_of(program, name, scene, [{"/volume_fraction": f} for f in fractions], ["fraction"], seeds)
     return [{"peclet": "no noise", **row} for row in rows]
 
 
 def noisy(program, name, peclets, seeds, patch=None):
-    scene = merged(merged(NOISY, {"volume_fraction": DENSE}), patch or {})
+    scene = merged(NOISY, {"volume_fraction": DENSE}, patch or {})
     rows = rows_of(program, name, scene, [{"/peclet": p} for p in peclets], ["peclet"], seeds)
     return [{"fraction": DENSE, **row} for row in rows]
 

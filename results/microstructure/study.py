@@ -7,29 +7,24 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.driver import BLUE, Check, Figure, Finding, GREEN, RED, REFERENCE_SCENE, Statement, at_peclet, difference
-from studies.driver import during, entries, estimate, main, merged, number, over, propagated, quotient, read_numbers
-from studies.driver import read_rows, row_ratio, where, write_numbers, write_rows
+from studies.driver import entries, estimate, in_brownian_times, in_strains, main, merged, number, over, propagated
+from studies.driver import quotient, read_numbers, read_rows, row_ratio, where, write_numbers, write_rows
 import numpy as np
 
 TITLE = "Microstructure in the flow"
 FRACTION, BIN = 0.5, 0.05
 SCENE = merged(
     REFERENCE_SCENE,
-    {
-        "particles": {"count": 500},
-        "volume_fraction": FRACTION,
-        "observables": ["stress", "pair_distribution"],
-        "pair_distribution": {"range": 5, "bin": BIN, "slab": 0.1},
-    },
+    particles={"count": 500},
+    volume_fraction=FRACTION,
+    observables=["stress", "pair_distribution"],
+    pair_distribution={"range": 5, "bin": BIN, "slab": 0.1},
 )
 RINGS = (2.0, 2.4, 2.8)  # distances at which two small spheres touch, a small and a large one, two large ones
-BROWNIAN = during({"brownian_times": 40}, {"brownian_times": 20})
-SHEARED = during({"strain": 2}, {"strain": 6})
+BROWNIAN = in_brownian_times(40, 20)
+SHEARED = in_strains(2, 6)
 RUNS = ((0.01, 32, BROWNIAN), (1, 48, BROWNIAN), (1e4, 64, SHEARED))
-QUICK_RUNS = (
-    (0.01, 16, during({"brownian_times": 4}, {"brownian_times": 8})),
-    (1e4, 16, during({"strain": 1}, {"strain": 8})),
-)
+QUICK_RUNS = ((0.01, 16, in_brownian_times(4, 8)), (1e4, 16, in_strains(1, 8)))
 SECTORS = 12  # of the angle from the flow to minus it
 MAP_COLOURS = {0: "#ffffff", 0.5: "#c8daf0", 1: "#7fb0d8", 2: "#2060b0", 4: "#301860", 8: "#100020"}
 
@@ -96,7 +91,7 @@ class Structure:
 
 
 def point_of(program, number, seeds, duration, patch=None, name=None):
-    scene = merged(SCENE, {**at_peclet(number), **duration, **(patch or {})})
+    scene = merged(SCENE, at_peclet(number), duration, patch or {})
     return Structure(program.run(name or f"microstructure-{number:g}", scene, [{"/peclet": number}], seeds)[0])
 
 
@@ -209,7 +204,7 @@ def measure(program):
     explicit = {"integrator": {"method": "explicit"}}
     strong = point_of(program, 1e4, 4, SHEARED, explicit, "microstructure-explicit-10000")
     # Explicit steps do not reach equilibrium here; both methods from the same packings over the same time.
-    short = during({"brownian_times": 5}, {"brownian_times": 5})
+    short = in_brownian_times(5, 5)
     weak = point_of(program, 0.01, 8, short, explicit, "microstructure-explicit-0.01")
     weak_implicit = point_of(program, 0.01, 16, short, None, "microstructure-short-0.01")
     table = [row for peclet, structure in structures.items() for row in ring_rows("implicit", peclet, structure)]

@@ -7,9 +7,9 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.driver import BLUE, Check, Figure, Finding, GREEN, GREY, ORANGE, PURPLE, RED, Statement, columns_of, during
-from studies.driver import flags, logarithm, main, mari_fit, merged, number, over, propagated, read_numbers, read_rows
-from studies.driver import relative_difference, row_ratio, viscosity_row, where, write_numbers, write_table
+from studies.driver import BLUE, Check, Figure, Finding, GREEN, GREY, ORANGE, PURPLE, RED, Statement, columns_of, flags
+from studies.driver import in_strains, logarithm, main, mari_fit, merged, number, over, propagated, read_numbers
+from studies.driver import read_rows, relative_difference, row_ratio, viscosity_row, where, write_numbers, write_table
 from studies.monti import DRAG, PROGRAM_RATIO, PUBLISHED_RANGE, SCENE, TABLE_RATIO, contact, electrochemistry
 from studies.monti import lubrication, spheres
 
@@ -17,10 +17,7 @@ TITLE = "Silica with two concentrations of salt"
 FRACTION, FRICTION = 0.46, 0.5
 SALTS = {0.0214: "salt-free", 0.0048: "0.4 M"}  # by the Debye length: 9 and 2 nm of 420
 FREE, SALTED = SALTS
-SCENE = merged(
-    merged(SCENE, spheres(512, FRACTION, 1.1, 0.5)),
-    {"lubrication": lubrication(0.15), **during({"strain": 2}, {"strain": 8})},
-)
+SCENE = merged(SCENE, spheres(512, FRACTION, 1.1, 0.5), in_strains(2, 8), lubrication=lubrication(0.15))
 # rate / rate_0 with rate_0 = (F_R + F_A) / (eta a^2).
 RATES = [10 ** (k / 2) for k in (-10, -8, *range(-6, 3))]
 SEEDS = 6
@@ -29,7 +26,7 @@ SCANNED = {SALTED: (PROGRAM_RATIO, 3, 1, 0.5), FREE: (PROGRAM_RATIO, 1)}
 SCAN_RATES, SCAN_SEEDS = [1e-4, 1e-3, 1e-2, 0.1, 1, 10], 3
 OTHER_LENGTH = 0.005  # of 0.4 M, another rounding
 CHECKED, CHECK_SEEDS = [(FREE, 1e-5), (SALTED, 1e-5), (FREE, 0.1)], 8
-SHORT = {"particles": {"count": 200}, **during({"strain": 1}, {"strain": 3})}
+SHORT = {"particles": {"count": 200}, **in_strains(1, 3)}
 # Where attraction wins at contact, contacts are so stiff that it presses them by a hundredth of a radius.
 STIFFNESS, STIFFNESS_OVER_ATTRACTION = 4e5, 100
 
@@ -45,7 +42,7 @@ def rows_of(program, name, cases, seeds, patch=None, **others):
     """Rows of (Debye length, F_R / F_A, rate / rate_0)."""
     patches = [patch_of(rate, length, ratio, **others) for length, ratio, rate in cases]
     settings = [{f"/{key}": block for key, block in p.items()} for p in patches]
-    scene = merged(merged(SCENE, patches[0]), patch or {})
+    scene = merged(SCENE, patches[0], patch or {})
     points = program.run(name, scene, settings, seeds)
     return [row_of(case, point) for case, point in zip(cases, points)]
 
@@ -104,7 +101,7 @@ def change(program, name, case, patch=None, **others):
     points = []
     for kind, block, more in (("", {}, {}), ("-changed", patch or {}, others)):
         length, rate = case
-        scene = merged(merged(SCENE, patch_of(rate, length, TABLE_RATIO, **more)), merged(SHORT, block))
+        scene = merged(SCENE, patch_of(rate, length, TABLE_RATIO, **more), merged(SHORT, block))
         points += program.run(name + kind, scene, [{"/volume_fraction": FRACTION}], CHECK_SEEDS)
     reference, changed = (point.by_seed() for point in points)
     return relative_difference(changed, reference, paired=True)
@@ -179,7 +176,7 @@ def draw(rows):
 
 def quick_measure(program):
     cases = [(FREE, TABLE_RATIO, x) for x in (1e-5, 1e-3, 0.1)] + [(SALTED, 0.5, x) for x in (1e-3, 1)]
-    small = {"particles": {"count": 200}, **during({"strain": 1}, {"strain": 3})}
+    small = {"particles": {"count": 200}, **in_strains(1, 3)}
     slow, least, fast, sticky, torn = rows_of(program, "quick", cases, 6, small)
     name = f"salt-free, F_R/F_A = {TABLE_RATIO}"
     for text, row, low, high in (("10⁻⁵", slow, 1.05, 1.6), ("0.1", fast, 1.7, 4)):

@@ -9,9 +9,9 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.driver import BLUE, Check, Figure, Finding, GREY, MARI_FITS, RED, Statement, columns_of, divergence
-from studies.driver import diverging, during, entries, flags, main, mari_fit, merged, number, over, propagated, quotient
-from studies.driver import read_numbers, read_rows, relative_difference, row_ratio, viscosity_row, write_numbers
-from studies.driver import write_table
+from studies.driver import diverging, entries, flags, in_strains, main, mari_fit, merged, number, over, propagated
+from studies.driver import quotient, read_numbers, read_rows, relative_difference, row_ratio, viscosity_row
+from studies.driver import write_numbers, write_table
 from studies.monti import PAIRS, contact, in_units, kim_karrila, lubrication
 import numpy as np
 
@@ -25,7 +25,7 @@ COMPARED = {0: (0.40, 0.55, 0.1), 1: (0.30, 0.50, 0.15)}  # from, to, and how fa
 # Of free fits: all points, and those of one power of 1 - phi / phi_J (chosen after looking): not the dilute ones, nor
 # the densest with friction, where the contacts are too soft.
 FITTED = {"all": {0: (0.30, 0.57), 1: (0.30, 0.55)}, "one power": {0: (0.45, 0.57), 1: (0.40, 0.53)}}
-SCENE = merged(PAIRS, during({"strain": 2}, {"strain": 8}))
+SCENE = merged(PAIRS, in_strains(2, 8))
 SEEDS = {0: 48, 1: 8}
 
 # What might move a viscosity away from the fit: of FL and FR at these fractions, at the gap of 0.05.
@@ -38,7 +38,7 @@ VARIANT_SEEDS = 6
 
 ROLLING = {"contact": {"rolling_stiffness": 4e5 / 7, "rolling_friction": 0.1}}  # of their program
 ROLLED = (0.45, 0.50)
-LONG = during({"strain": 20}, {"strain": 8})
+LONG = in_strains(20, 8)
 
 
 def rows_of(program, name, cases, seeds, patch=None, block=lubrication):
@@ -46,7 +46,7 @@ def rows_of(program, name, cases, seeds, patch=None, block=lubrication):
     friction = cases[0][0]
     fixed = {"particles": {"count": COUNTS[friction]}, "contact": {"friction": friction}}
     settings = [{"/volume_fraction": f, "/lubrication": block(g)} for _, f, g in cases]
-    points = program.run(name, merged(merged(SCENE, fixed), patch or {}), settings, seeds)
+    points = program.run(name, merged(SCENE, fixed, patch or {}), settings, seeds)
     return [row_of(case, point) for case, point in zip(cases, points)]
 
 
@@ -125,7 +125,7 @@ def fit_rows(rows, fits):
 def unit_numbers(program):
     """The same point in two other systems of units; numbers that are powers of two round alike."""
     name = "FL, φ = 0.5, gap 0.05, 8 seeds"
-    base = merged(SCENE, {"particles": {"count": 200}, **during({"strain": 1}, {"strain": 2})})
+    base = merged(SCENE, in_strains(1, 2), particles={"count": 200})
     points = {}
     for key, units in (("first", (1, 1, 1)), ("binary", (0.25, 0.5, 2)), ("other", (0.1, 0.045, 1.7))):
         scene = in_units(base, *units)
@@ -306,7 +306,7 @@ def draw(rows, fits):
 
 
 def quick_measure(program):
-    small = during({"strain": 1}, {"strain": 4})
+    small = in_strains(1, 4)
     (smooth,) = rows_of(program, "quick-FL", [(0, 0.45, 0.05)], 8, small)
     rough, rolled = (
         rows_of(program, name, [(1, 0.45, 0.05)], 8, merged({"particles": {"count": 250}, **small}, patch))[0]

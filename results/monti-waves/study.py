@@ -9,7 +9,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.driver import BLACK, BLUE, Check, Figure, Finding, GREEN, ORANGE, RED, Statement, columns_of, difference
-from studies.driver import during, entries, estimate, main, merged, number, quotient, read_numbers, read_rows
+from studies.driver import entries, estimate, in_strains, main, merged, number, quotient, read_numbers, read_rows
 from studies.driver import relative_difference, write_numbers, write_table
 from studies.monti import DRAG, PROGRAM_RATIO, SCENE, TABLE_RATIO, contact, electrochemistry, lubrication, spheres
 import numpy as np
@@ -35,13 +35,12 @@ RUNS = {
 }
 LARGE_RUNS = {(COUNT, "table", False, True): 1, (COUNT, "table", True, True): 1}  # with --long
 SCENE = merged(
-    merged(SCENE, spheres(SMALL_COUNT, FRACTION, LARGE, SHARE)),
-    {
-        "contact": contact(4e5, 1),
-        "lubrication": lubrication(0.25),
-        "observables": ["profiles"],
-        "files": {"final_configuration": True},
-    },
+    SCENE,
+    spheres(SMALL_COUNT, FRACTION, LARGE, SHARE),
+    contact=contact(4e5, 1),
+    lubrication=lubrication(0.25),
+    observables=["profiles"],
+    files={"final_configuration": True},
 )
 
 
@@ -66,7 +65,7 @@ def patch_of(count, forces, wave, faxen=True):
     if wave:
         flow |= {"waves": [{"periods": 1, "sine": amplitude(count)}], "faxen": faxen}
     return {
-        **during({"strain": 0}, {"strain": strain_of(count)}),
+        **in_strains(0, strain_of(count)),
         "particles": {"count": count},
         "flow": flow,
         "profiles": {"bins": round(edge(count) / 2)},
@@ -171,7 +170,7 @@ def faxen_change(by_seed):
 def step_change(program, seeds):
     """Of eta_r with half of the automatic step: nothing in a result tells the step's error in a wave. Over a strain of
     1 packings have not forgotten their seeds."""
-    patch = merged(patch_of(1000, "program", True), during({"strain": 0}, {"strain": 1}))
+    patch = merged(patch_of(1000, "program", True), in_strains(0, 1))
     automatic = program.derived(merged(SCENE, patch))["timestep"]
     whole, half = (
         {r["seed"]: r["mean"]["relative_viscosity"] for r in results_of(program, name, merged(patch, step), seeds)[0]}

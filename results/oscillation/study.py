@@ -16,14 +16,12 @@ VISCOSITY, THERMAL_ENERGY, FRACTION = 0.1, 0.017, 0.45
 BROWNIAN_TIME = VISCOSITY / THERMAL_ENERGY
 SCENE = merged(
     REFERENCE_SCENE,
-    {
-        "particles": {"count": 100},
-        "volume_fraction": FRACTION,
-        "fluid": {"thermal_energy": THERMAL_ENERGY},
-        "flow": {"shear_rate": None, "oscillation": {"amplitude": 0.1, "frequency": 1}},
-        "observables": ["stress", "oscillation"],
-        "duration": {"equilibration": None, "production": None},
-    },
+    particles={"count": 100},
+    volume_fraction=FRACTION,
+    fluid={"thermal_energy": THERMAL_ENERGY},
+    flow={"shear_rate": None, "oscillation": {"amplitude": 0.1, "frequency": 1}},
+    observables=["stress", "oscillation"],
+    duration={"equilibration": None, "production": None},
 )
 # Over the Brownian frequency, of those that the table at rest has; cycles of the window, and seeds.
 FREQUENCIES = {0.86806: (32, 96), 3.4722: (64, 24), 6.9444: (128, 24)}
@@ -124,7 +122,7 @@ def draw():
 def quick_measure(program):
     """Of a dilute fluid without noise the loss is that of Einstein and the storage that of inertia, none."""
     scene = merged(
-        SCENE, {"particles": {"count": 50, "density": 1e-3}, "volume_fraction": 0.05, "fluid": {"thermal_energy": None}}
+        SCENE, particles={"count": 50, "density": 1e-3}, volume_fraction=0.05, fluid={"thermal_energy": None}
     )
     settings = settings_of(MIDDLE, 0.01) | {
         "/duration/equilibration": {"cycles": 0},

@@ -7,13 +7,12 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.driver import BLUE, Check, Figure, Finding, GREEN, ORANGE, RED, REFERENCE_SCENE, columns_of, during
-from studies.driver import entries, estimate, main, merged, number, over, quotient, read_numbers, read_rows, row_ratio
-from studies.driver import where, write_numbers, write_table
+from studies.driver import entries, estimate, in_strains, main, merged, number, over, quotient, read_numbers, read_rows
+from studies.driver import row_ratio, where, write_numbers, write_table
 
 TITLE = "Reversal, extension and shear across"
 SCENE = merged(
-    REFERENCE_SCENE,
-    {"particles": {"count": 200, "density": 1e-3}, "fluid": {"viscosity": 1}, "flow": None, "duration": None},
+    REFERENCE_SCENE, particles={"count": 200, "density": 1e-3}, fluid={"viscosity": 1}, flow=None, duration=None
 )
 FRICTION = {"contact": {"normal_stiffness": 2e5, "friction": 0.5}}
 REVERSED, REVERSAL_SEEDS, BEFORE, AFTER, BINS = 0.50, 48, 4, 5, 100
@@ -41,7 +40,7 @@ def reversal_rows(program, levels):
     turned = [{"shear_rate": RATE, "strain": BEFORE}, {"shear_rate": -RATE}]
     for name, contact in (("friction", FRICTION), ("none", {"contact": {"normal_stiffness": 2e5}})):
         for flow, segments in (("reversed", turned), ("steady", [{"shear_rate": RATE}])):
-            patch = merged(contact, {"volume_fraction": REVERSED, **during({"strain": BEFORE}, {"strain": AFTER})})
+            patch = merged(contact, in_strains(BEFORE, AFTER), volume_fraction=REVERSED)
             patch |= {"observables": ["stress", "transient"], "transient": {"bins": BINS}}
             point = point_of(program, f"{flow}-{name}", patch, REVERSAL_SEEDS, {"/flow/segments": segments})
             means = point.means
@@ -57,11 +56,11 @@ def reversal_rows(program, levels):
 
 def extension_rows(program):
     for fraction, seeds in EXTENSION.items():
-        window = during({"strain": 1}, {"strain": 6})
+        window = in_strains(1, 6)
         patch = {"volume_fraction": fraction, "contact": {"normal_stiffness": 2e5}, **window}
         shear = point_of(program, f"shear-{fraction:g}", patch, seeds, {"/flow/shear_rate": RATE})
         # Hencky strains, so that the invariants of both strains are the same.
-        patch |= during({"strain": 0.5}, {"strain": 3})
+        patch |= in_strains(0.5, 3)
         extension = point_of(program, f"extension-{fraction:g}", patch, seeds, {"/flow/extension_rate": RATE / 2})
         row = {"fraction": fraction, "seeds": min(len(shear.results), len(extension.results))}
         for name, point in (("shear", shear), ("extension", extension)):
@@ -71,8 +70,8 @@ def extension_rows(program):
 
 def shaken_rows(program):
     """The dissipation is that of both shears, over that of the steady one alone without shaking."""
-    patch = merged(FRICTION, {"contact": {"normal_stiffness": 1e6}, "volume_fraction": SHAKEN})
-    patch |= during({"strain": 2}, {"strain": 8})
+    patch = merged(FRICTION, contact={"normal_stiffness": 1e6}, volume_fraction=SHAKEN)
+    patch |= in_strains(2, 8)
     still = point_of(program, "still", patch, SHAKEN_SEEDS, {"/flow/shear_rate": RATE})
     alone = {"amplitude": 0, "frequency": 0, "seeds": len(still.results)}
     viscosity = still.measured("relative_viscosity")
@@ -179,7 +178,7 @@ def draw():
 
 def quick_measure(program):
     """Extension of a dilute suspension has the viscosity of shear; both are of one invariant."""
-    patch = {"volume_fraction": 0.05, "particles": {"count": 50}, **during({"strain": 0.1}, {"strain": 1})}
+    patch = {"volume_fraction": 0.05, "particles": {"count": 50}, **in_strains(0.1, 1)}
     for name, settings in (("shear", {"/flow/shear_rate": 1}), ("extension", {"/flow/extension_rate": 0.5})):
         value = point_of(program, name, patch, 4, settings).measured("relative_viscosity")
         yield Check(f"φ = 0.05: η of {name}", "1 + 2.5 φ and pairs", *value, 1.124, 1.2, 3)

@@ -6,8 +6,8 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.driver import BLUE, Check, Figure, RED, Statement, difference, during, estimate, logarithm, main, over
-from studies.driver import read_numbers, write_numbers, write_table
+from studies.driver import BLUE, Check, Figure, RED, Statement, difference, estimate, in_brownian_times, logarithm, main
+from studies.driver import over, read_numbers, write_numbers, write_table
 import numpy as np
 
 TITLE = "Potential of mean force of two spheres"
@@ -108,7 +108,7 @@ def judge():
 
 
 def point_of(program, method, seeds, brownian_times):
-    parts = during({"brownian_times": 20}, {"brownian_times": brownian_times})
+    parts = in_brownian_times(20, brownian_times)
     scene = {**SCENE, "integrator": {"method": method}, **parts}
     return program.run(f"pair-potential-{method}", scene, [{"/particles/count": 2}], seeds, "kinetic_temperature")[0]
 

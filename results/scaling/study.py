@@ -11,7 +11,7 @@ from studies.driver import main, merged, read_numbers, where, write_numbers, wri
 import numpy as np
 
 TITLE = "Time against the number of particles"
-SCENE = merged(REFERENCE_SCENE, {**at_peclet(1), "duration": {"equilibration": {"time": 0}}})
+SCENE = merged(REFERENCE_SCENE, at_peclet(1), duration={"equilibration": {"time": 0}})
 PUBLISHED = 10000  # the largest number in print
 COUNTS = (10, 30, 100, 300, 1000, 3000, PUBLISHED, 30000, 100000)
 QUICK_COUNTS = (100, 1000, 4000)  # with fewer spheres the price of a step itself counts
@@ -23,8 +23,8 @@ CLOCKS = {"processor": "cpu_seconds", "wall": "wall_seconds"}
 def times(program, counts, rounds, particle_steps, method="implicit"):
     """By number of particles: of every round, ns of processor and of wall time for a step of a particle, from what a
     longer run takes more than a shorter one: packing, start and end drop out."""
-    scene = merged(SCENE, {"integrator": {"method": method}})
-    step = program.derived(merged(scene, {"duration": {"production": {"time": 1}}}))["timestep"]
+    scene = merged(SCENE, integrator={"method": method})
+    step = program.derived(merged(scene, duration={"production": {"time": 1}}))["timestep"]
     settings, more = [], [max(SHORT, round(particle_steps / count)) for count in counts]
     for count, steps in zip(counts, more):
         # Half a step less than whole ones, so that rounding makes none more.

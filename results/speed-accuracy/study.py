@@ -7,16 +7,16 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.driver import BLUE, Check, Figure, GREEN, RED, REFERENCE_SCENE, counts_text, during, estimate, flags, main
-from studies.driver import markdown_head, markdown_row, merged, read_texts, relative_difference, student_quantile, where
-from studies.driver import write_table
+from studies.driver import BLUE, Check, Figure, GREEN, RED, REFERENCE_SCENE, counts_text, estimate, flags, in_strains
+from studies.driver import main, markdown_head, markdown_row, merged, read_texts, relative_difference, student_quantile
+from studies.driver import where, write_table
 from studies.speed_accuracy import COLUMNS, PANELS
 import numpy as np
 
 TITLE = "Speed and accuracy of steps"
 OVERVIEW = ["reference", "friction 1, phi 0.45", "Pe 1"]
 QUICK_PANELS = ("reference", "Pe 100")
-QUICK = {"particles": {"count": 100}, **during({"strain": 0.5}, {"strain": 1.5})}
+QUICK = {"particles": {"count": 100}, **in_strains(0.5, 1.5)}
 QUICK_SEEDS = 8
 SUMMARY = (
     "case",
@@ -54,8 +54,8 @@ def variants(case, automatic, largest):
 
 def made_of(name, case, scene, program, quick):
     """A row for each variant, with `values` by seed and the `cost` of a realisation."""
-    automatic = program.derived(merged(scene, {"integrator": {"method": "implicit"}}))["timestep"]
-    largest = 2 * program.derived(merged(scene, {"integrator": {"method": "explicit"}}))["timestep"]
+    automatic = program.derived(merged(scene, integrator={"method": "implicit"}))["timestep"]
+    largest = 2 * program.derived(merged(scene, integrator={"method": "explicit"}))["timestep"]
     for method, factor, tolerance, seeds, step, integrator in variants(case, automatic, largest):
         label = f"{method} {factor:g}" + (f" {tolerance:g}" if tolerance not in (None, NORMAL_TOLERANCE) else "")
         identifier = ("quick-" if quick else "") + f"{name} {label}".replace(" ", "-").replace(",", "")

@@ -6,11 +6,11 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.driver import Check, Figure, Point, REFERENCE_SCENE, at_peclet, counts_text, during, flags, main, merged
-from studies.driver import read_texts, relative_difference, student_quantile, write_table
+from studies.driver import Check, Figure, Point, REFERENCE_SCENE, at_peclet, counts_text, during, flags, in_strains
+from studies.driver import main, merged, read_texts, relative_difference, student_quantile, write_table
 
 TITLE = "Where each method fails, and how"
-BASE = merged(REFERENCE_SCENE, {"particles": {"count": 100}, **during({"strain": 0.5}, {"strain": 0.75})})
+BASE = merged(REFERENCE_SCENE, in_strains(0.5, 0.75), particles={"count": 100})
 # Steps of each column: explicit ones over the largest stable step of the scene, implicit ones over the automatic one.
 EXPLICIT, IMPLICIT = (0.5, 0.999, 2), (0.25, 1, 2, 3.99, 8)
 
@@ -43,7 +43,7 @@ def repulsion(strength, length):
     return {"repulsion": {"form": "exponential", "strength": strength, "relative_length": length}}
 
 
-STARTUP = during({"strain": 0}, {"strain": 0.75})
+STARTUP = in_strains(0, 0.75)
 PANELS = {
     "stiffness and volume fraction": [
         (f"k {k:g}, phi {phi:g}", {**stiffness(k), "volume_fraction": phi}, 4 if phi < 0.5 else 16)
@@ -64,7 +64,7 @@ PANELS = {
     "start-up": [
         ("mu 0", STARTUP, 8),
         ("mu 1", merged(STARTUP, friction(1)), 8),
-        ("phi 0.62", merged(STARTUP, {"volume_fraction": 0.62}), 16),
+        ("phi 0.62", merged(STARTUP, volume_fraction=0.62), 16),
         ("A 1, kappa 0.01", merged(STARTUP, repulsion(1, 0.01)), 8),
         ("A 100, kappa 0.01", merged(STARTUP, repulsion(100, 0.01)), 32),
         ("A 1, kappa 0.05", merged(STARTUP, repulsion(1, 0.05)), 8),
@@ -101,10 +101,10 @@ CAUSES_OF_JAMS = {"overlap", "packing"}
 def integrators(program, scene):
     """Every column: method, factor and integrator block, or None with what was answered where the step is refused."""
     for method, factors, factor_of_auto in (("explicit", EXPLICIT, 0.5), ("implicit", IMPLICIT, 1)):
-        answer = program.derived(merged(scene, {"integrator": {"method": method}}))
+        answer = program.derived(merged(scene, integrator={"method": method}))
         for factor in factors:
             block = {"method": method, "timestep": factor * (answer["timestep"] / factor_of_auto)}
-            refused = program.derived(merged(scene, {"integrator": block})).get("refused")
+            refused = program.derived(merged(scene, integrator=block)).get("refused")
             yield method, factor, block, refused
 
 

@@ -27,7 +27,7 @@ UNITS = {"brownian_times": "τ_B", "strain": "strain"}
 TOLERANCE = 0.1  # of print: "standard deviation less than 10 %"
 LEFT = 0.05  # of the way, when 95 % are made
 MULTIPLE = math.log(1 / LEFT)  # of the time of an exponential until then
-SCENE = merged(TABLE_SCENE, {"duration": None})
+SCENE = merged(TABLE_SCENE, duration=None)
 
 
 def series_of(results):
@@ -70,7 +70,7 @@ def measured(program, name, peclet, seeds, fractions, patch=None):
     """By volume fraction: block means by seed."""
     _, unit, length, _, _ = RUNS[peclet]
     parts = {"equilibration": {"strain": 0}, "production": {unit: length}}
-    scene = merged(merged(SCENE, {"peclet": peclet, "duration": parts}), patch or {})
+    scene = merged(SCENE, {"peclet": peclet, "duration": parts}, patch or {})
     program.run(name, scene, [{"/volume_fraction": f} for f in fractions], seeds)
     return {f: series_of(results) for f, results in zip(fractions, program.stored_results(name))}
 
@@ -104,8 +104,7 @@ def weak_rows(numbers):
             yield (Statement if judged else Finding)(f"{name}: {text}", "L 4.2.1", *found, degrees=degrees, **bounds)
         *found, degrees = numbers[f"{name}: time to 95 %"]
         yield Finding(f"{name}: τ_B to 95 % of the steady η_r, by an exponential", "L 4.2.1", *found, degrees)
-        text = f"{name}: the same over 6πηa³/kT"
-        yield Finding(text, "L 4.2.1", *over(found, DIFFUSION_TIME), degrees)
+        yield Finding(f"{name}: the same over 6πηa³/kT", "L 4.2.1", *over(found, DIFFUSION_TIME), degrees)
         answer = scaled(number(rest[fraction], "time"), MULTIPLE)
         text = f"φ = {fraction:g}, Pe → 0, from equilibrium: τ_B to 95 % of the answer to a flow, 3.0 τ_φ"
         yield Finding(text, "zero-shear", *answer, rest[fraction]["seeds"] - 1)

@@ -8,20 +8,18 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.driver import BLUE, Check, Figure, Finding, GREEN, ORANGE, RED, REFERENCE_SCENE, columns_of, during
-from studies.driver import entries, estimate, exact_rows, main, merged, number, quotient, read_numbers, read_rows
-from studies.driver import row_ratio, where, write_numbers, write_table
+from studies.driver import entries, estimate, exact_rows, in_brownian_times, in_strains, main, merged, number, quotient
+from studies.driver import read_numbers, read_rows, row_ratio, where, write_numbers, write_table
 
 TITLE = "Flow at a given stress"
 # Lengths in radii, the solvent's viscosity 1. Of grains the critical load is the unit of force, of colloids kT the unit
 # of energy.
 COMMON = {"particles": {"count": 200, "density": 1e-3}, "fluid": {"viscosity": 1}, "flow": None, "duration": None}
 GRAINS = merged(
-    merged(REFERENCE_SCENE, COMMON),
-    {"contact": {"normal_stiffness": 5e4, "friction": 1, "critical_load": 1}, "volume_fraction": 0.5},
+    REFERENCE_SCENE, COMMON, contact={"normal_stiffness": 5e4, "friction": 1, "critical_load": 1}, volume_fraction=0.5
 )
 COLLOIDS = merged(
-    merged(REFERENCE_SCENE, COMMON),
-    {"contact": {"normal_stiffness": 5e5}, "fluid": {"thermal_energy": 1}, "volume_fraction": 0.45},
+    REFERENCE_SCENE, COMMON, contact={"normal_stiffness": 5e5}, fluid={"thermal_energy": 1}, volume_fraction=0.45
 )
 SEEDS = {"grains": 10, "colloids": 10}
 # Rates, and what viscosity to expect, which says how long a stress must act for a strain of ten.
@@ -42,9 +40,7 @@ THERMAL_ENERGY, VISCOSITY = 0.017, 0.1  # of the study at-rest, whose scene this
 
 def rate_row(program, kind, scene, rate, seeds):
     settings = {"/flow/shear_rate": rate}
-    (point,) = program.run(
-        f"{kind}-rate-{rate:g}", merged(scene, during({"strain": 3}, {"strain": STRAIN})), [settings], seeds
-    )
+    (point,) = program.run(f"{kind}-rate-{rate:g}", merged(scene, in_strains(3, STRAIN)), [settings], seeds)
     seeds = len(point.results)
     row = {"kind": kind, "fraction": scene["volume_fraction"], "control": "rate", "at": rate, "seeds": seeds}
     return row | entries("viscosity", point.measured("relative_viscosity")) | {"flowing": 1.0}
@@ -71,10 +67,10 @@ def measure(program):
             rows.append(stress_row(program, kind, scene, stress, STRAIN * expected, SEEDS[kind]))
     measure_diffusion(program)
     for fraction, (times, seeds) in THICKENING.items():
-        scene = merged(GRAINS, {"volume_fraction": fraction})
+        scene = merged(GRAINS, volume_fraction=fraction)
         for stress in STRESSES:
             rows.append(stress_row(program, "thickening", scene, stress, times, seeds))
-    densest = merged(GRAINS, {"volume_fraction": JUMPING})
+    densest = merged(GRAINS, volume_fraction=JUMPING)
     for rate in RATES_OF_THICKENING:
         rows.append(rate_row(program, "thickening", densest, rate, 4))
     columns = ["kind", "fraction", "control", "at", "seeds", *columns_of("viscosity"), "flowing"]
@@ -84,14 +80,13 @@ def measure(program):
 def measure_diffusion(program):
     """By the strains of blocks: D = <strain^2> / (2 t), next to no stress."""
     scene = merged(
-        merged(REFERENCE_SCENE, {"duration": None}),
-        {
-            "particles": {"count": 100},
-            "volume_fraction": DIFFUSING,
-            "flow": None,
-            "fluid": {"thermal_energy": THERMAL_ENERGY},
-            **during({"brownian_times": 50}, {"brownian_times": DIFFUSION_WINDOW}),
-        },
+        REFERENCE_SCENE,
+        {"duration": None},
+        in_brownian_times(50, DIFFUSION_WINDOW),
+        particles={"count": 100},
+        volume_fraction=DIFFUSING,
+        flow=None,
+        fluid={"thermal_energy": THERMAL_ENERGY},
     )
     program.run("diffusion", scene, [{"/flow/stress": 1e-9}], DIFFUSION_SEEDS, "shear_rate")
     (results,) = program.stored_results("diffusion")
@@ -218,7 +213,7 @@ def draw():
 
 def quick_measure(program):
     """Spheres that meet nobody flow as the solvent with their stresslets, and a stress is what is asked."""
-    scene = merged(GRAINS, {"particles": {"count": 50}, "volume_fraction": 0.3})
+    scene = merged(GRAINS, particles={"count": 50}, volume_fraction=0.3)
     scene = merged(scene, during({"stress_times": 1}, {"stress_times": 10}))
     (point,) = program.run("quick", scene, [{"/flow/stress": 2}], 4, "shear_rate")
     means = [r["mean"] for r in point["realisations"]]

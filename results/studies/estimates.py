@@ -109,3 +109,11 @@ def variance_ratio(plain, controlled):
     of averages for each realisation, or one number."""
     plain, controlled = (np.asarray(rows, float).reshape(len(rows), -1) for rows in (plain, controlled))
     return jackknife(lambda chosen: controlled[chosen].var() / plain[chosen].var(), len(plain))
+
+
+def propagated_lists(lists, function, draws=400):
+    """As propagated(), of a function of several lists of values."""
+    ends = np.cumsum([len(numbers) for numbers in lists])[:-1]
+    return propagated(
+        [n for numbers in lists for n in numbers], lambda values: function(np.split(np.array(values), ends)), draws
+    )

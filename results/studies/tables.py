@@ -5,6 +5,10 @@ from studies.estimates import quotient
 
 
 def write_table(path, columns, rows, digits):
+    """`columns` may be a text: names behind commas, NAME± of a number with its standard error."""
+    if isinstance(columns, str):
+        names = (name.strip() for name in columns.split(","))
+        columns = [c for n in names for c in (columns_of(n[:-1]) if n[-1] == "±" else [n])]
     with open(path, "w", newline="") as f:
         writer = csv.DictWriter(f, columns)
         writer.writeheader()

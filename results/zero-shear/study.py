@@ -5,9 +5,9 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.driver import BLUE, Figure, Finding, GREEN, RED, REFERENCE_SCENE, Statement, during, entries, estimate
-from studies.driver import fit_with_errors, logarithm, main, merged, number, over, quotient, read_numbers, read_rows
-from studies.driver import row_ratio, shade, viscosity_up_to, write_numbers, write_rows
+from studies.driver import BLUE, Figure, Finding, GREEN, RED, REFERENCE_SCENE, Statement, entries, estimate
+from studies.driver import fit_with_errors, in_brownian_times, logarithm, main, merged, number, over, quotient
+from studies.driver import read_numbers, read_rows, row_ratio, shade, viscosity_up_to, write_numbers, write_rows
 import numpy as np
 
 TITLE = "Zero-shear viscosity by Green and Kubo"
@@ -17,15 +17,13 @@ BROWNIAN_TIME = VISCOSITY / THERMAL_ENERGY
 # The longest lag is between an eighth and a quarter of the window: 15 samples times a power of two.
 SCENE = merged(
     REFERENCE_SCENE,
-    {
-        "particles": {"count": 250},
-        "flow": {"shear_rate": 0},
-        "fluid": {"thermal_energy": THERMAL_ENERGY},
-        "observables": ["stress", "stress_correlation"],
-        **during({"brownian_times": 20}, {"brownian_times": 200}),
-    },
+    in_brownian_times(20, 200),
+    particles={"count": 250},
+    flow={"shear_rate": 0},
+    fluid={"thermal_energy": THERMAL_ENERGY},
+    observables=["stress", "stress_correlation"],
 )
-EXPLICIT = {"integrator": {"method": "explicit"}, **during({"brownian_times": 5}, {"brownian_times": 40})}
+EXPLICIT = {"integrator": {"method": "explicit"}, **in_brownian_times(5, 40)}
 
 
 def measured(program, fractions, seeds, patch=None, name="zero-shear"):
@@ -121,7 +119,7 @@ def measure(program):
 
 def quick_measure(program):
     seeds = 16
-    small = {"particles": {"count": 100}, **during({"brownian_times": 3}, {"brownian_times": 20})}
+    small = {"particles": {"count": 100}, **in_brownian_times(3, 20)}
     low, high = (number(row, "viscosity") for row in measured(program, (0.3, 0.5), seeds, small)[0])
     return [
         Statement("η_φ at φ = 0.3", "L4.3b", *low, 0.05, 5, seeds - 1),
