@@ -1,6 +1,8 @@
 """csv files, and rows that have numbers NAME with standard errors NAME_error."""
 import csv
 
+import numpy as np
+
 from studies.estimates import quotient
 
 
@@ -67,6 +69,10 @@ def groups(rows, name):
     for row in rows:
         found.setdefault(row[name], []).append(row)
     return found
+
+
+def column(rows, name):
+    return np.array([row[name] for row in rows], float)
 
 
 def number(row, name):
