@@ -5,10 +5,9 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.driver import BLUE, Check, Figure, Finding, GREEN, RED, REFERENCE_SCENE, Statement, TABLE_SCENE, columns_of
-from studies.driver import difference, entries, first, in_strains, jammed_and_exponent, log_minimum, main, mari_fit
-from studies.driver import merged, number, over, propagated, quotient, read_rows, row_ratio, viscosity_row, where
-from studies.driver import write_table
+from studies.driver import BLUE, Check, Figure, Finding, GREEN, RED, REFERENCE_SCENE, Statement, TABLE_SCENE, difference
+from studies.driver import entries, first, in_strains, jammed_and_exponent, log_minimum, main, mari_fit, merged, number
+from studies.driver import over, propagated, quotient, read_rows, row_ratio, where, write_table
 
 TITLE = "Published viscosities, and the outer gap"
 GAPS = (0.05, 0.2, 0.5)
@@ -37,29 +36,25 @@ NOISY_FRACTIONS, NOISY_GAPS = (0.45, 0.50), (0.05, 0.5)
 
 def steady(program, name, cases, seeds, patch=None):
     """Rows of (fraction, friction, gap) without noise."""
-    settings = [{"/volume_fraction": f, "/contact/friction": m, "/lubrication/outer_gap": g} for f, m, g in cases]
-    points = program.run(name, merged(STEADY, patch or {}), settings, seeds)
-    rows = []
-    for (fraction, friction, gap), point in zip(cases, points):
-        published = mari_fit(fraction, friction)
-        row = {"fraction": fraction, "friction": friction, "gap": gap, "fit": published}
-        row |= viscosity_row(point, "first_normal_difference", "second_normal_difference")
+    pointers = {"fraction": "/volume_fraction", "friction": "/contact/friction", "gap": "/lubrication/outer_gap"}
+    others = "first_normal_difference", "second_normal_difference"
+    rows = program.rows(name, merged(STEADY, patch or {}), pointers, cases, seeds, *others)
+    for row in rows:
+        row["fit"] = mari_fit(row["fraction"], row["friction"])
         for of in ("viscosity", "pairs"):
-            row |= entries(f"{of}_over_fit", over(number(row, of), published))
-        rows.append(row)
+            row |= entries(f"{of}_over_fit", over(number(row, of), row["fit"]))
     return rows
 
 
 def noisy(program):
-    """Rows of (volume fraction, outer gap, Peclet number) with friction."""
+    """Returns rows of (volume fraction, outer gap, Peclet number) with friction."""
     cases = [(f, g, p) for f in NOISY_FRACTIONS for g in NOISY_GAPS for p in PECLET]
-    settings = [{"/volume_fraction": f, "/lubrication/outer_gap": g, "/peclet": p} for f, g, p in cases]
-    points = program.run("noisy", NOISY, settings, NOISY_SEEDS)
-    return [dict(zip(("fraction", "gap", "peclet"), c)) | viscosity_row(p) for c, p in zip(cases, points)]
+    pointers = {"fraction": "/volume_fraction", "gap": "/lubrication/outer_gap", "peclet": "/peclet"}
+    return program.rows("noisy", NOISY, pointers, cases, NOISY_SEEDS)
 
 
 def curve_of(rows, fraction, gap):
-    return sorted((r for r in rows if r["fraction"] == fraction and r["gap"] == gap), key=lambda r: r["peclet"])
+    return sorted(where(rows, fraction=fraction, gap=gap), key=lambda r: r["peclet"])
 
 
 def noisy_rows(rows):
@@ -117,21 +112,9 @@ def judge():
     yield from noisy_rows(curves)
     yield from steady_rows(rows)
     yield from jamming_rows(rows)
-    (explicit,) = (r for r in table if r["method"] == "explicit")
-    implicit = first(rows, fraction=0.45, friction=1, gap=0.05)
-    ratio = row_ratio(implicit, explicit, "viscosity")
+    explicit, implicit = first(table, method="explicit"), first(rows, fraction=0.45, friction=1, gap=0.05)
     text = "φ = 0.45, μ = 1, no noise: implicit steps over explicit ones"
-    yield Check(text, "method", *ratio, 0.9, 1.1, explicit["seeds"] - 1)
-
-
-def write_tables(table, curves):
-    names = ["method", "fraction", "friction", "gap", "seeds", "lost", "transient"]
-    names += columns_of("viscosity", "pairs", "lubrication", "contact")
-    names += columns_of("first_normal_difference", "second_normal_difference")
-    write_table(HERE / "table.csv", [*names, "fit", *columns_of("viscosity_over_fit", "pairs_over_fit")], table, 4)
-    names = ["fraction", "gap", "peclet", "seeds", "lost", "transient"]
-    names += columns_of("viscosity", "pairs", "lubrication", "contact", "structural")
-    write_table(HERE / "peclet.csv", names, curves, 4)
+    yield Check(text, "method", *row_ratio(implicit, explicit, "viscosity"), 0.9, 1.1, explicit["seeds"] - 1)
 
 
 def measure(program):
@@ -144,8 +127,12 @@ def measure(program):
     for k, (name, patch) in enumerate(VARIANTS.items()):
         (row,) = steady(program, f"variant-{k}", [(0.5, 1, 0.05)], VARIANT_SEEDS, patch)
         table.append({"method": name, **row})
+    names = "method, fraction, friction, gap, seeds, lost, transient, viscosity±, pairs±, lubrication±, contact±, "
+    names += "first_normal_difference±, second_normal_difference±, fit, viscosity_over_fit±, pairs_over_fit±"
+    write_table(HERE / "table.csv", names, table, 4)
     curves = noisy(program)
-    write_tables(table, curves)
+    names = "fraction, gap, peclet, seeds, lost, transient, viscosity±, pairs±, lubrication±, contact±, structural±"
+    write_table(HERE / "peclet.csv", names, curves, 4)
     draw(rows.values(), curves)
 
 
@@ -155,12 +142,8 @@ def draw(rows, curves):
     ends = {"x_range": (0.28, 0.57), "y_range": (2, 1000)}
     panel = figure.panel("φ", "η_r = σ / (η γ̇)", log="y", key="top left", **ends)
     for friction, dash in ((0, 2), (1, 1)):
-        panel.curve(
-            lambda phi, friction=friction: mari_fit(phi, friction),
-            f"Mari fit, μ = {friction}",
-            span=(0.28, 0.56),
-            dash=dash,
-        )
+        title = f"Mari fit, μ = {friction}"
+        panel.curve(lambda phi, m=friction: mari_fit(phi, m), title, span=(0.28, 0.56), dash=dash)
     for friction in (0, 1):
         for gap in GAPS:
             chosen = where(rows, friction=friction, gap=gap)

@@ -81,20 +81,8 @@ PANELS = {
     "Peclet number and friction": [(f"Pe {pe:g}, mu 1", merged(brownian(pe), friction(1)), 32) for pe in (1, 100)],
 }
 QUICK = {"stiffness and volume fraction": 4, "start-up": 2}
-COLUMNS = [
-    "panel",
-    "case",
-    "method",
-    "step",
-    "timestep",
-    "verdict",
-    "bias_percent",
-    "bias_half_width_percent",
-    "flags",
-    "causes",
-    "seeds",
-    "commit",
-]
+COLUMNS = "panel", "case", "method", "step", "timestep", "verdict", "bias_percent", "bias_half_width_percent"
+COLUMNS += "flags", "causes", "seeds", "commit"
 CAUSES_OF_JAMS = {"overlap", "packing"}
 
 
@@ -141,19 +129,10 @@ def cells_of(name, case, scene, program):
         of_block[block["method"], block["timestep"]] = point
     for method, factor, block, refused in columns:
         point = Point(realisations=[]) if refused else of_block[method, block["timestep"]]
-        yield {
-            "panel": name,
-            "case": label,
-            "method": method,
-            "step": factor,
-            "timestep": block["timestep"],
-            "seeds": len(point["realisations"]),
-            "values": point.by_seed(),
-            "commit": " ".join(sorted(program.commits)),
-            "lost": collections.Counter(r["ending"]["cause"] for r in point["realisations"] if not r.get("mean")),
-            "flags": counts_text(flags(point)),
-            "refused": refused,
-        }
+        lost = collections.Counter(r["ending"]["cause"] for r in point["realisations"] if not r.get("mean"))
+        cell = {"panel": name, "case": label, "method": method, "step": factor, "timestep": block["timestep"]}
+        cell |= {"seeds": len(point["realisations"]), "commit": " ".join(sorted(program.commits))}
+        yield cell | {"values": point.by_seed(), "lost": lost, "flags": counts_text(flags(point)), "refused": refused}
 
 
 def rows_of(name, case, program):
@@ -177,26 +156,20 @@ def rows_of(name, case, program):
         yield row
 
 
-def rows_of_panels(program, cases_of):
-    for name, cases in cases_of.items():
+def measure(program, panels=PANELS, path=HERE / "table.csv"):
+    rows = []
+    for name, cases in panels.items():
         for case in cases:
-            yield from rows_of(name, case, program)
+            rows += rows_of(name, case, program)
             print(f"{name}: {case[0]}", file=sys.stderr, flush=True)
+    write_table(path, COLUMNS, rows, digits=4)
 
 
-def checks(rows):
-    silent = [r for r in rows if r["verdict"] == "biased" and not r["flags"]]
+def judge(path=HERE / "table.csv"):
+    silent = [r for r in read_texts(path) if r["verdict"] == "biased" and not r["flags"]]
     for row in silent:
         print(f"wrong without a flag: {row['panel']}, {row['case']}, {row['method']} {row['step']}", file=sys.stderr)
     yield Check("cells that are biased, and none of whose results says so", "warnings", len(silent), 0, high=0)
-
-
-def measure(program):
-    write_table(HERE / "table.csv", COLUMNS, list(rows_of_panels(program, PANELS)), digits=4)
-
-
-def judge():
-    return checks(read_texts(HERE / "table.csv"))
 
 
 COLOURS = {
@@ -242,11 +215,9 @@ def lines_of(rows):
 
 
 def halves(lines):
-    """Two parts that stand side by side, the second one beginning with a panel; one part if there is little."""
-    if len(lines) <= 30:
-        return [lines]
-    half = next(k for k in range(len(lines) // 2, len(lines)) if lines[k][1] is None)
-    return [lines[:half], lines[half:]]
+    """Returns two parts that stand side by side, the second one beginning with a panel; one part if there is little."""
+    half = next((k for k in range(len(lines) // 2, len(lines)) if lines[k][1] is None), 0)
+    return [lines[:half], lines[half:]] if len(lines) > 30 else [lines]
 
 
 def draw_part(panel, left, columns, lines):
@@ -275,11 +246,8 @@ def draw_legend(panel, top):
     panel.text(LEGEND, 10, top + HEIGHT * 1.5)
 
 
-def draw():
-    draw_map(read_texts(HERE / "table.csv"), HERE / "map.png")
-
-
-def draw_map(rows, picture):
+def draw(path=HERE / "table.csv"):
+    rows, picture = read_texts(path), path.with_name("map.png")
     columns = list(dict.fromkeys((r["method"], r["step"]) for r in rows))
     parts = halves(lines_of(rows))
     width = LABEL + WIDTH * len(columns) + 20
@@ -295,10 +263,9 @@ def draw_map(rows, picture):
 def quick_measure(program):
     """Six cases, whose map is drawn as well."""
     path = Path(program.folder) / "table.csv"
-    cases = {name: PANELS[name][:count] for name, count in QUICK.items()}
-    write_table(path, COLUMNS, list(rows_of_panels(program, cases)), digits=4)
-    draw_map(read_texts(path), path.with_name("map.png"))
-    return checks(read_texts(path))
+    measure(program, {name: PANELS[name][:count] for name, count in QUICK.items()}, path)
+    draw(path)
+    return judge(path)
 
 
 main(HERE, TITLE, measure, quick_measure, judge, draw)
