@@ -25,17 +25,6 @@ BEFORE = {"strain": 2, "brownian_times": 60}  # whichever is first
 SHORT = 0.1
 
 
-def timestep_of(program, peclet):
-    scene = merged(SCENE, at_peclet(peclet), during(BEFORE, {"strain": 1}), observables=None)
-    return program.derived(merged(scene, trajectory=None))["timestep"]
-
-
-def scene_at(peclet, step, patch):
-    window = {"time": STEPS * step}
-    scene = merged(SCENE, at_peclet(peclet), during(BEFORE, window), trajectory={"interval": {"time": step}})
-    return merged(scene, patch)
-
-
 def of_seed(program, name, scene, seed):
     """Lifetime in steps, contacts of a sphere, share of the largest cluster, mean and largest overlap; the result."""
     result = program.run_alone(name, scene, 1, seed)
@@ -48,8 +37,10 @@ def of_seed(program, name, scene, seed):
 
 
 def row_at(program, peclet, seeds, patch):
-    step = timestep_of(program, peclet)
-    scene = scene_at(peclet, step, patch)
+    bare = merged(SCENE, at_peclet(peclet), during(BEFORE, {"strain": 1}), observables=None, trajectory=None)
+    step = program.derived(bare)["timestep"]
+    window = {**during(BEFORE, {"time": STEPS * step}), "trajectory": {"interval": {"time": step}}}
+    scene = merged(SCENE, at_peclet(peclet), window, patch)
     found = [of_seed(program, f"pe-{peclet:g}-{seed}", scene, seed) for seed in range(seeds)]
     steps, *others, results = zip(*found)
     # Rate and Brownian time are those of the scene: by a group of the result over the step.

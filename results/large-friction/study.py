@@ -1,15 +1,16 @@
 #!/usr/bin/python3
 """Friction of 1: where the viscosity diverges without noise, how many contacts spheres have there, and which Peclet
 numbers flow between the two volume fractions of jamming."""
+import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.driver import BLUE, Figure, Finding, JAMMED_AT_REST, RED, REFERENCE_SCENE, Statement, TABLE_SCENE
-from studies.driver import columns_of, difference, during, entries, estimate, in_brownian_times, in_strains
-from studies.driver import jammed_and_exponent, main, mari_fit, merged, number, propagated, read_rows, row_ratio
-from studies.driver import viscosity_row, write_table
+from studies.driver import difference, during, entries, estimate, first, in_brownian_times, in_strains
+from studies.driver import jammed_and_exponent, main, mari_fit, merged, number, over, propagated, read_rows, row_ratio
+from studies.driver import viscosity_row, where, write_table
 import numpy as np
 
 TITLE = "Large friction"
@@ -46,28 +47,25 @@ def carried(mean, friction):
     return float((count * shares)[least:].sum() / carrying), float(1 - carrying)
 
 
-def rows_of(program, name, scene, settings, keys, seeds):
-    rows = []
-    for case, point in zip(settings, program.run(name, scene, settings, seeds)):
-        friction = int(scene["contact"]["friction"])
-        row = {"friction": friction} | dict(zip(keys, case.values())) | viscosity_row(point)
+def rows_of(program, name, scene, pointer, values, seeds):
+    friction = int(scene["contact"]["friction"])
+    for value, point in zip(values, program.run(name, scene, [{pointer: v} for v in values], seeds)):
+        row = {"friction": friction, pointer.split("_")[-1].strip("/"): value} | viscosity_row(point)
         found = np.array([carried(m, friction) for m in point.means])
-        for column, quantity in enumerate(("contacts", "rattlers")):
-            row |= entries(quantity, estimate(found[:, column]) if len(found) else (float("nan"), float("nan")))
-        rows.append(row)
-    return rows
+        for k, quantity in enumerate(("contacts", "rattlers")):
+            row |= entries(quantity, estimate(found[:, k]) if len(found) else (math.nan, math.nan))
+        yield row
 
 
 def steady(program, name, friction, fractions, seeds, patch=None):
     scene = merged(STEADY, {"contact": {"friction": friction}}, patch or {})
-    rows = rows_of(program, name, scene, [{"/volume_fraction": f} for f in fractions], ["fraction"], seeds)
+    rows = rows_of(program, name, scene, "/volume_fraction", fractions, seeds)
     return [{"peclet": "no noise", **row} for row in rows]
 
 
 def noisy(program, name, peclets, seeds, patch=None):
     scene = merged(NOISY, {"volume_fraction": DENSE}, patch or {})
-    rows = rows_of(program, name, scene, [{"/peclet": p} for p in peclets], ["peclet"], seeds)
-    return [{"fraction": DENSE, **row} for row in rows]
+    return [{"fraction": DENSE, **row} for row in rows_of(program, name, scene, "/peclet", peclets, seeds)]
 
 
 def measure(program):
@@ -79,31 +77,25 @@ def measure(program):
     stiff = {"contact": {"normal_stiffness": STIFF * NOISY["contact"]["normal_stiffness"]}}
     rows += [{"stiffness": STIFF, **row} for row in noisy(program, "stiff", PECLET[-1:], NOISY_SEEDS, stiff)]
     rows = [{"stiffness": 1} | row for row in rows]
-    names = ["peclet", "friction", "fraction", "stiffness", "seeds", "lost", "transient"]
-    names += columns_of("viscosity", "pairs", "lubrication", "contact", "contacts", "rattlers")
-    write_table(HERE / "table.csv", names, rows, 5)
+    names = (
+        "peclet, friction, fraction, stiffness, seeds, lost, transient, viscosity±, pairs±, lubrication±, contact±, "
+    )
+    write_table(HERE / "table.csv", names + "contacts±, rattlers±", rows, 5)
 
 
 def without_noise(table, friction):
-    return [r for r in table if r["peclet"] == "no noise" and r["friction"] == friction and r["seeds"] > 1]
+    return [r for r in where(table, peclet="no noise", friction=friction) if r["seeds"] > 1]
 
 
 def with_noise(table):
-    return [r for r in table if r["peclet"] != "no noise" and r["stiffness"] == 1]
-
-
-def fit_of(rows):
-    """phi_J and lambda of (1 - phi / phi_J)^-lambda through the viscosities of the pairs."""
-    return propagated(
-        [number(r, "pairs") for r in rows],
-        lambda values: jammed_and_exponent([r["fraction"] for r in rows], values),
-        100,
-    )
+    return [r for r in where(table, stiffness=1) if r["peclet"] != "no noise"]
 
 
 def jamming_rows(table):
     rows = [r for r in without_noise(table, 1) if r["fraction"] <= FITTED]
-    (jammed, exponent), (jammed_error, exponent_error) = fit_of(rows)
+    fractions, numbers = [r["fraction"] for r in rows], [number(r, "pairs") for r in rows]
+    found = propagated(numbers, lambda values: jammed_and_exponent(fractions, values), 100)
+    (jammed, exponent), (jammed_error, exponent_error) = found
     text = f"μ = 1, no noise: φ_J of η_r of pairs, φ = 0.4 to {FITTED:g}, less that at rest, 0.587 in print"
     yield Statement(text, "L 4.2.6", jammed - JAMMED_AT_REST, jammed_error, high=0, degrees=len(rows) - 2)
     yield Finding("μ = 1, no noise: its λ", "L 4.2.6", exponent, exponent_error, len(rows) - 2)
@@ -127,11 +119,10 @@ def between_rows(table):
     text = f"φ = {DENSE:g}, μ = 1: seeds that end at Pe = {LOWEST:g} (finite), of {NOISY_SEEDS}"
     yield Statement(text, "L 4.2.6", middle["seeds"] / NOISY_SEEDS, 0, 1)
     for peclet in (*SLOW_PECLET, 22, 1e4):
-        row = rows[peclet]
         text = f"φ = {DENSE:g}, μ = 1: η_r of pairs at Pe = {peclet:g} over that at {LOWEST:g}"
-        ratio = row_ratio(row, middle, "pairs")
-        yield Statement(text, "L 4.2.6", *ratio, 1, degrees=row["seeds"] - 1)
-    (stiff,) = (r for r in table if r["stiffness"] == STIFF)
+        ratio = row_ratio(rows[peclet], middle, "pairs")
+        yield Statement(text, "L 4.2.6", *ratio, 1, degrees=rows[peclet]["seeds"] - 1)
+    stiff = first(table, stiffness=STIFF)
     text = f"φ = {DENSE:g}, μ = 1, Pe = 10⁴: η_r of pairs with four times k_n over that with k_n (jammed: above 1)"
     yield Finding(text, "L 4.2.6", *row_ratio(stiff, rows[1e4], "pairs"), stiff["seeds"] - 1)
     for peclet in (LOWEST, 22):
@@ -147,11 +138,9 @@ def judge():
 def draw():
     table = read_rows(HERE / "table.csv")
     figure = Figure(HERE / "chart.png", columns=3, size=(1400, 440))
-    ends = {"x_range": (0.38, 0.64), "y_range": (2, 2e4)}
-    panel = figure.panel("φ", "η_r of pairs, no noise", log="y", key="bottom right", **ends)
-    contacts = figure.panel(
-        "φ", "contacts of a sphere that carries", key="top left", x_range=(0.38, 0.64), y_range=(2, 7)
-    )
+    ends = {"x_range": (0.38, 0.64)}
+    panel = figure.panel("φ", "η_r of pairs, no noise", log="y", key="bottom right", y_range=(2, 2e4), **ends)
+    contacts = figure.panel("φ", "contacts of a sphere that carries", key="top left", y_range=(2, 7), **ends)
     for friction, colour in ((0, BLUE), (1, RED)):
         rows = without_noise(table, friction)
         panel.rows(rows, "fraction", "pairs", f"μ = {friction}", colour, 7, 0.9)
@@ -167,15 +156,11 @@ def draw():
 def quick_measure(program):
     small = {"particles": {"count": 100}}
     smooth, rough = (steady(program, f"quick-{m}", m, (f,), 6, small)[0] for m, f in ((0, 0.60), (1, 0.53)))
-    text = "μ = 1, φ = 0.53: η_r of pairs over the published fit of η_r"
-    ratio = rough["pairs"] / mari_fit(0.53, 1), rough["pairs_error"] / mari_fit(0.53, 1)
-    return [
-        Statement(
-            "μ = 0, φ = 0.60: contacts of a sphere that carries", "L 4.2.7", *number(smooth, "contacts"), 4, 7, 5
-        ),
-        Statement("μ = 1, φ = 0.53: the same", "L 4.2.7", *number(rough, "contacts"), 2, 5, 5),
-        Statement(text, "L 4.2.6", *ratio, 0.3, 1.5, 5),
-    ]
+    text = "μ = 0, φ = 0.60: contacts of a sphere that carries"
+    yield Statement(text, "L 4.2.7", *number(smooth, "contacts"), 4, 7, 5)
+    yield Statement("μ = 1, φ = 0.53: the same", "L 4.2.7", *number(rough, "contacts"), 2, 5, 5)
+    ratio = over(number(rough, "pairs"), mari_fit(0.53, 1))
+    yield Statement("μ = 1, φ = 0.53: η_r of pairs over the published fit of η_r", "L 4.2.6", *ratio, 0.3, 1.5, 5)
 
 
 main(HERE, TITLE, measure, quick_measure, judge, draw)

@@ -7,9 +7,9 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.driver import BLUE, Check, Figure, Finding, GREEN, GREY, ORANGE, PURPLE, RED, Statement, columns_of, flags
-from studies.driver import in_strains, logarithm, main, mari_fit, merged, number, over, propagated, read_numbers
-from studies.driver import read_rows, relative_difference, row_ratio, viscosity_row, where, write_numbers, write_table
+from studies.driver import BLUE, Check, Figure, Finding, GREEN, GREY, ORANGE, PURPLE, RED, Statement, flags, in_strains
+from studies.driver import logarithm, main, mari_fit, merged, number, over, propagated, read_numbers, read_rows
+from studies.driver import relative_difference, row_ratio, viscosity_row, where, write_numbers, write_table
 from studies.monti import DRAG, PROGRAM_RATIO, PUBLISHED_RANGE, SCENE, TABLE_RATIO, contact, electrochemistry
 from studies.monti import lubrication, spheres
 
@@ -49,30 +49,20 @@ def rows_of(program, name, cases, seeds, patch=None, **others):
 
 def row_of(case, point):
     length, ratio, rate = case
-    row = {"length": length, "ratio": ratio, "rate": rate}
+    row = {"length": length, "ratio": ratio, "rate": rate, "rate_of_drag": rate * DRAG}
     row["rate_of_difference"] = rate * (ratio + 1) / (ratio - 1) if ratio > 1 else math.nan
-    row["rate_of_drag"] = rate * DRAG
-    row |= viscosity_row(point, "contacts_per_particle")
     attraction = [m["stress"]["attraction"][3] for m in point.means]
     row["attraction"] = sum(attraction) / len(attraction) if attraction else math.nan
-    row["soft"] = flags(point)["overlap"]
-    return row
+    return row | viscosity_row(point, "contacts_per_particle") | {"soft": flags(point)["overlap"]}
 
 
 def curve_of(rows, length, ratio):
-    chosen = where(rows, length=length, ratio=ratio)
-    return sorted(chosen, key=lambda r: r["rate"])
+    return sorted(where(rows, length=length, ratio=ratio), key=lambda r: r["rate"])
 
 
 def slope(low, high):
     """d ln eta / d ln rate between two rows."""
-    rise = logarithm(row_ratio(high, low, "viscosity"))
-    return over(rise, math.log(high["rate"] / low["rate"]))
-
-
-def over_least(curve, end):
-    """The viscosity at one end over the least of the curve."""
-    return propagated([number(r, "viscosity") for r in curve], lambda values: values[end] / min(values))
+    return over(logarithm(row_ratio(high, low, "viscosity")), math.log(high["rate"] / low["rate"]))
 
 
 def shape_rows(rows):
@@ -82,7 +72,8 @@ def shape_rows(rows):
         curve = curve_of(rows, length, ratio)
         what = "lowest rate over the least: thinning" if end == 0 else "highest rate over the least: thickening"
         text = f"{SALTS[length]}, F_R/F_A = {ratio}: η_r at the {what}"
-        yield Finding(text, "M fig 8", *over_least(curve, end), curve[0]["seeds"] - 1)
+        found = propagated([number(r, "viscosity") for r in curve], lambda values, end=end: values[end] / min(values))
+        yield Finding(text, "M fig 8", *found, curve[0]["seeds"] - 1)
 
 
 def slope_rows(rows, ends):
@@ -127,9 +118,9 @@ def judge():
     rows = [r for r in table if r["seeds"] < most]
     yield from slope_rows(rows, ends)
     yield from shape_rows(rows)
-    for text, (value, error, degrees) in read_numbers(HERE / "numbers.csv").items():
+    for text, (*found, degrees) in read_numbers(HERE / "numbers.csv").items():
         of, width = ("step", 0.05) if "half of the automatic step" in text else ("range of attraction", 0.1)
-        yield Check(text, of, value, error, -width, width, degrees)
+        yield Check(text, of, *found, -width, width, degrees)
 
 
 def measure(program):
@@ -137,9 +128,8 @@ def measure(program):
     scans = [(d, ratio, x) for d, ratios in SCANNED.items() for ratio in ratios for x in SCAN_RATES]
     rows += rows_of(program, "scan", [*scans, *((OTHER_LENGTH, TABLE_RATIO, x) for x in SCAN_RATES)], SCAN_SEEDS)
     ends = rows_of(program, "slope", [(FREE, TABLE_RATIO, x) for x in SLOPE_RATES], SLOPE_SEEDS)
-    names = ["length", "ratio", "rate", "rate_of_difference", "rate_of_drag", "seeds", "lost", "transient", "soft"]
-    names += columns_of("viscosity", "lubrication", "contact", "repulsion")
-    names += ["attraction", *columns_of("contacts_per_particle")]
+    names = "length, ratio, rate, rate_of_difference, rate_of_drag, seeds, lost, transient, soft, viscosity±, "
+    names += "lubrication±, contact±, repulsion±, attraction, contacts_per_particle±"
     write_table(HERE / "table.csv", names, rows + ends, 4)
     draw(rows)
     write_numbers(HERE / "numbers.csv", dict(method_numbers(program)))
@@ -149,42 +139,29 @@ def draw(rows):
     figure = Figure(HERE / "chart.png", columns=2)
     ends = {"x_range": (5e-6, 20), "y_range": (5, 1000), "log": "xy", "powers": "x", "key": "top right"}
     panel = figure.panel("γ̇/γ̇_0, F(0) = F_R + F_A", "η_r", f"φ = {FRACTION}, μ = {FRICTION}, F_R/F_A = 19", **ends)
-    both = (5e-6, 20)
-    panel.level(mari_fit(FRACTION, 1), "Mari fit (published), μ = 1", GREY, span=both, dash=2)
-    panel.level(mari_fit(FRACTION, 0), "Mari fit (published), μ = 0", GREY, span=both, dash=3)
+    for friction, dash in ((1, 2), (0, 3)):
+        panel.level(mari_fit(FRACTION, friction), f"Mari fit (published), μ = {friction}", GREY, dash=dash)
     for x, text in ((1, "γ̇_0, in the published thickening"), (1 / DRAG, "γ̇_0 with 6π")):
         panel.upright(x)
         panel.text(text, x * 0.8, 90, "right", rotation=90, fontsize=9)
     for length, colour in ((FREE, BLUE), (SALTED, RED)):
-        panel.rows(
-            curve_of(rows, length, TABLE_RATIO),
-            "rate",
-            "viscosity",
-            f"{SALTS[length]}, λ = {length} a",
-            colour,
-            7,
-            0.8,
-            joined=True,
-        )
+        curve, title = curve_of(rows, length, TABLE_RATIO), f"{SALTS[length]}, λ = {length} a"
+        panel.rows(curve, "rate", "viscosity", title, colour, 7, 0.8, joined=True)
     panel = figure.panel("γ̇/γ̇_0, F(0) = F_R + F_A", "η_r", f"λ = {SALTED} a (0.4 M)", **ends)
     for ratio, colour in zip((TABLE_RATIO, *SCANNED[SALTED]), (RED, ORANGE, GREEN, BLUE, PURPLE)):
-        panel.rows(
-            curve_of(rows, SALTED, ratio), "rate", "viscosity", f"F_R/F_A = {ratio}", colour, 7, 0.8, joined=True
-        )
+        curve = curve_of(rows, SALTED, ratio)
+        panel.rows(curve, "rate", "viscosity", f"F_R/F_A = {ratio}", colour, 7, 0.8, joined=True)
     figure.draw()
 
 
 def quick_measure(program):
     cases = [(FREE, TABLE_RATIO, x) for x in (1e-5, 1e-3, 0.1)] + [(SALTED, 0.5, x) for x in (1e-3, 1)]
-    small = {"particles": {"count": 200}, **in_strains(1, 3)}
-    slow, least, fast, sticky, torn = rows_of(program, "quick", cases, 6, small)
-    name = f"salt-free, F_R/F_A = {TABLE_RATIO}"
+    slow, least, fast, sticky, torn = rows_of(program, "quick", cases, 6, SHORT)
     for text, row, low, high in (("10⁻⁵", slow, 1.05, 1.6), ("0.1", fast, 1.7, 4)):
-        ratio = row_ratio(row, least, "viscosity")
-        yield Check(f"{name}: η_r at rate {text} over that at 10⁻³", "expected", *ratio, low, high, 5)
+        text = f"salt-free, F_R/F_A = {TABLE_RATIO}: η_r at rate {text} over that at 10⁻³"
+        yield Check(text, "expected", *row_ratio(row, least, "viscosity"), low, high, 5)
     text = "0.4 M, F_R/F_A = 0.5: η_r at rate 10⁻³ over that at 1"
-    ratio = row_ratio(sticky, torn, "viscosity")
-    yield Check(text, "expected", *ratio, 1.3, 6, 5)
+    yield Check(text, "expected", *row_ratio(sticky, torn, "viscosity"), 1.3, 6, 5)
 
 
 main(HERE, TITLE, measure, quick_measure, judge)

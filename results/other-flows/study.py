@@ -6,27 +6,20 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.driver import BLUE, Check, Figure, Finding, GREEN, ORANGE, RED, REFERENCE_SCENE, columns_of, during
-from studies.driver import entries, estimate, in_strains, main, merged, number, over, quotient, read_numbers, read_rows
-from studies.driver import row_ratio, where, write_numbers, write_table
+from studies.driver import BLUE, Check, Figure, Finding, GREEN, ORANGE, RED, REFERENCE_SCENE, during, entries, estimate
+from studies.driver import in_strains, main, merged, number, over, quotient, read_numbers, read_rows, row_ratio, where
+from studies.driver import write_numbers, write_rows
 
 TITLE = "Reversal, extension and shear across"
-SCENE = merged(
-    REFERENCE_SCENE, particles={"count": 200, "density": 1e-3}, fluid={"viscosity": 1}, flow=None, duration=None
-)
+NONE = {"flow": None, "duration": None}
+SCENE = merged(REFERENCE_SCENE, NONE, particles={"count": 200, "density": 1e-3}, fluid={"viscosity": 1})
 FRICTION = {"contact": {"normal_stiffness": 2e5, "friction": 0.5}}
 REVERSED, REVERSAL_SEEDS, BEFORE, AFTER, BINS = 0.50, 48, 4, 5, 100
 EXTENSION = {0.02: 8, 0.30: 12, 0.40: 12, 0.50: 16}  # volume fraction and seeds
 RATE = 1.0  # sqrt(2 E:E) of both flows
 SHAKEN, SHAKEN_SEEDS = 0.54, 8
-SHAKES = (
-    (0.01, 30),
-    (0.01, 100),
-    (0.01, 300),
-    (0.03, 30),
-    (0.03, 100),
-    (0.1, 30),
-)  # amplitude, frequency over the rate
+# Amplitude, frequency over the rate.
+SHAKES = (0.01, 30), (0.01, 100), (0.01, 300), (0.03, 30), (0.03, 100), (0.1, 30)
 
 
 def point_of(program, name, patch, seeds, settings, observable="relative_viscosity"):
@@ -83,37 +76,25 @@ def shaken_rows(program):
         cross = {"amplitude": amplitude, "frequency": frequency * RATE}
         settings = {"/flow/shear_rate": RATE, "/flow/cross_shear": cross}
         point = point_of(program, f"shaken-{amplitude:g}-{frequency:g}", patch, SHAKEN_SEEDS, settings)
-        means = point.means
-        row = {"amplitude": amplitude, "frequency": frequency, "seeds": len(means)}
+        row = {"amplitude": amplitude, "frequency": frequency, "seeds": len(point.means)}
         row |= entries("viscosity", point.measured("relative_viscosity"))
         # <sigma_yz rate across> = g^2 w G'' / 2.
-        across = [amplitude**2 * frequency * RATE * m["loss_modulus"] / 2 for m in means]
-        total = [m["relative_viscosity"] + a / RATE**2 for m, a in zip(means, across)]
+        factor = amplitude**2 * frequency * RATE / 2 / RATE**2
+        total = [m["relative_viscosity"] + factor * m["loss_modulus"] for m in point.means]
         yield row | entries("dissipation", estimate(total))
 
 
 def measure(program):
-    write_table(
-        HERE / "extension.csv",
-        ["fraction", "seeds", *columns_of("shear", "extension", "second")],
-        list(extension_rows(program)),
-        5,
-    )
-    write_table(
-        HERE / "shaken.csv",
-        ["amplitude", "frequency", "seeds", *columns_of("viscosity", "dissipation")],
-        list(shaken_rows(program)),
-        5,
-    )
-    columns = ["contacts", "flow", "strain", "seeds", *columns_of("viscosity", "normal")]
+    write_rows(HERE / "extension.csv", list(extension_rows(program)), 5)
+    write_rows(HERE / "shaken.csv", list(shaken_rows(program)), 5)
     levels = {}
-    write_table(HERE / "reversal.csv", columns, list(reversal_rows(program, levels)), 5)
+    write_rows(HERE / "reversal.csv", list(reversal_rows(program, levels)), 5)
     write_numbers(HERE / "levels.csv", levels)
 
 
-def curve(contacts, flow, name="viscosity"):
-    rows = [r for r in read_rows(HERE / "reversal.csv") if (r["contacts"], r["flow"]) == (contacts, flow)]
-    return [(r["strain"], *number(r, name)) for r in rows]
+def reversed_curve(contacts):
+    rows = where(read_rows(HERE / "reversal.csv"), contacts=contacts, flow="reversed")
+    return [(r["strain"], *number(r, "viscosity")) for r in rows]
 
 
 def judge():
@@ -121,24 +102,18 @@ def judge():
         ratio = quotient(number(row, "extension"), number(row, "shear"))
         fraction, degrees = row["fraction"], row["seeds"] - 1
         if fraction < 0.1:
-            text = f"φ = {fraction:g}: η_E of planar extension over 1 + 2.5 φ"
-            yield Check(
-                text, "Newtonian limit", *over(number(row, "extension"), 1 + 2.5 * fraction), 0.99, 1.02, degrees
-            )
+            text, found = f"φ = {fraction:g}: η_E of planar extension over 1 + 2.5 φ", number(row, "extension")
+            yield Check(text, "Newtonian limit", *over(found, 1 + 2.5 * fraction), 0.99, 1.02, degrees)
         text = f"φ = {fraction:g}: η_E of planar extension over that of shear at the same invariants"
         yield Finding(text, "extension", *ratio, degrees)
     for contacts, name in (("friction", "friction 0.5"), ("none", "no friction")):
-        turned, levels, degrees = curve(contacts, "reversed"), read_numbers(HERE / "levels.csv"), REVERSAL_SEEDS - 1
+        turned, levels, degrees = reversed_curve(contacts), read_numbers(HERE / "levels.csv"), REVERSAL_SEEDS - 1
         level, last = levels[f"steady-{contacts}-whole"][:2], levels[f"reversed-{contacts}-end"][:2]
         text = f"{name}: viscosity a strain of {0.9 * AFTER:g} after the reversal over that of steady shear"
         yield Check(text, "steady shear", *quotient(last, level), 0.92, 1.08, degrees)
         lowest = min(turned, key=lambda point: point[1])
-        yield Finding(
-            f"{name}: lowest viscosity after the reversal over that of steady shear",
-            "reversal",
-            *quotient(lowest[1:], level),
-            degrees,
-        )
+        text = f"{name}: lowest viscosity after the reversal over that of steady shear"
+        yield Finding(text, "reversal", *quotient(lowest[1:], level), degrees)
         yield Finding(f"{name}: strain at which it is lowest", "reversal", lowest[0], 0.5 * AFTER / BINS, degrees)
         again = next((p[0] for p in turned if p[0] > lowest[0] and p[1] > 0.9 * level[0]), math.nan)
         yield Finding(f"{name}: strain at which nine tenths of it are back", "reversal", again, AFTER / BINS, degrees)
@@ -159,7 +134,7 @@ def draw():
     place = {"key": "bottom right", "y_range": (0, None)}
     one = figure.panel("strain after the reversal", "η_r", f"φ = {REVERSED:.2f}", **place)
     for contacts, name, colour in (("friction", "friction 0.5", RED), ("none", "no friction", BLUE)):
-        one.points(curve(contacts, "reversed"), name, colour, 7, 0.6, joined=True)
+        one.points(reversed_curve(contacts), name, colour, 7, 0.6, joined=True)
         one.level(read_numbers(HERE / "levels.csv")[f"steady-{contacts}-whole"][0], None, colour, span=(0, AFTER))
     two = figure.panel("φ", "η_r", "planar extension and shear", log="y", key="top left")
     rows = read_rows(HERE / "extension.csv")

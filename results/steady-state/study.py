@@ -23,16 +23,11 @@ RUNS = {WEAK: (80, "brownian_times", 96, (3, 6), (63, 96)), STRONG: (48, "strain
 DIFFUSION_TIME = 6 * math.pi
 LATER = (57, 75), (75, 96)
 JUDGED = FRACTIONS[1:]  # at the least one the signal is too weak
-UNITS = {"brownian_times": "τ_B", "strain": "strain"}
+
 TOLERANCE = 0.1  # of print: "standard deviation less than 10 %"
 LEFT = 0.05  # of the way, when 95 % are made
 MULTIPLE = math.log(1 / LEFT)  # of the time of an exponential until then
 SCENE = merged(TABLE_SCENE, duration=None)
-
-
-def series_of(results):
-    """By seed: the block means of the pairs' viscosity."""
-    return np.array([r["blocks"]["relative_viscosity_pair"] for r in results])
 
 
 def part_of(rows, length, ends):
@@ -54,16 +49,17 @@ def relaxation(values, length):
 def numbers_of(rows, peclet):
     """Early over steady viscosity, the time of the relaxation, and that to 95 %; with errors by leaving out a seed."""
     _, _, length, early, late = RUNS[peclet]
-    parts = [part_of(rows, length, ends) for ends in (early, late)]
-    share = jackknife(lambda seeds: parts[0][seeds].mean() / parts[1][seeds].mean(), len(rows))
+
+    def share(*ends):
+        before, then = (part_of(rows, length, of) for of in ends)
+        return jackknife(lambda seeds: before[seeds].mean() / then[seeds].mean(), len(rows))
+
     times, errors = jackknife(lambda seeds: relaxation(rows[seeds].mean(axis=0), length), len(rows))
     names = ("early over steady", "time", "time to 95 %")
-    numbers = {n: (*found, len(rows) - 1) for n, found in zip(names, (share, *zip(times, errors)))}
+    numbers = dict(zip(names, (share(early, late), *zip(times, errors))))
     if peclet == WEAK:
-        parts = [part_of(rows, length, ends) for ends in LATER]
-        share = jackknife(lambda seeds: parts[0][seeds].mean() / parts[1][seeds].mean(), len(rows))
-        numbers["later over latest"] = (*share, len(rows) - 1)
-    return numbers
+        numbers["later over latest"] = share(*LATER)
+    return {name: (*found, len(rows) - 1) for name, found in numbers.items()}
 
 
 def measured(program, name, peclet, seeds, fractions, patch=None):
@@ -72,7 +68,8 @@ def measured(program, name, peclet, seeds, fractions, patch=None):
     parts = {"equilibration": {"strain": 0}, "production": {unit: length}}
     scene = merged(SCENE, {"peclet": peclet, "duration": parts}, patch or {})
     program.run(name, scene, [{"/volume_fraction": f} for f in fractions], seeds)
-    return {f: series_of(results) for f, results in zip(fractions, program.stored_results(name))}
+    blocks = ([r["blocks"]["relative_viscosity_pair"] for r in of] for of in program.stored_results(name))
+    return {f: np.array(rows) for f, rows in zip(fractions, blocks)}
 
 
 def measure(program):
@@ -156,16 +153,12 @@ def quick_measure(program):
     steady = part_of(rows, length, late)
     found = numbers_of(rows, STRONG)["early over steady"]
     begins = estimate(part_of(rows, length, (0, length / BLOCKS)) / steady.mean())
-    name = f"Pe = {STRONG:g}, φ = 0.5"
-    return [
-        Statement(
-            f"{name}: η_r from a strain of 2 to 3 over that from 5 to 8", "L 4.2.1", *found[:2], 0.8, 1.2, found[2]
-        ),
-        Statement(
-            f"{name}: η_r in the first quarter of a strain over that from 5 to 8", "L 4.2.1", *begins, 0.2, 0.9, 15
-        ),
-        Statement(f"{name}: η_r of pairs from a strain of 5 to 8", "L4.5b", *estimate(steady), 8, 15, 15),
-    ]
+    for text, source, value, low, high in (
+        ("η_r from a strain of 2 to 3 over that from 5 to 8", "L 4.2.1", found[:2], 0.8, 1.2),
+        ("η_r in the first quarter of a strain over that from 5 to 8", "L 4.2.1", begins, 0.2, 0.9),
+        ("η_r of pairs from a strain of 5 to 8", "L4.5b", estimate(steady), 8, 15),
+    ):
+        yield Statement(f"Pe = {STRONG:g}, φ = 0.5: {text}", source, *value, low, high, 15)
 
 
 main(HERE, TITLE, measure, quick_measure, judge, draw)
