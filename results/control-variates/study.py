@@ -99,9 +99,8 @@ def draw():
     table, windows = (read_rows(HERE / f"{name}.csv") for name in ("table", "windows"))
     figure = Figure(HERE / "chart.png", columns=2, size=(1100, 450))
     axes = {"y_range": (0, 1.2)}
-    panel = figure.panel(
-        "Pe", "variance over that of η_r", log="x", powers="x", x_range=(0.005, 200), key="bottom right", **axes
-    )
+    ends = {"x_range": (0.005, 200), "key": "bottom right", **axes}
+    panel = figure.panel("Pe", "variance over that of η_r", log="x", powers="x", **ends)
     for k, (name, colour) in enumerate(COLOURS.items()):
         rows = [(r["peclet"] * 1.12 ** (k - 1), *number(r, "ratio")) for r in table if r["controls"] == name]
         panel.points(rows, name, colour, joined=True)

@@ -7,7 +7,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.driver import BLUE, Check, Figure, RED, REFERENCE_SCENE, entries, in_brownian_times, main, merged, number
-from studies.driver import over, read_rows, write_rows
+from studies.driver import over, read_rows, where, write_rows
 
 TITLE = "The pressure at rest"
 FRACTIONS = (0.20, 0.30, 0.40, 0.45, 0.50)
@@ -41,11 +41,8 @@ def hard_pressure(fraction, radii, softness=0.0):
     m1, m2, m3 = (sum(x * (2 * a - softness) ** k for x, a in zip(shares, radii)) for k in (1, 2, 3))
     packed = fraction * m3 / full
     void = 1 - packed
-    return (
-        1 / void
-        + 3 * packed * m1 * m2 / (m3 * void**2)
-        + packed**2 * (3 - packed) * m2**3 / (m3**2 * void**3)
-    )
+    pairs = 3 * packed * m1 * m2 / (m3 * void**2)
+    return 1 / void + pairs + packed**2 * (3 - packed) * m2**3 / (m3**2 * void**3)
 
 
 def softness():
@@ -100,10 +97,9 @@ def draw():
         panel = figure.panel("φ", "P over that of the equation of state", f"sizes {sizes}", y_range=(0.97, 1.03))
         panel.box(None, None, 0.99, 1.01, "#eef4e8")
         for step, colour, shift in ((1, BLUE, -0.002), (0.25, RED, 0.002)):
-            rows = [
-                (r["fraction"] + shift, *number(r, "ratio")) for r in table if r["sizes"] == sizes and r["step"] == step
-            ]
-            panel.points(rows, "automatic step" if step == 1 else "a quarter of it", colour)
+            rows = where(table, sizes=sizes, step=step)
+            points = [(r["fraction"] + shift, *number(r, "ratio")) for r in rows]
+            panel.points(points, "automatic step" if step == 1 else "a quarter of it", colour)
     figure.draw()
 
 

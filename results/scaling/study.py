@@ -64,11 +64,11 @@ def number_of(method, table, largest, time="processor"):
 
 def judge():
     """Up to the published number of spheres, by processor time; other rows go beyond print."""
-    for name, (value, error, degrees) in read_numbers(HERE / "numbers.csv").items():
+    for name, (*found, degrees) in read_numbers(HERE / "numbers.csv").items():
         if name.endswith(f"processor time, N = 10 to {PUBLISHED}"):
-            yield Statement(f"{name} (published: 1)", "L4.4", value, error, 0.9, 1.1, degrees)
+            yield Statement(f"{name} (published: 1)", "L4.4", *found, 0.9, 1.1, degrees)
         else:
-            yield Finding(name, "L4.4", value, error, degrees)
+            yield Finding(name, "L4.4", *found, degrees)
 
 
 def table_row(method, row):
@@ -86,12 +86,8 @@ def measure(program):
     rows = [table_row(m, row) for m, table in (("implicit", implicit), ("explicit", explicit)) for row in table]
     write_rows(HERE / "table.csv", rows, 4)
     draw(rows)
-    numbers = [
-        number_of("implicit", implicit, PUBLISHED),
-        number_of("explicit", explicit, PUBLISHED),
-        number_of("implicit", implicit, COUNTS[-1]),
-        number_of("implicit", implicit, PUBLISHED, "wall"),
-    ]
+    numbers = [number_of("implicit", implicit, PUBLISHED), number_of("explicit", explicit, PUBLISHED)]
+    numbers += [number_of("implicit", implicit, COUNTS[-1]), number_of("implicit", implicit, PUBLISHED, "wall")]
     write_numbers(HERE / "numbers.csv", dict(numbers))
 
 
@@ -100,9 +96,8 @@ def draw(rows):
     figure = Figure(HERE / "chart.png", columns=2)
     axes = {"log": "xy", "key": "top left", "x_range": (5, 200000)}
     of_step = figure.panel("N", "processor time of a step, s", powers="xy", **axes)
-    of_particle = figure.panel(
-        "N", "processor time of a step of a particle, ns", powers="x", y_range=(30, 5000), **axes
-    )
+    title = "processor time of a step of a particle, ns"
+    of_particle = figure.panel("N", title, powers="x", y_range=(30, 5000), **axes)
     middle = next(r["processor_ns"] for r in rows if r["method"] == "implicit" and r["particles"] == 1000)
     of_step.curve(lambda n: middle * 1e-9 * n, "proportional to N")
     for method, colour, mark in (("implicit", BLUE, 7), ("explicit", RED, 5)):
