@@ -8,12 +8,6 @@ from .folders import running
 from .night import workers_of
 
 
-def finished(night):
-    night.write()
-    night.types("peclet run night.json --quiet > table")
-    return night.remembers()
-
-
 def killed(night):
     """A campaign whose owner was killed when it had results, and whose workers have left."""
     night.slow(300)
@@ -31,7 +25,7 @@ def killed(night):
 
 def deleted(night):
     """campaign.db deleted"""
-    finished(night)
+    night.has_run()
     night.types("rm night.peclet/campaign.db && peclet run night.json", 6, ["is gone", "backups"])
     night.follows(r"peclet restore [^`]*", 0, ["restored from", "with 16 results"])
     night.follows(r"peclet run [^`\n]*", 0, ["2 converged"])
@@ -46,21 +40,19 @@ def deleted_while_it_runs(night):
     night.waits(run, 6, ["was deleted while the campaign ran", "were saved in"])
     night.lets_go()
     night.follows(r"peclet restore [^`]*", 0, ["restored from"])
-    night.types("peclet run night.json --quiet", 0, ["2 converged"])
-    night.lost_nothing()
+    night.ends()
     night.answers_as_undisturbed()
 
 
 def cut(night):
     """campaign.db cut short"""
-    finished(night)
+    night.has_run()
     night.types(
         "truncate -s 20000 night.peclet/campaign.db && peclet status night.json", 6, ["is damaged", "peclet restore"]
     )
     night.types("peclet run night.json", 6, ["damaged", "peclet restore"])
     night.follows(r"peclet restore [^`]*", 0, ["restored from", "with 16 results", "is kept in"])
-    night.types("peclet run night.json --quiet", 0, ["2 converged"])
-    night.lost_nothing()
+    night.ends()
 
 
 def older_copy(night):
@@ -78,8 +70,7 @@ def older_copy(night):
         ["is older than its own backup", "16", "Put the newer one back with"],
     )
     night.follows(r"peclet restore [^`]*", 0, ["with 16 results", "is kept in"])
-    night.types("peclet run night.json --quiet", 0, ["2 converged"])
-    night.lost_nothing()
+    night.ends()
 
 
 def log_deleted(night):
@@ -125,7 +116,7 @@ def restored_over_newer(night):
 
 def another_program(night):
     """A database of another peclet"""
-    finished(night)
+    night.has_run()
     database = sqlite3.connect(night.path("night.peclet", "campaign.db"))
     database.execute("PRAGMA user_version = 99")
     database.close()
