@@ -92,8 +92,7 @@ def price_rows(program, fraction, viscosity):
     for peclet in PECLETS:
         patch = {"fluid": {"thermal_energy": None}, "observables": None, "volume_fraction": fraction}
         scene = merged(SCENE, patch, at_peclet(peclet), in_brownian_times(EQUILIBRATION, PRICE_WINDOW))
-        settings = [{"/volume_fraction": fraction}]
-        (point,) = program.run(f"price-{fraction:g}-{peclet:g}", scene, settings, PRICE_SEEDS)
+        (point,) = program.run(f"price-{fraction:g}-{peclet:g}", scene, [{"/volume_fraction": fraction}], PRICE_SEEDS)
         foretold = flow_over_rest(peclet, fraction, SCENE["particles"]["species"])
         yield price_row(fraction, peclet, point, PRICE_WINDOW, "relative_viscosity", viscosity, foretold)
 
@@ -120,8 +119,7 @@ def measure(program):
     rows += rows_of(MIDDLE, 100, "half of it", halved)
     write_table(HERE / "table.csv", "fraction, count, step, by, seeds, viscosity±, rise±", rows, 5)
     write_rows(HERE / "curves.csv", curves, 5)
-    names = "fraction, peclet, count, seeds, viscosity±, seconds±, foretold"
-    write_table(HERE / "prices.csv", names, prices, 4)
+    write_table(HERE / "prices.csv", "fraction, peclet, count, seeds, viscosity±, seconds±, foretold", prices, 4)
 
 
 def in_errors(a, b):
@@ -178,8 +176,7 @@ def moduli(curves, table):
         _, loss, loss_error = modulus(curves, fraction, "loss")
         viscosity = np.array((loss, loss_error)) / frequency
         text = f"φ = {fraction:g}: G″/(ηω) at the lowest frequency over η_r"
-        found = quotient(viscosity[:, 0], number(row, "viscosity"))
-        yield Check(text, "G″ = η_r ηω for ω → 0", *found, 0.8, 1.1)
+        yield Check(text, "G″ = η_r ηω for ω → 0", *quotient(viscosity[:, 0], number(row, "viscosity")), 0.8, 1.1)
         inner = (frequency > frequency[0]) & (frequency < FROZEN)
         ratios = storage[inner] / storage_by_loss(frequency, loss)[inner]
         text = f"φ = {fraction:g}: G′ over that by Kramers and Kronig from G″, mean over frequencies"
@@ -219,8 +216,7 @@ def draw_curves(figure, curves):
     moduli = figure.panel("ω τ_B", "G′, G″ (dashed) a³/kT", log="xy", key="top left", y_range=(1e-3, None))
     for fraction in WINDOWS:
         colour, label = colour_of(fraction), f"φ = {fraction:g}"
-        rows = where(curves, fraction=fraction, curve="viscosity")
-        rise.rows(rows[::3], "at", "value", label, colour, size=0.4)
+        rise.rows(where(curves, fraction=fraction, curve="viscosity")[::3], "at", "value", label, colour, size=0.4)
         storage, loss = (zip(*modulus(curves, fraction, name)) for name in ("storage", "loss"))
         moduli.points([row for row in storage if row[1] > row[2]], label, colour, size=0.6)
         moduli.line([row[:2] for row in loss], None, colour, dash=2)

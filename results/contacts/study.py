@@ -54,8 +54,7 @@ def row_at(program, peclet, seeds, patch):
 
 
 def measure(program):
-    rows = [row_at(program, peclet, SEEDS, {}) for peclet in PECLETS]
-    write_rows(HERE / "table.csv", rows, 5)
+    write_rows(HERE / "table.csv", [row_at(program, peclet, SEEDS, {}) for peclet in PECLETS], 5)
 
 
 def rows_judged(table, degrees):
@@ -67,9 +66,8 @@ def rows_judged(table, degrees):
     text = f"strain that a contact lasts at Pe = {STRONG:g} over that at {WEAK:g}: lasting only in strong flow"
     yield Statement(text, "L 4.2.5", *row_ratio(strong, weak, "strain"), 1, degrees=degrees)
     for name, text in (("contacts", "contacts of a sphere"), ("largest", "spheres in the largest cluster of contacts")):
-        ratio = row_ratio(strong, weak, name)
         text = f"{text} at Pe = {STRONG:g} over that at {WEAK:g}: chains"
-        yield Statement(text, "L 4.2.5", *ratio, 1, degrees=degrees)
+        yield Statement(text, "L 4.2.5", *row_ratio(strong, weak, name), 1, degrees=degrees)
     row = max(table, key=lambda r: r["overlap"])
     text = f"mean overlap of contacts over the radius where it is largest (Pe = {row['peclet']:g})"
     yield Statement(f"{text}: orders of magnitude less", "L 3.8", *number(row, "overlap"), 0, 0.01, degrees)

@@ -128,8 +128,7 @@ def samples_for_target(steps, found):
 
 def run(program, number, seeds, duration, patch=None, name=None):
     name = name or f"convergence-{number:g}"
-    scene = merged(SCENE, at_peclet(number), duration, patch or {})
-    program.run(name, scene, [{"/peclet": number}], seeds)
+    program.run(name, merged(SCENE, at_peclet(number), duration, patch or {}), [{"/peclet": number}], seeds)
     return Series(program.stored_results(name)[0], PUBLISHED_MEAN.get(number))
 
 
@@ -202,8 +201,7 @@ def comparisons(program, found):
     explicit = run(program, 1, 32, in_brownian_times(1, 4), method, "convergence-explicit")
     values = explicit.whole("plain")
     implicit = math.sqrt(variance_over_seeds(averaged(found[1].plain, 8))), 0
-    ratio = quotient(implicit, jackknife(lambda seeds: values[seeds].std(ddof=1), len(values)))
-    yield OF_METHOD, (*ratio, 31)
+    yield OF_METHOD, (*quotient(implicit, jackknife(lambda seeds: values[seeds].std(ddof=1), len(values))), 31)
 
 
 def sample_rows(table):
@@ -213,8 +211,8 @@ def sample_rows(table):
     for number, _, _, published in RUNS:
         if published:
             text = f"Pe = {number:g}: log10 of explicit steps for 10 %, N = 1000 (published: {published})"
-            ends = published - 1, published + 1
-            yield Statement(text, "L4.3a", *found[number], *ends, rows[number]["seeds"] - 1)
+            degrees = rows[number]["seeds"] - 1
+            yield Statement(text, "L4.3a", *found[number], published - 1, published + 1, degrees)
     for low, high in zip(sorted(rows), sorted(rows)[1:]):
         text = f"log10 of samples for 10 % at Pe = {low:g} less that at {high:g}: more are needed as Pe is reduced"
         yield Statement(text, "L4.3a", *difference(found[low], found[high]), 0, degrees=rows[low]["seeds"] - 1)

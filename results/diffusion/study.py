@@ -183,8 +183,7 @@ def short_time_rows(of, degrees):
     intercept, slope, slope_error, residuals = line_of([of[COLD, f] for f in FRACTIONS])
     residual, fraction = max(zip(residuals, FRACTIONS), key=lambda r: abs(r[0]))
     text = f"lags to 3 τ_B: largest distance of D / D_0 from a line in φ (at φ = {fraction:g}) over its dilute value"
-    distance = over((residual, of[COLD, fraction]["standard_error"]), intercept)
-    yield Finding(text, "L4.2d", *distance, degrees)
+    yield Finding(text, "L4.2d", *over((residual, of[COLD, fraction]["standard_error"]), intercept), degrees)
     yield Finding("lags to 3 τ_B: slope of that line over the dilute value", "L4.2d", slope, slope_error, degrees)
 
 

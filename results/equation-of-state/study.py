@@ -104,8 +104,7 @@ def draw():
 
 
 def quick_measure(program):
-    patch = in_brownian_times(15, 60)
-    yield judged(row_of(program, "1 : 1.4", 0.30, 1, 8, patch), 0.03)
+    yield judged(row_of(program, "1 : 1.4", 0.30, 1, 8, in_brownian_times(15, 60)), 0.03)
 
 
 main(HERE, TITLE, measure, quick_measure, judge, draw)

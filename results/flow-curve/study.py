@@ -156,8 +156,7 @@ def high_rows(curves):
     for fraction in FRACTIONS[:2]:
         wide = {r["peclet"]: r for r in where(noisy, fraction=fraction, gap=0.5)}
         text = f"φ = {fraction:g}, μ = 1, outer gap 0.5: lubrication at Pe = 10⁴ over that at 1"
-        found = row_ratio(wide[1e4], wide[1], "lubrication")
-        yield Finding(text, "literature", *found, wide[1]["seeds"] - 1)
+        yield Finding(text, "literature", *row_ratio(wide[1e4], wide[1], "lubrication"), wide[1]["seeds"] - 1)
 
 
 def comparison_rows(table):

@@ -140,8 +140,7 @@ def plateau_rows(rows, degrees):
     repelled = curve_of(rows, 0.5, 1, 1000)
     for kind, share, words, bound in ((Statement, 0.1, "a tenth", {"low": 0}), (Finding, 0.5, "a half", {})):
         text = f"φ = 0.5, μ = 1: decades of Pe within {words} of the minimum, A = 1000 kT less A = 0: a broader plateau"
-        broader = difference(plateau(repelled, share), plateau(bare, share))
-        yield kind(text, "L 7", *broader, degrees=degrees, **bound)
+        yield kind(text, "L 7", *difference(plateau(repelled, share), plateau(bare, share)), degrees=degrees, **bound)
 
 
 def stress_rows(rows, degrees):

@@ -194,8 +194,7 @@ def measure(program):
     curves = {run[0]: thermal_rows(program, *run) for run in THERMAL_RUNS}
     # Where inertia is least, steps that are small beside the automatic one; explicit ones take too long there.
     number, seeds, _, parts = THERMAL_RUNS[-1]
-    step = {"integrator": {"timestep": 0.0011}}
-    fine = thermal_rows(program, number, seeds, (0.001,), parts, step, "thermal-fine")
+    fine = thermal_rows(program, number, seeds, (0.001,), parts, {"integrator": {"timestep": 0.0011}}, "thermal-fine")
     explicit = {"integrator": {"method": "explicit"}}
     flow_explicit = flow_rows(program, (0.1, 10), 12, explicit, "flow-explicit")
     thermal_explicit = thermal_rows(program, 1, 8, (0.18,), in_brownian_times(5, 20), explicit, "thermal-explicit")

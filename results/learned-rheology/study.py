@@ -82,14 +82,12 @@ def baseline_rows(rows, distinct):
     """The learned method over the baseline, each that which is best with training flows left out."""
     for map_, output in CASES:
         (method, best), (base, its) = best_of(rows, map_, output), best_of(rows, map_, output, BASELINES)
-        ratio = row_ratio(best, its, "unseen")
         text = f"{name_of(map_, output)}, flows never used: {method} over the best baseline, {base}"
-        yield Finding(text, "baselines", *ratio, DEGREES)
+        yield Finding(text, "baselines", *row_ratio(best, its, "unseen"), DEGREES)
     for output in ("fraction", "mu"):
         method, best = best_of(rows, 2, output)
-        ratio = row_ratio(distinct[2, output, method], best, "published")
         text = f"{name_of(2, output)}: error of {method} with bins averaged over symmetries, over that"
-        yield Finding(text, "symmetries", *ratio, DEGREES)
+        yield Finding(text, "symmetries", *row_ratio(distinct[2, output, method], best, "published"), DEGREES)
 
 
 def of_number(kind, numbers, name, text, source="L 6.2", **bounds):
@@ -106,8 +104,7 @@ def sentence_statements(numbers):
     for output in ("fraction", "mu"):
         text = f"{SYMBOLS[output]}: error of map 3 over that of map 2 (nearly identical)"
         yield of(f"map 3 over map 2, {output}", text, low=0.67, high=1.5)
-    text = "map 2, μ: error at φ ≥ 0.57 or L_y ≥ 120 over that of the tests"
-    yield of("beyond over within, mu", text, low=1)
+    yield of("beyond over within, mu", "map 2, μ: error at φ ≥ 0.57 or L_y ≥ 120 over that of the tests", low=1)
     for count in (25, 100, 300):
         text = f"map 1: error with {count} points of uniform flow added, over that without"
         yield of(f"uniform added, {count}", text, low=0.9)
@@ -128,8 +125,7 @@ def sentence_findings(numbers):
     yield of("slow over fast", text, "L6.2")
     text = "map 2: μ foretold less μ there, with the slow bins of three more flows in the training"
     yield of("signed with more slow bins", text, "L6.3")
-    text = "map 2, φ_loc: error at φ ≥ 0.57 or L_y ≥ 120 over that of the tests"
-    yield of("beyond over within, fraction", text)
+    yield of("beyond over within, fraction", "map 2, φ_loc: error at φ ≥ 0.57 or L_y ≥ 120 over that of the tests")
     for output in ("fraction", "mu"):
         text = f"map 2, {SYMBOLS[output]}: error with tuned settings over that with defaults"
         yield of(f"tuned over default, {output}", text)

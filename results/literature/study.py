@@ -149,8 +149,7 @@ def draw(rows, curves):
             chosen = where(rows, friction=friction, gap=gap)
             points = [(r["fraction"], *number(r, "viscosity")) for r in chosen]
             if points:
-                title = f"μ = {friction}, outer gap {gap}"
-                panel.points(points, title, colours[gap], 7 if friction else 6, 0.8)
+                panel.points(points, f"μ = {friction}, outer gap {gap}", colours[gap], 7 if friction else 6, 0.8)
     ends = {"x_range": (0.1, 3e4), "y_range": (2, 150)}
     panel = figure.panel("Pe", "η_r of pairs, μ = 1", log="xy", powers="x", key="top left", **ends)
     for fraction, mark in zip(NOISY_FRACTIONS, (6, 7)):

@@ -227,9 +227,8 @@ def rows_of_branches(jams):
         yield Statement(text, "L5.4b", *distance, high=0.015, essential=False)
     for row in (*NAMES, 10):
         shares = jams.shares(row)
-        best = place_of_largest(shares, [jams.jammed(row, a) for a in shares])
         text = f"{names[row]}: share α of grains, of those measured, at which φ_m is largest"
-        yield Statement(text, "L5.3", *best, 0.6, 0.8)
+        yield Statement(text, "L5.3", *place_of_largest(shares, [jams.jammed(row, a) for a in shares]), 0.6, 0.8)
 
 
 def interpolated(jams, alpha):
@@ -320,8 +319,7 @@ def quick_measure(program):
     """Colloids alone at a volume fraction at which friction jams them, with noise that keeps them apart and without."""
     for name, scene, row, jammed in (("without noise", SCENE, ROUGH, 1), ("Pe_c = 1", NOISY, FIXED, 0)):
         rough = merged(scene, contact={"friction": 1})
-        settings = [{**setting(0, 0.605, row), "/particles/count": 200}]
-        program.run(f"quick-{row}", rough, settings, 4)
+        program.run(f"quick-{row}", rough, [{**setting(0, 0.605, row), "/particles/count": 200}], 4)
         (point,) = curves_of(program, f"quick-{row}", 0)[0]["points"]
         text = f"colloids alone, φ = 0.605, {name}: 1 for jammed"
         yield Statement(text, "L5.4b", float(point["state"] != "flowing"), 0, jammed, jammed)

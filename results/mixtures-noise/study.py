@@ -253,9 +253,8 @@ def rows_of_colloids_added(table):
     less = quotient(fast, best)
     yield Statement("the factor at Pe_c = 1000 over that at 1", "L5.2c", *less, high=0.5, degrees=DEGREES)
     for peclet in NUMBERS[1:-1]:
-        step = table.ratio("colloids-added", (0.9, 1), peclet)
         text = f"Pe_c = {peclet:g}: η_r at α = 0.9 over that of grains alone"
-        yield Statement(text, "L5.2c", *step, high=1, degrees=DEGREES)
+        yield Statement(text, "L5.2c", *table.ratio("colloids-added", (0.9, 1), peclet), high=1, degrees=DEGREES)
     none = factor(drops(table, math.inf, "no-noise"))
     yield Statement("without noise: the factor", "L5.2c", *none, 1.2, math.inf, DEGREES)
     curves = [table.curve("grains-alone", 1, [peclet / 125 for peclet in NUMBERS])]
@@ -270,9 +269,8 @@ def rows_of_colloids_added(table):
     less = quotient(none, best)
     yield Statement("the factor without noise over that at Pe_c = 1", "L5.2c", *less, high=1, degrees=DEGREES)
     for before, then in ((1, 0.9), (0.9, 0.8)):
-        step = table.ratio("no-noise", (then, before), math.inf)
         text = f"without noise: η_r at α = {then:g} over that at {before:g}"
-        yield Statement(text, "L5.2", *step, high=1, degrees=DEGREES)
+        yield Statement(text, "L5.2", *table.ratio("no-noise", (then, before), math.inf), high=1, degrees=DEGREES)
     for peclet in (1, 100):
         name = f"grains at φ₀ = 0.60, Pe_c = {peclet:g}: d ln η_r/d ln k_n at α"
         for alpha, low, high in ((1, JAMMED, math.inf), (0.8, -math.inf, FLOWING), (0.5, JAMMED, math.inf)):
@@ -307,9 +305,8 @@ def rows_of_one_fraction(table):
             one, mixed = (log_of_share([*curve], np.exp(v), 0.95) for curve, v in zip(both, values))
             return mixed - one
 
-        shift = propagated_lists([[*curve.values()] for curve in both], later)
         text = f"φ = 0.565: lg of the Pe_cg of 95 % of the thickening, α = 0.5 less {name} alone"
-        yield Statement(text, "L5.3b", *shift, 0.5)
+        yield Statement(text, "L5.3b", *propagated_lists([[*curve.values()] for curve in both], later), 0.5)
     text = "φ = 0.565: η_r of colloids alone over that at α = 0.5, at Pe_cg = 10⁵ over at 3"
     yield Statement(text, "L5.3", *quotient(above(0, 1e5), above(0, 3)), 1, math.inf, DEGREES)
     grains = quotient(table.viscosity("fraction-grains", 1, 1), table.viscosity("fraction", 0, 1))

@@ -218,9 +218,8 @@ def judge():
     yield from dense_rows(points)
     yield from consistency_rows(rows)
     for row in read_rows(HERE / "order.csv"):
-        ratio = quotient(number(row, "gradient"), number(row, "vorticity"))
         text = f"μ = 0, α = {row['alpha']:g}, {row['group']}: peak of S(k), gradient over vorticity"
-        yield Finding(text, "layers", *ratio, row["seeds"] - 1)
+        yield Finding(text, "layers", *quotient(number(row, "gradient"), number(row, "vorticity")), row["seeds"] - 1)
 
 
 def draw():
@@ -250,8 +249,7 @@ def draw():
 def quick_measure(program):
     """Grains at which friction jams colloids or grains alone, mixed."""
     for friction, fraction in ((0, 0.6), (1, 0.54)):
-        cases = [(0, 300, fraction), (0.7, 1000, fraction)]
-        alone, mixed = rows_of(program, "quick", friction, cases, 4)
+        alone, mixed = rows_of(program, "quick", friction, [(0, 300, fraction), (0.7, 1000, fraction)], 4)
         text = f"μ = {friction}, φ = {fraction:g}: η_r at α = 0.7 over that of colloids alone"
         yield Statement(text, "L5.3b", *row_ratio(mixed, alone, "viscosity"), 0, 0.8)
 

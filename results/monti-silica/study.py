@@ -42,8 +42,7 @@ def rows_of(program, name, cases, seeds, patch=None, **others):
     """Rows of (Debye length, F_R / F_A, rate / rate_0)."""
     patches = [patch_of(rate, length, ratio, **others) for length, ratio, rate in cases]
     settings = [{f"/{key}": block for key, block in p.items()} for p in patches]
-    scene = merged(SCENE, patches[0], patch or {})
-    points = program.run(name, scene, settings, seeds)
+    points = program.run(name, merged(SCENE, patches[0], patch or {}), settings, seeds)
     return [row_of(case, point) for case, point in zip(cases, points)]
 
 

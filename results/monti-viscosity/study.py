@@ -103,9 +103,8 @@ def fit_rows(rows, fits):
             text = f"{name}, gap {row['gap']:g}: φ_J of a free fit from {ends}"
             degrees = chosen(rows, friction, row["gap"])[0]["seeds"] - 1
             yield Finding(text, "M fig 7", *number(row, "jammed"), degrees)
-        both = [r for gap in GAPS for r in compared(rows, friction, gap)]
         text = f"{name}: rms of ln(η_r/fit) with the pairs' stress counted twice, less that counted once"
-        yield Finding(text, "M eq 8", *distance_from(both))
+        yield Finding(text, "M eq 8", *distance_from([r for gap in GAPS for r in compared(rows, friction, gap)]))
 
 
 def unit_numbers(program):
@@ -219,8 +218,7 @@ def rows_of_variants(program):
 def measure(program):
     rows = []
     for friction, name in NAMES.items():
-        cases = [(friction, f, g) for g in GAPS for f in FRACTIONS[friction]]
-        rows += rows_of(program, name, cases, SEEDS[friction])
+        rows += rows_of(program, name, [(friction, f, g) for g in GAPS for f in FRACTIONS[friction]], SEEDS[friction])
     names = "variant, system, fraction, gap, seeds, lost, transient, soft, fit, viscosity±, viscosity_over_fit±, "
     names += "double_over_fit±, lubrication±, contact±, first_normal_difference±, second_normal_difference±, pressure±"
     table = [{"variant": "", **row} for row in rows] + list(rows_of_variants(program))
@@ -251,8 +249,7 @@ def draw(rows, fits):
         span = (0.28, min(0.58, MARI_FITS[friction][1] - 0.004))
         panel.curve(lambda phi, m=friction: mari_fit(phi, m), "Mari fit (published)", span=span, width=2)
         for gap, colour in zip(GAPS, (BLUE, RED)):
-            points = chosen(rows, friction, gap)
-            panel.rows(points, "fraction", "viscosity", f"gap {gap} a", colour, 7, 0.9)
+            panel.rows(chosen(rows, friction, gap), "fraction", "viscosity", f"gap {gap} a", colour, 7, 0.9)
             fit = fits[friction, gap, "one power"]
 
             def of_fit(phi, fit=fit):

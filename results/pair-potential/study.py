@@ -106,8 +106,7 @@ def judge():
 
 
 def point_of(program, method, seeds, brownian_times):
-    parts = in_brownian_times(20, brownian_times)
-    scene = {**SCENE, "integrator": {"method": method}, **parts}
+    scene = {**SCENE, "integrator": {"method": method}, **in_brownian_times(20, brownian_times)}
     return program.run(f"pair-potential-{method}", scene, [{"/particles/count": 2}], seeds, "kinetic_temperature")[0]
 
 

@@ -59,8 +59,7 @@ def made_of(name, case, scene, program, quick):
     for method, factor, tolerance, seeds, step, integrator in variants(case, automatic, largest):
         label = f"{method} {factor:g}" + (f" {tolerance:g}" if tolerance not in (None, NORMAL_TOLERANCE) else "")
         identifier = ("quick-" if quick else "") + f"{name} {label}".replace(" ", "-").replace(",", "")
-        settings = [{"/integrator": integrator}]
-        (point,) = program.run(identifier, scene, settings, QUICK_SEEDS if quick else seeds)
+        (point,) = program.run(identifier, scene, [{"/integrator": integrator}], QUICK_SEEDS if quick else seeds)
         living = point.results
         row = {"panel": name, "method": method, "step": factor, "tolerance": tolerance, "timestep": step}
         row |= {"values": point.by_seed(), "pressures": point.by_seed("pressure"), "flags": counts_text(flags(point))}

@@ -24,8 +24,7 @@ def friction(mu):
 
 
 def brownian(number):
-    parts = during({"strain": 0.5, "brownian_times": 10}, {"strain": 2, "brownian_times": 20})
-    return {**at_peclet(number), **parts}
+    return {**at_peclet(number), **during({"strain": 0.5, "brownian_times": 10}, {"strain": 2, "brownian_times": 20})}
 
 
 def large_spheres(ratio):

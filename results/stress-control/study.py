@@ -162,8 +162,7 @@ def onset_of(steep):
         (_, a, of_a), (_, b, of_b) = steep[low], steep[high]
         if a < 1 <= b:
             part, width = (1 - a) / (b - a), high - low
-            error = width * math.hypot((1 - part) * of_a, part * of_b) / (b - a)
-            return low + part * width, error
+            return low + part * width, width * math.hypot((1 - part) * of_a, part * of_b) / (b - a)
     return None
 
 
@@ -179,8 +178,7 @@ def draw():
     points = [(r["at"] / r["viscosity"], r["at"], 0) for r in curve_of(rows, JUMPING)]
     two.points(points, "at a stress", ORANGE, joined=True)
     by_rate = where(rows, kind="thickening", fraction=JUMPING, control="rate")
-    points = [(r["at"], *scaled(number(r, "viscosity"), r["at"])) for r in by_rate]
-    two.points(points, "at a rate", BLUE, 6)
+    two.points([(r["at"], *scaled(number(r, "viscosity"), r["at"])) for r in by_rate], "at a rate", BLUE, 6)
     three = figure.panel("Pe", "η_r", "colloids, φ = 0.45, no friction", log="x", key="top left")
     for place, (title, colour, mark) in enumerate((("at a rate", BLUE, 7), ("at its stress", RED, 6))):
         both = pairs_of(rows, "colloids")

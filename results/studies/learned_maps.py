@@ -170,8 +170,7 @@ def centre_numbers(tables):
     more = [taken(tables[f], slow_bins(tables, f)) for f in (*UNSEEN, BEYOND[0])]
     for name, table_of in (("signed where slow", train), ("signed with more slow bins", joined(train, *more))):
         less = METHODS["published"](MAPS[2][0], "mu").fit(table_of).predict(table) - table["mu"]
-        value = by_pieces(lambda rows, less=less: float(less[rows & slow].mean()), pieces)
-        yield name, (*value, PIECES - 1)
+        yield name, (*by_pieces(lambda rows, less=less: float(less[rows & slow].mean()), pieces), PIECES - 1)
 
 
 def comparison_numbers(tables):
@@ -228,8 +227,7 @@ def tuning_numbers(tables):
             return Regression(inputs, output, lambda: boosted(**settings))
 
         def left(settings, output=output, scale=scale, made=made):
-            found = left_out_of_training(tables, lambda: made(settings))
-            return relative_error(found, train[output], *scale)
+            return relative_error(left_out_of_training(tables, lambda: made(settings)), train[output], *scale)
 
         tuned = made(min(grid, key=left)).fit(train).predict(test)
         plain = fitted(tables, "published", inputs, output).predict(test)
