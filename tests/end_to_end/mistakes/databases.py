@@ -10,9 +10,7 @@ from .night import workers_of
 
 def killed(night):
     """A campaign whose owner was killed when it had results, and whose workers have left."""
-    night.slow(300)
-    night.write()
-    night.types("peclet run night.json --quiet --workers 2 --time-limit 0.6 > table", 75)
+    night.has_begun(0.6)
     before = len(night.results())
     run = running(night, before + 3, 300)
     os.killpg(run.pid, signal.SIGKILL)
@@ -35,7 +33,6 @@ def deleted(night):
 def deleted_while_it_runs(night):
     """campaign.db deleted while it runs"""
     run = running(night, 3, 300)
-    night.remembers()
     night.types("rm night.peclet/campaign.db")
     night.waits(run, 6, ["was deleted while the campaign ran", "were saved in"])
     night.lets_go()
@@ -57,9 +54,7 @@ def cut(night):
 
 def older_copy(night):
     """campaign.db overwritten by last week's copy"""
-    night.slow(300)
-    night.write()
-    night.types("peclet run night.json --quiet --workers 2 --time-limit 0.8 > table", 75)
+    night.has_begun(0.8)
     shutil.copy(night.path("night.peclet", "campaign.db"), night.path("last-week.db"))
     night.slow(20)
     night.types("peclet run night.json --quiet > table")
@@ -100,9 +95,7 @@ def copied_without_log(night):
 
 def restored_over_newer(night):
     """An old backup restored over a newer database"""
-    night.slow(300)
-    night.write()
-    night.types("peclet run night.json --quiet --workers 2 --time-limit 0.8 > table", 75)
+    night.has_begun(0.8)
     night.types("peclet backup night.json usb")
     night.slow(20)
     night.types("peclet run night.json --quiet > table")

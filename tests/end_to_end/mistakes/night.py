@@ -113,6 +113,12 @@ class Night:
         self.types("peclet run night.json --quiet > table")
         self.remembers()
 
+    def has_begun(self, seconds):
+        """The campaign is run for a while, with slow seeds."""
+        self.slow(300)
+        self.write()
+        self.types(f"peclet run night.json --quiet --workers 2 --time-limit {seconds} > table", 75)
+
     def ends(self):
         """Runs the campaign to its end, which loses nothing."""
         self.types("peclet run night.json --quiet", 0, ["2 converged"])

@@ -30,7 +30,6 @@ def interrupted_twice(night):
 def owner_killed(night):
     """kill -9 of the owner"""
     run = running(night)
-    night.remembers()
     os.kill(run.pid, signal.SIGKILL)
     run.wait()
     night.remarks("The run is killed.")
@@ -46,7 +45,6 @@ def owner_killed(night):
 def worker_killed(night):
     """kill -9 of a worker"""
     run = running(night)
-    night.remembers()
     os.kill(workers_of(night)[0], signal.SIGKILL)
     night.lets_go()
     night.waits(run, 0, ["2 converged"], ["lost"])
@@ -76,7 +74,6 @@ def laptop_closed(night):
 def connection_lost(night):
     """The ssh connection lost (SIGHUP)"""
     run = running(night)
-    night.remembers()
     os.killpg(run.pid, signal.SIGHUP)
     night.remarks("The terminal is gone; the shell sends its jobs SIGHUP.")
     night.waits(run, 75, ["workers checkpoint and stop", "`peclet run night.json` goes on"])
