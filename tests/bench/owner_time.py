@@ -15,20 +15,9 @@ import time
 
 TESTS = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 sys.path.insert(0, os.path.join(TESTS, "end_to_end"))
-from campaign_folder import CampaignFolder  # noqa: E402
+from campaign_folder import CampaignFolder, largest_memory, processor_time  # noqa: E402
 
 SCENE = os.path.join(TESTS, "runner", "small_scene.json")
-
-
-def processor_time(process):
-    with open(f"/proc/{process}/stat", encoding="ascii") as stat:
-        fields = stat.read().rsplit(")", 1)[1].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
-
-
-def largest_memory(process):
-    with open(f"/proc/{process}/status", encoding="ascii") as status:
-        return next(int(line.split()[1]) / 1024 for line in status if line.startswith("VmHWM"))
 
 
 def document(binaries, points, maximum):

@@ -103,6 +103,19 @@ def children(process):
         return []
 
 
+def processor_time(process):
+    """Returns the seconds that a process has taken."""
+    with open(f"/proc/{process}/stat") as f:
+        fields = f.read().rsplit(")", 1)[1].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def largest_memory(process):
+    """Returns the most MiB that a process has had in memory; 0 for a zombie."""
+    with open(f"/proc/{process}/status") as f:
+        return next((int(line.split()[1]) / 1024 for line in f if line.startswith("VmHWM")), 0)
+
+
 def processes_with(variable, value):
     """Returns the other processes that have this in their environment."""
     mark, found = f"{variable}={value}".encode(), []
