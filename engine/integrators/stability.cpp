@@ -11,7 +11,7 @@
 #include "engine/kernels/pair_recipes.h"
 #include "engine/terms/drag.h"
 #include "engine/terms/lubrication.h"
-#include "engine/terms/rolling.h"
+#include "engine/terms/spring_laws.h"
 
 namespace peclet::engine {
 namespace {
