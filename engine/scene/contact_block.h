@@ -27,6 +27,9 @@ inline Keys contact_keys() {
                "Load of friction beyond which it grows no more, with friction only; absent: none."),
       positive("/contact/tangential_stiffness", "force / length",
                "Tangential stiffness, with friction only; 2/7 of the normal one unless given."),
+      not_negative("/contact/tangential_damping", "force time / length",
+                   "Tangential damping gamma_t, with friction only: gamma_t v_t pushes beside the tangential "
+                   "spring, and Coulomb's law limits both together; absent (or 0): none."),
       not_negative(
           "/contact/rolling_stiffness", "force / length",
           "Stiffness against rolling; absent (or 0): free rolling. Above 0 it needs friction above 0."),
@@ -45,7 +48,7 @@ inline ContactParameters read_contact(const SceneDocument& scene) {
   contact.normal_damping = scene.number("/contact/normal_damping");
   contact.friction = scene.number_or("/contact/friction", 0);
   for (const char* key : {"/contact/tangential_stiffness", "/contact/kinetic_friction",
-                          "/contact/critical_load", "/contact/largest_load"}) {
+                          "/contact/critical_load", "/contact/largest_load", "/contact/tangential_damping"}) {
     if (scene.has(key) && !scene.has("/contact/friction")) {
       scene.refuse(key, "must be left out without /contact/friction");
     }
@@ -60,6 +63,7 @@ inline ContactParameters read_contact(const SceneDocument& scene) {
   // 2/7: a homogeneous sphere's normal and tangential contact then oscillate with the same period.
   contact.tangential_stiffness =
       scene.number_or("/contact/tangential_stiffness", 2.0 / 7.0 * contact.normal_stiffness);
+  contact.tangential_damping = scene.number_or("/contact/tangential_damping", 0);
   contact.rolling_stiffness = scene.number_or("/contact/rolling_stiffness", 0);
   if (contact.rolling_stiffness > 0 && contact.friction <= 0) {
     scene.refuse("/contact/rolling_stiffness", "must be 0 or left out unless /contact/friction is > 0");

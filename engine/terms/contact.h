@@ -21,6 +21,7 @@ struct ContactParameters {
   double critical_load = 0;  // F_CL: below this normal force there is no friction
   double largest_load = std::numeric_limits<double>::infinity();  // above it friction grows no more
   double tangential_stiffness = 0;                                // 2/7 of the normal one unless given
+  double tangential_damping = 0;
   double rolling_stiffness = 0;
   double rolling_friction = 0;  // that of sliding unless given
 };

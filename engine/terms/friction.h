@@ -19,6 +19,7 @@ struct SlidingFriction {
     return of.tangential_stiffness;
   }
   PECLET_ALWAYS_INLINE static double coefficient(const ContactParameters& of) { return of.friction; }
+  PECLET_ALWAYS_INLINE static double damping(const ContactParameters& of) { return of.tangential_damping; }
 
   // v_t = (1 - n n).(U_j - U_i) - (l_i Omega_i + l_j Omega_j) x n, of j's surface relative to i's.
   // Li, Royer & Ness (2023) eq. 4; Monti et al. (2021) eq. 4b.

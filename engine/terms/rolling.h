@@ -17,6 +17,7 @@ struct RollingFriction {
   }
   PECLET_ALWAYS_INLINE static double stiffness(const ContactParameters& of) { return of.rolling_stiffness; }
   PECLET_ALWAYS_INLINE static double coefficient(const ContactParameters& of) { return of.rolling_friction; }
+  PECLET_ALWAYS_INLINE static double damping(const ContactParameters& /*of*/) { return 0; }
 
   // v_r = a n x (Omega_i - Omega_j), a = 2 a_i a_j / (a_i + a_j). Monti et al. (2021) eq. B.1.
   template <class Real>

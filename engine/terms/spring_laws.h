@@ -8,6 +8,7 @@
 //   of(each)                     the member of `each`, which has one for every law
 //   stretch_rate()               the velocity at which the spring grows, across n
 //   stiffness(), coefficient()   k and mu: the spring is cut to |k s| = mu frictional_load()
+//   damping()                    gamma of a dashpot beside the spring, or 0
 //   load()                       force and couples of a spring s
 //   coupling()                   the slope of the load, as tangential_coupling() takes it
 //   largest_stiffness()          the largest slope as if centres alone moved, which bounds the step
@@ -79,8 +80,38 @@ PECLET_ALWAYS_INLINE Real slides_after(const ContactOf<Real>& contact, const Rea
   return select((length > limits.longest) & (load > 0.0), Real{1.0}, Real{0.0});
 }
 
+// The time by which a dashpot pushes ahead of its spring: k s + gamma v = k (s + lead v).
+template <class Law>
+PECLET_ALWAYS_INLINE double lead_of(const ContactParameters& parameters) {
+  const double damping = Law::damping(parameters);
+  return damping > 0 ? damping / Law::stiffness(parameters) : 0;
+}
+
+template <class Real>
+PECLET_ALWAYS_INLINE Vector3Of<Real> cut_to(const Vector3Of<Real>& vector, const Real& longest) {
+  const Real length = norm(vector);
+  return select(length > longest, longest / length, Real{1.0}) * vector;
+}
+
+// What a spring that has been cut and its dashpot push with, as a length: Coulomb's law limits both together.
+// They dissipate whatever the motion: PHYSICS.md has the proof. `length` is that of the spring before it was
+// cut, and becomes that of both if they are longer: a contact slides by it, and its spring is cut.
+template <class Law, class Real>
+PECLET_ALWAYS_INLINE Vector3Of<Real> damped_spring(const ContactOf<Real>& contact,
+                                                   const PairMotionOf<Real>& motion,
+                                                   const SpringLimitsOf<Real>& limits,
+                                                   Vector3Of<Real>& spring, Real& length) {
+  const double lead = lead_of<Law>(contact.parameters);
+  if (!(lead > 0)) return spring;
+  const Vector3Of<Real> ahead = Real{lead} * Law::stretch_rate(contact, motion);
+  length = larger(length, norm(spring + ahead));
+  const Real limit = select(length > limits.longest, limits.left, limits.longest);
+  spring = cut_to(spring, limit);
+  return cut_to(spring + ahead, limit);
+}
+
 // Advances the spring by `time` where spheres touch, else forgets it. Returns the load of the spring after
-// `felt_share` of the advance.
+// `felt_share` of the advance, and of its dashpot.
 template <class Law, bool kinetic, class Real>
 PECLET_ALWAYS_INLINE PairLoadOf<Real> advanced_load(const ContactOf<Real>& contact,
                                                     const PairMotionOf<Real>& motion, double time,
@@ -92,12 +123,14 @@ PECLET_ALWAYS_INLINE PairLoadOf<Real> advanced_load(const ContactOf<Real>& conta
   const SpringLimitsOf<Real> limits = spring_limits<Law>(contact, kinetic, springs.slides);
   Real length;
   spring = where(touching, advanced_spring(before, normal, stretch, limits, length));
+  Vector3Of<Real> felt = damped_spring<Law>(contact, motion, limits, spring, length);
   if constexpr (kinetic && Law::may_slide) {
     springs.slides = select(touching, slides_after(contact, length, limits), Real{0.0});
   }
-  Vector3Of<Real> felt = spring;
   if (felt_share != 1) {
-    felt = where(touching, advanced_spring(before, normal, Real{felt_share} * stretch, limits, length));
+    Vector3Of<Real> part =
+        where(touching, advanced_spring(before, normal, Real{felt_share} * stretch, limits, length));
+    felt = damped_spring<Law>(contact, motion, limits, part, length);
   }
   return Law::load(contact, felt);
 }
@@ -110,8 +143,9 @@ PECLET_ALWAYS_INLINE OfEachSpring<Real> held_shares(const Terms& terms, const Co
   OfEachSpring<Real> shares;
   for_each_spring_law(terms, [&](auto law) PECLET_INLINE_LAMBDA {
     using Law = decltype(law);
+    const double ahead = time + lead_of<Law>(contact.parameters);
     Law::of(shares) =
-        held_share(Law::of(springs), contact.pair.normal, Real{time} * Law::stretch_rate(contact, motion),
+        held_share(Law::of(springs), contact.pair.normal, Real{ahead} * Law::stretch_rate(contact, motion),
                    spring_limits<Law>(contact, terms.kinetic, springs.slides));
   });
   return shares;
@@ -131,21 +165,30 @@ PECLET_ALWAYS_INLINE PairResistanceOf<Real> tangential_coupling(const ContactLev
           .twist_second = sliding * lever.second * lever.second + rolling};
 }
 
-// Adds the stiffness of the springs of touching spheres, times its weight and the share that is held.
+// Adds the stiffness of the springs of touching spheres and the resistance of their dashpots, each times its
+// weight and the share that is held.
 template <class Real>
 PECLET_ALWAYS_INLINE void add_springs(PairResistanceOf<Real>& sum, const Terms& terms,
                                       const ContactOf<Real>& contact, const CouplingWeights& weights,
                                       const OfEachSpring<Real>& held) {
-  OfEachSpring<Real> stiffness;
+  OfEachSpring<Real> stiffness, resistance;
+  bool damped = false;
   for_each_spring_law(terms, [&](auto law) PECLET_INLINE_LAMBDA {
     using Law = decltype(law);
+    const double lead = lead_of<Law>(contact.parameters);
     Law::of(stiffness) = Law::coupling(contact.parameters, contact.reduced_diameter) * Law::of(held);
+    Law::of(resistance) = lead * Law::of(stiffness);
+    damped = damped || lead > 0;
   });
-  add_scaled(sum, select(contact.pair.overlap() > 0.0, Real{weights.tangential}, Real{0.0}),
-             tangential_coupling(contact.lever, stiffness.tangential, stiffness.rolling));
+  const auto add = [&](double weight, const OfEachSpring<Real>& each) PECLET_INLINE_LAMBDA {
+    add_scaled(sum, select(contact.pair.overlap() > 0.0, Real{weight}, Real{0.0}),
+               tangential_coupling(contact.lever, each.tangential, each.rolling));
+  };
+  add(weights.tangential, stiffness);
+  if (damped) add(weights.resistance, resistance);
 }
 
-// The largest stiffness of a contact, as if centres alone moved.
+// The largest stiffness of a contact, and the largest resistance of its dashpots, as if centres alone moved.
 inline double largest_contact_stiffness(const ContactParameters& contact, double radius_first,
                                         double radius_second) {
   double largest = contact.normal_stiffness;
@@ -153,6 +196,15 @@ inline double largest_contact_stiffness(const ContactParameters& contact, double
     largest = larger(largest, decltype(law)::largest_stiffness(contact, radius_first, radius_second));
   });
   return largest;
+}
+inline double largest_contact_damping(const ContactParameters& contact, double radius_first,
+                                      double radius_second) {
+  double sum = 0;
+  for_each_spring_law([&](auto law) {
+    using Law = decltype(law);
+    sum += lead_of<Law>(contact) * Law::largest_stiffness(contact, radius_first, radius_second);
+  });
+  return sum;
 }
 
 }  // namespace peclet::engine
