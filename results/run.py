@@ -79,12 +79,8 @@ def table(studies):
     for study in studies:
         numbers = ["-"] * 4
         if study["date"]:
-            numbers = [
-                f"{study['statements_that_hold']} of {study['statements']}",
-                f"{study['checks_passed']} of {study['checks']}",
-                f"{study['processor_hours']:.2g}",
-                study["date"],
-            ]
+            counts = "{statements_that_hold} of {statements}", "{checks_passed} of {checks}", "{processor_hours:.2g}"
+            numbers = [text.format(**study) for text in (*counts, "{date}")]
         rows.append((study["study"], study["verdict"], *numbers, ", ".join(study["older_than"])))
     widths = [max(map(len, column)) for column in zip(*rows)]
     return "\n".join(
@@ -104,19 +100,16 @@ def programs_of(chosen):
     sys.exit(f"no peclet-engine in {', '.join(map(str, found))}: --programs must name the folder of the programs")
 
 
-def depth(name):
-    """Over how many others a study stands."""
-    return max((1 + depth(read) for read in READ.get(name, ())), default=0)
-
-
 def in_turn(hours):
-    """Names and hours, the cheapest first, but after those that they read."""
+    """Returns names and hours, the cheapest first, but after those that they read."""
 
-    def longest(name):
+    def place(name):
+        """The longest of those that it stands over and its own, and how many storeys these are."""
         own = math.inf if hours.get(name) is None else hours[name]
-        return max([own, *(longest(read) for read in READ.get(name, ()) if read in hours)])
+        below = [place(read) for read in READ.get(name, ()) if read in hours]
+        return max([own, *(longest for longest, _ in below)]), max((1 + storeys for _, storeys in below), default=0)
 
-    return sorted(hours.items(), key=lambda study: (longest(study[0]), depth(study[0])))
+    return sorted(hours.items(), key=lambda study: place(study[0]))
 
 
 def with_those_they_read(names):

@@ -24,7 +24,7 @@ PairResistance coupling_of(const Physics& physics, const Terms& terms, const Pai
   }
   add_stiffness(coupling, terms, physics.contact.value_or(ContactParameters{}), kind, shape,
                 {weights.resistance, weights.stiffness, weights.stiffness}, [] {
-                  return HeldSprings<double>{1, 1};
+                  return OfEachSpring<double>{1, 1};
                 });
   // Spheres that pull turn back with n: V' / r across it.
   const double slope = potential(kind.conservative, shape.distance, shape.sum_of_radii).slope;

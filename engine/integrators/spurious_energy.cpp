@@ -1,8 +1,7 @@
 #include "engine/integrators/spurious_energy.h"
 
 #include "engine/kernels/pair_access.h"
-#include "engine/terms/friction.h"
-#include "engine/terms/rolling.h"
+#include "engine/terms/spring_laws.h"
 
 namespace peclet::engine {
 namespace {
@@ -56,14 +55,14 @@ double energy_of_pair(const Physics& physics, const PairKind& kind, const PairGe
   if (shape.overlap() > 0 && physics.contact) {
     const ContactParameters& contact = *physics.contact;
     const double pressing = frictional_load(contact, shape.overlap());
-    const ContactLevers lever = contact_levers(kind.radius_first, kind.radius_second, shape);
-    if (springs.slides == 0) {
-      sum += energy_of_stretch(contact.tangential_stiffness, springs.tangential,
-                               timestep * slip_velocity(lever, shape, motion), contact.friction * pressing);
-    }
-    sum += energy_of_stretch(contact.rolling_stiffness, springs.rolling,
-                             timestep * rolling_velocity(kind.reduced_diameter, shape, motion),
-                             contact.rolling_friction * pressing);
+    const ContactOf<double> touch = contact_of(contact, kind, shape);
+    for_each_spring_law([&](auto law) {
+      using Law = decltype(law);
+      if (Law::may_slide && springs.slides != 0) return;
+      sum += energy_of_stretch(Law::stiffness(contact), Law::of(springs),
+                               timestep * Law::stretch_rate(touch, motion),
+                               Law::coefficient(contact) * pressing);
+    });
   }
   return sum;
 }

@@ -11,7 +11,7 @@
 #include "engine/kernels/pair_recipes.h"
 #include "engine/terms/drag.h"
 #include "engine/terms/lubrication.h"
-#include "engine/terms/rolling.h"
+#include "engine/terms/spring_laws.h"
 
 namespace peclet::engine {
 namespace {
@@ -30,14 +30,15 @@ double translational_damping(const Physics& physics, const PairResistance& resis
          (resistance.squeeze + damping) * pair.mobility;
 }
 
-// Bound of the rate at which its spins are: their drag (10/3 of the translational rate) and the trace of the
-// shearing and twisting modes. It decides only where lubrication is weak or absent.
-double rotational_damping(const Physics& physics, const PairResistance& resistance, const SpherePair& pair) {
+// Bound of the rate at which its spins are: their drag (10/3 of the translational rate), the trace of the
+// shearing and twisting modes, and dashpots. It decides only where lubrication is weak or absent.
+double rotational_damping(const Physics& physics, const PairResistance& resistance, double damping,
+                          const SpherePair& pair) {
   const double inertia_first = 0.4 * pair.mass_first * pair.first * pair.first;
   const double inertia_second = 0.4 * pair.mass_second * pair.second * pair.second;
   return std::max(rotational_drag(physics.viscosity, pair.first) / inertia_first,
                   rotational_drag(physics.viscosity, pair.second) / inertia_second) +
-         resistance.shear * pair.mobility + resistance.twist_first / inertia_first +
+         (resistance.shear + damping) * pair.mobility + resistance.twist_first / inertia_first +
          resistance.twist_second / inertia_second;
 }
 
@@ -54,9 +55,10 @@ PairRates rates_of_pair(const Scene& scene, const Species& of_first, const Speci
     resistance = pair_resistance(kind.resistance, kind.gap, touching);
   }
   const double normal_damping = physics.contact ? physics.contact->normal_damping : 0;
+  const double dashpots = physics.contact ? largest_contact_damping(*physics.contact, first, second) : 0;
   PairRates rates{};
   rates.damping = std::max(translational_damping(physics, resistance, normal_damping, pair),
-                           rotational_damping(physics, resistance, pair));
+                           rotational_damping(physics, resistance, dashpots, pair));
   if (physics.contact) {
     rates.frequency_squared = largest_contact_stiffness(*physics.contact, first, second) * mobility;
   }
@@ -262,7 +264,9 @@ double automatic_implicit_timestep(const Scene& scene) {
     const double stokes = largest_inertia * rate / physics.viscosity;
     step = strain / ((1 + 2 * stokes) * rate);
   }
-  if (const PairRates rates = stiffest_pair(scene); rates.frequency_squared > 0) {
+  Scene undamped = scene;  // a dashpot lengthens no time of the contact's other motions
+  if (undamped.physics.contact) undamped.physics.contact->tangential_damping = 0;
+  if (const PairRates rates = stiffest_pair(undamped); rates.frequency_squared > 0) {
     step = std::min(step, contact_times * rates.damping / rates.frequency_squared);
   }
   for (const Species& first : scene.particles.species) {

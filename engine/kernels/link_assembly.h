@@ -172,8 +172,9 @@ class LinkedPairs {
            where(touching, contact_damping_force(parameters.contact.normal_damping, shape_, motion)));
       if (terms.friction) {
         PairResistanceOf<Real> springs{};
-        add_springs(springs, terms, parameters.contact, kind_, ahead_,
-                    weights.timestep * parameters.felt_share, held_springs(terms));
+        add_springs(springs, terms, contact_of(parameters.contact, kind_, ahead_),
+                    {.resistance = 1, .tangential = weights.timestep * parameters.felt_share},
+                    held_springs(terms));
         const PairLoadOf<Real> stretched = lubrication_load(springs, shape_, motion);
         load.torque_first += stretched.torque_first;
         load.torque_second += stretched.torque_second;
@@ -272,31 +273,11 @@ class LinkedPairs {
     group.twist_second[place] = numbers.twist[second][k];
   }
 
-  PECLET_ALWAYS_INLINE HeldSprings<Real> held_springs(const Terms& terms) const {
+  PECLET_ALWAYS_INLINE OfEachSpring<Real> held_springs(const Terms& terms) const {
     const PairParameters& parameters = in_.parameters;
-    const auto spring = [&](int c) {
-      return Vector3Of<Real>{load_lanes(in_.springs[c] + begin_, count_, Real{}),
-                             load_lanes(in_.springs[c + 1] + begin_, count_, Real{}),
-                             load_lanes(in_.springs[c + 2] + begin_, count_, Real{})};
-    };
-    const Real overlap = larger(ahead_.overlap(), Real{0.0});
-    const Real elapsed{parameters.spring_timestep * parameters.felt_share};
-    const ContactLeversOf<Real> lever = contact_levers(kind_.radius_first, kind_.radius_second, ahead_);
-    const Real longest = longest_spring(parameters.contact, overlap);
-    SpringLimitsOf<Real> limits = {longest, longest};
-    if (terms.kinetic) {
-      limits = sliding_limits(parameters.contact, overlap, load_lanes(in_.slides + begin_, count_, Real{}));
-    }
-    HeldSprings<Real> held{};
-    held.tangential =
-        held_share(spring(0), shape_.normal, elapsed * slip_velocity(lever, shape_, motion_), limits);
-    if (terms.rolling) {
-      const Real longest_turn = longest_rolling_spring(parameters.contact, overlap);
-      held.rolling = held_share(spring(3), shape_.normal,
-                                elapsed * rolling_velocity(kind_.reduced_diameter, shape_, motion_),
-                                {longest_turn, longest_turn});
-    }
-    return held;
+    return held_shares(terms, contact_of(parameters.contact, kind_, ahead_), motion_,
+                       parameters.spring_timestep * parameters.felt_share,
+                       springs_at<Real>(in_, terms, begin_, count_));
   }
 
   PairGeometryOf<Real> shape_, ahead_;

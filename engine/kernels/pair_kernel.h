@@ -124,6 +124,21 @@ template <class Real>
           strain(second)};
 }
 
+// The springs of pairs from `begin` on, those that the terms have.
+template <class Real>
+PECLET_ALWAYS_INLINE PairSpringsOf<Real> springs_at(const PairKernelInput& in, const Terms& terms,
+                                                    std::uint32_t begin, int count) {
+  PairSpringsOf<Real> springs;
+  for_each_spring_law(terms, [&](auto law) PECLET_INLINE_LAMBDA {
+    const auto load = [&](std::size_t c) {
+      return load_lanes(in.springs[decltype(law)::component + c] + begin, count, Real{});
+    };
+    decltype(law)::of(springs) = {load(0), load(1), load(2)};
+  });
+  if (terms.kinetic) springs.slides = load_lanes(in.slides + begin, count, Real{});
+  return springs;
+}
+
 // Up to as many pairs of one run as a number holds. `mirrored`: of a run whose first particles are away.
 template <class Real, Terms terms, bool mirrored>
 class PairGroup {
@@ -170,7 +185,7 @@ class PairGroup {
     motion.spin_first = gather_rows(in_.spin, first_, Real{});
     motion.spin_second = gather_rows(in_.spin, second_, Real{});
 
-    PairSpringsOf<Real> springs = load_springs();
+    PairSpringsOf<Real> springs = springs_at<Real>(in_, terms, begin_, count_);
     const TermLoadsOf<Real> loads = pair_terms<terms>(
         in_.parameters, kind_, shape, motion, springs, [this] { return normals(); },
         [&](StressTerm part, const Vector3Of<Real>& force)
@@ -196,13 +211,12 @@ class PairGroup {
     if constexpr (terms.damping) {
       sum.force += loads.contact_damping;
     }
-    if constexpr (terms.friction) {
-      sum += loads.friction;
-    }
-    if constexpr (terms.rolling) {
-      sum.torque_first += loads.rolling.torque_first;
-      sum.torque_second += loads.rolling.torque_second;
-    }
+    for_each_spring_law<terms>([&](auto law) PECLET_INLINE_LAMBDA {
+      const PairLoadOf<Real>& load = decltype(law)::of(loads.springs);
+      if constexpr (decltype(law)::has_force) sum.force += load.force;
+      sum.torque_first += load.torque_first;
+      sum.torque_second += load.torque_second;
+    });
     return sum;
   }
 
@@ -224,9 +238,10 @@ class PairGroup {
       if constexpr (terms.damping) {
         add(StressTerm::contact_damping, loads.contact_damping);
       }
-      if constexpr (terms.friction) {
-        add(StressTerm::friction, loads.friction.force);
-      }
+      for_each_spring_law<terms>([&](auto law) PECLET_INLINE_LAMBDA {
+        using Law = decltype(law);
+        if constexpr (Law::has_force) add(StressTerm::friction, Law::of(loads.springs).force);
+      });
     }
   }
 
@@ -284,32 +299,14 @@ class PairGroup {
     eight_.drawn = true;
   }
 
-  PECLET_ALWAYS_INLINE PairSpringsOf<Real> load_springs() const {
-    PairSpringsOf<Real> springs;
-    const auto load = [&](int c) { return load_lanes(in_.springs[c] + begin_, count_, Real{}); };
-    if constexpr (terms.friction) {
-      springs.tangential = {load(0), load(1), load(2)};
-    }
-    if constexpr (terms.rolling) {
-      springs.rolling = {load(3), load(4), load(5)};
-    }
-    if constexpr (terms.kinetic) {
-      springs.slides = load_lanes(in_.slides + begin_, count_, Real{});
-    }
-    return springs;
-  }
   PECLET_ALWAYS_INLINE void store_springs(const PairSpringsOf<Real>& springs) const {
-    const auto store = [&](int c, const Real& x) { store_lanes(in_.springs[c] + begin_, count_, x); };
-    if constexpr (terms.friction) {
-      store(0, springs.tangential.x);
-      store(1, springs.tangential.y);
-      store(2, springs.tangential.z);
-    }
-    if constexpr (terms.rolling) {
-      store(3, springs.rolling.x);
-      store(4, springs.rolling.y);
-      store(5, springs.rolling.z);
-    }
+    for_each_spring_law<terms>([&](auto law) PECLET_INLINE_LAMBDA {
+      double* const* const to = in_.springs + decltype(law)::component;
+      const Vector3Of<Real>& spring = decltype(law)::of(springs);
+      store_lanes(to[0] + begin_, count_, spring.x);
+      store_lanes(to[1] + begin_, count_, spring.y);
+      store_lanes(to[2] + begin_, count_, spring.z);
+    });
     if constexpr (terms.kinetic) {
       store_lanes(in_.slides + begin_, count_, springs.slides);
     }

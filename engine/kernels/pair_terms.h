@@ -4,10 +4,9 @@
 
 #include "engine/terms/conservative.h"
 #include "engine/terms/contact.h"
-#include "engine/terms/friction.h"
 #include "engine/terms/laws.h"
 #include "engine/terms/pair_resistance.h"
-#include "engine/terms/rolling.h"
+#include "engine/terms/spring_laws.h"
 #include "engine/terms/step_resistance.h"
 #include "engine/terms/strained_lubrication.h"
 
@@ -47,10 +46,11 @@ inline double kind_reach(const PairParameters& parameters, const PairKind& kind)
 }
 
 template <class Real>
-struct PairSpringsOf {
-  Vector3Of<Real> tangential, rolling;
-  Real slides{};  // 1 or 0
-};
+PECLET_ALWAYS_INLINE ContactOf<Real> contact_of(const ContactParameters& parameters, const PairKind& kind,
+                                                const PairGeometryOf<Real>& pair) {
+  return {parameters, pair, contact_levers(kind.radius_first, kind.radius_second, pair),
+          kind.reduced_diameter};
+}
 
 template <class Real>
 struct PairNormalsOf {
@@ -60,47 +60,12 @@ struct PairNormalsOf {
 // Absent terms stay zero and cost nothing: a sum over a zero constant is folded away by the compiler.
 template <class Real>
 struct TermLoadsOf {
-  PairLoadOf<Real> lubrication, noise, friction, rolling;
+  PairLoadOf<Real> lubrication, noise;
+  OfEachSpring<PairLoadOf<Real>> springs;
   Vector3Of<Real> contact_normal, contact_damping;
   Vector3Of<Real> conservative;  // of all conservative laws
   Real overlap{};                // that contact forces belong to
 };
-
-// Advances a spring where spheres touch, else forgets it. Returns the one that pushes, on its way between the
-// two.
-template <class Real, class Mask>
-PECLET_ALWAYS_INLINE Vector3Of<Real> advance_spring(const PairParameters& parameters, const Mask& touching,
-                                                    const Vector3Of<Real>& normal,
-                                                    const Vector3Of<Real>& stretch, const Real& longest,
-                                                    Vector3Of<Real>& spring) {
-  const Vector3Of<Real> before = spring;
-  spring = where(touching, advanced_spring(before, normal, stretch, longest));
-  if (parameters.felt_share == 1) {
-    return spring;
-  }
-  const Vector3Of<Real> part = Real{parameters.felt_share} * stretch;
-  return where(touching, advanced_spring(before, normal, part, longest));
-}
-
-// The same for the spring of friction that is less while contacts slide.
-template <class Real, class Mask>
-PECLET_ALWAYS_INLINE Vector3Of<Real> advance_sliding_spring(const PairParameters& parameters,
-                                                            const Mask& touching, const Real& overlap,
-                                                            const Vector3Of<Real>& normal,
-                                                            const Vector3Of<Real>& stretch,
-                                                            PairSpringsOf<Real>& springs) {
-  const ContactParameters& contact = parameters.contact;
-  const Vector3Of<Real> before = springs.tangential;
-  const SpringLimitsOf<Real> limits = sliding_limits(contact, overlap, springs.slides);
-  Real length;
-  springs.tangential = where(touching, advanced_spring(before, normal, stretch, limits, length));
-  springs.slides = select(touching, slides_after(contact, overlap, length, limits), Real{0.0});
-  if (parameters.felt_share == 1) {
-    return springs.tangential;
-  }
-  const Vector3Of<Real> part = Real{parameters.felt_share} * stretch;
-  return where(touching, advanced_spring(before, normal, part, limits, length));
-}
 
 template <Terms terms, class Real>
 PECLET_ALWAYS_INLINE void add_contact_terms(const PairParameters& parameters, const PairKind& kind,
@@ -113,26 +78,12 @@ PECLET_ALWAYS_INLINE void add_contact_terms(const PairParameters& parameters, co
   if constexpr (terms.damping) {
     loads.contact_damping = where(touching, contact_damping_force(contact.normal_damping, pair, motion));
   }
-  if constexpr (terms.friction) {
-    const ContactLeversOf<Real> lever = contact_levers(kind.radius_first, kind.radius_second, pair);
-    const Vector3Of<Real> slip = Real{parameters.spring_timestep} * slip_velocity(lever, pair, motion);
-    Vector3Of<Real> felt;
-    if constexpr (terms.kinetic) {
-      felt = advance_sliding_spring(parameters, touching, pair.overlap(), pair.normal, slip, springs);
-    } else {
-      const Real longest = longest_spring(contact, pair.overlap());
-      felt = advance_spring(parameters, touching, pair.normal, slip, longest, springs.tangential);
-    }
-    loads.friction = friction_load(contact.tangential_stiffness, felt, lever, pair);
-    if constexpr (terms.rolling) {
-      const Vector3Of<Real> turn =
-          Real{parameters.spring_timestep} * rolling_velocity(kind.reduced_diameter, pair, motion);
-      const Real longest_turn = longest_rolling_spring(contact, pair.overlap());
-      const Vector3Of<Real> felt_turn =
-          advance_spring(parameters, touching, pair.normal, turn, longest_turn, springs.rolling);
-      loads.rolling = rolling_load(contact.rolling_stiffness, felt_turn, kind.reduced_diameter, pair);
-    }
-  }
+  const ContactOf<Real> touch = contact_of(contact, kind, pair);
+  for_each_spring_law<terms>([&](auto law) PECLET_INLINE_LAMBDA {
+    using Law = decltype(law);
+    Law::of(loads.springs) = advanced_load<Law, terms.kinetic>(touch, motion, parameters.spring_timestep,
+                                                               parameters.felt_share, springs);
+  });
 }
 
 template <class Real>
@@ -212,32 +163,6 @@ PECLET_ALWAYS_INLINE TermLoadsOf<Real> pair_terms(const PairParameters& paramete
 
 // How conservative laws and contacts couple the motions of a pair, in the form of a resistance.
 //
-// By what the parts are multiplied: resistances, stiffnesses along n, those of tangential and rolling
-// springs.
-struct CouplingWeights {
-  double resistance, normal, tangential;
-};
-
-// The part of tangential and rolling springs that holds; the rest slides.
-template <class Real>
-struct HeldSprings {
-  Real tangential, rolling;
-};
-
-// Adds the springs of friction where spheres touch, times `weight`.
-template <class Real>
-PECLET_ALWAYS_INLINE void add_springs(PairResistanceOf<Real>& sum, const Terms& terms,
-                                      const ContactParameters& contact, const PairKind& kind,
-                                      const PairGeometryOf<Real>& pair, double weight,
-                                      const HeldSprings<Real>& part) {
-  const double turning = rolling_coupling(contact.rolling_stiffness, kind.reduced_diameter);
-  const Real sliding = contact.tangential_stiffness * part.tangential;
-  const Real rolling = terms.rolling ? turning * part.rolling : Real{0.0};
-  add_scaled(
-      sum, select(pair.overlap() > 0.0, Real{weight}, Real{0.0}),
-      tangential_coupling(contact_levers(kind.radius_first, kind.radius_second, pair), sliding, rolling));
-}
-
 // Adds to `sum`, which has the resistance of lubrication times its weight. The distance is the one that
 // forces are evaluated at. `held()` is called where spheres touch and have friction.
 template <class Real, class Held>
@@ -254,7 +179,7 @@ PECLET_ALWAYS_INLINE void add_stiffness(PairResistanceOf<Real>& sum, const Terms
   }
   sum.squeeze +=
       select(touching, Real{contact_coupling(contact, weights.normal, weights.resistance)}, Real{0.0});
-  if (terms.friction) add_springs(sum, terms, contact, kind, pair, weights.tangential, held());
+  if (terms.friction) add_springs(sum, terms, contact_of(contact, kind, pair), weights, held());
 }
 
 }  // namespace peclet::engine

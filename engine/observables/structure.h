@@ -9,7 +9,7 @@
 #include "engine/kernels/pair_kinds.h"
 #include "engine/state/cell_grid.h"
 #include "engine/state/system.h"
-#include "engine/terms/contact.h"
+#include "engine/terms/spring_laws.h"
 
 namespace peclet::engine {
 
@@ -40,7 +40,7 @@ constexpr double sliding_from = 0.99;
 struct TouchingPair {
   const Pair& pair;
   double distance, overlap;  // of centres; delta = a_i + a_j - distance > 0
-  double tangential_force;   // |F_t| = k_t |s|
+  double tangential_force;   // |F_t| of spring and dashpot
   bool rough;                // whether it has friction: k_n delta above the critical load
   double mobilised;          // |F_t| / (mu frictional_load()), 0 without friction
   bool slides;               // as it remembers, or else by `mobilised`
@@ -54,16 +54,23 @@ void for_each_touching_pair(const System& system, const std::vector<PairKind>& k
   const std::vector<Pair>& pairs = system.list.pairs();
   for (std::size_t p = 0; p < pairs.size(); ++p) {
     const Pair& pair = pairs[p];
-    const double distance = norm(separation(system.particles, pair, frames[pair.image]));
-    const double overlap = kinds[pair.kind].sum_of_radii - distance;
+    const ImageFrame& frame = frames[pair.image];
+    const PairGeometry shape = geometry(separation(system.particles, pair, frame), kinds[pair.kind]);
+    const double overlap = shape.overlap();
     if (!(overlap > 0)) continue;
     const double load = frictional_load(contact, overlap);
     const bool rough = contact.friction > 0 && load > 0;
-    const double force = rough ? contact.tangential_stiffness * norm(system.springs[p].tangential) : 0;
+    const bool remembers = system.springs.remembers_sliding();
+    ContactSprings springs = system.springs[p];
+    const ContactOf<double> touch = contact_of(contact, kinds[pair.kind], shape);
+    double length = norm(springs.tangential);
+    const Vector3 pushing = damped_spring<SlidingFriction>(
+        touch, motion(system.particles, pair, frame),
+        spring_limits<SlidingFriction>(touch, remembers, springs.slides), springs.tangential, length);
+    const double force = rough ? contact.tangential_stiffness * norm(pushing) : 0;
     const double mobilised = rough ? force / (contact.friction * load) : 0;
-    const bool slides = system.springs.remembers_sliding() ? rough && system.springs[p].slides != 0
-                                                           : mobilised > sliding_from;
-    visit({pair, distance, overlap, force, rough, mobilised, slides});
+    const bool slides = remembers ? rough && springs.slides != 0 : mobilised > sliding_from;
+    visit({pair, shape.distance, overlap, force, rough, mobilised, slides});
   }
 }
 

@@ -21,6 +21,9 @@ inline constexpr const char* contact_keys = R"(
     with friction only; absent: none.
 /contact/tangential_stiffness? | number > 0; in force / length; if friction | Tangential stiffness, with
     friction only; 2/7 of the normal one unless given.
+/contact/tangential_damping? | number >= 0; in force time / length; if friction | Tangential damping gamma_t,
+    with friction only: gamma_t v_t pushes beside the tangential spring, and Coulomb's law limits both together;
+    absent (or 0): none.
 /contact/rolling_stiffness? | number >= 0; in force / length | Stiffness against rolling; absent (or 0): free
     rolling. Above 0 it needs friction above 0.
 /contact/rolling_friction? | number >= 0; if rolling_stiffness; named coefficient of rolling friction, μ_r |
@@ -42,6 +45,7 @@ inline ContactParameters read_contact(const SceneDocument& scene) {
   // 2/7: a homogeneous sphere's normal and tangential contact then oscillate with the same period.
   contact.tangential_stiffness =
       scene.number_or("/contact/tangential_stiffness", 2.0 / 7.0 * contact.normal_stiffness);
+  contact.tangential_damping = scene.number_or("/contact/tangential_damping", 0);
   contact.rolling_stiffness = scene.number_or("/contact/rolling_stiffness", 0);
   if (contact.rolling_stiffness > 0 && contact.friction <= 0) {
     scene.refuse("/contact/rolling_stiffness", "must be 0 or left out unless /contact/friction is > 0");

@@ -1,5 +1,9 @@
-// Contact of overlapping spheres: a linear spring along the normal, with optional damping. With friction > 0
-// there is a tangential spring too (friction.h), with rolling stiffness a rolling one (rolling.h).
+// Contact of overlapping spheres: a linear spring along the normal, with optional damping, and what the laws
+// of springs across the normal (spring_laws.h) see of a contact.
+//
+// Levers reach the middle of the overlap, l_i = a_i - delta/2, l_j = a_j - delta/2, so l_i + l_j = r: then a
+// pair's torques balance exactly and a rigid rotation of both spheres is no slip. (The published levers a_i,
+// a_j do neither.)
 #pragma once
 
 #include <limits>
@@ -17,6 +21,7 @@ struct ContactParameters {
   double critical_load = 0;  // F_CL: below this normal force there is no friction
   double largest_load = std::numeric_limits<double>::infinity();  // above it friction grows no more
   double tangential_stiffness = 0;                                // 2/7 of the normal one unless given
+  double tangential_damping = 0;
   double rolling_stiffness = 0;
   double rolling_friction = 0;  // that of sliding unless given
 };
@@ -25,6 +30,28 @@ struct ContactParameters {
 inline bool remembers_sliding(const ContactParameters& contact) {
   return contact.kinetic_friction < contact.friction;
 }
+
+template <class Real>
+struct ContactLeversOf {
+  Real first, second;
+};
+
+template <class Real>
+PECLET_ALWAYS_INLINE ContactLeversOf<Real> contact_levers(double radius_first, double radius_second,
+                                                          const PairGeometryOf<Real>& pair) {
+  const Real half_overlap = 0.5 * pair.overlap();
+  return {radius_first - half_overlap, radius_second - half_overlap};
+}
+using ContactLevers = ContactLeversOf<double>;
+
+// A pair as the laws of springs see it.
+template <class Real>
+struct ContactOf {
+  const ContactParameters& parameters;
+  const PairGeometryOf<Real>& pair;
+  ContactLeversOf<Real> lever;
+  double reduced_diameter;  // a = 2 a_i a_j / (a_i + a_j)
+};
 
 // k_n delta, delta = a_i + a_j - r, the size of the force in overlap.
 template <class Real>
@@ -60,6 +87,11 @@ PECLET_ALWAYS_INLINE Vector3Of<Real> contact_damping_force(double normal_damping
                                                            const PairMotionOf<Real>& motion) {
   return (normal_damping * dot(motion.velocity, pair.normal)) * pair.normal;
 }
+
+// Factors of a coupling: of resistances, of stiffnesses along n, and of those of springs across n.
+struct CouplingWeights {
+  double resistance = 0, normal = 0, tangential = 0;
+};
 
 // How a contact couples the normal velocities of its spheres: its stiffness and its damping by their weights.
 inline double contact_coupling(const ContactParameters& contact, double stiffness_weight,

@@ -2,48 +2,51 @@
 #pragma once
 
 #include "engine/terms/contact.h"
-#include "engine/terms/tangential_spring.h"
+#include "engine/terms/laws.h"
 
 namespace peclet::engine {
 
-// v_r = a n x (Omega_i - Omega_j), a = 2 a_i a_j / (a_i + a_j). Monti et al. (2021) eq. B.1.
-template <class Real>
-PECLET_ALWAYS_INLINE Vector3Of<Real> rolling_velocity(double reduced_diameter,
-                                                      const PairGeometryOf<Real>& pair,
-                                                      const PairMotionOf<Real>& motion) {
-  return Real{reduced_diameter} * cross(pair.normal, motion.spin_first - motion.spin_second);
-}
+// A law of springs (spring_laws.h).
+struct RollingFriction {
+  static constexpr bool Terms::*chosen = &Terms::rolling;
+  static constexpr bool has_force = false, may_slide = false;
+  static constexpr std::size_t component = 3;
+  template <class Each>
+  PECLET_ALWAYS_INLINE static auto& of(Each& each) {
+    return each.rolling;
+  }
+  PECLET_ALWAYS_INLINE static double stiffness(const ContactParameters& of) { return of.rolling_stiffness; }
+  PECLET_ALWAYS_INLINE static double coefficient(const ContactParameters& of) { return of.rolling_friction; }
+  PECLET_ALWAYS_INLINE static double damping(const ContactParameters& /*of*/) { return 0; }
 
-// T_i = a n x (k_r s_r), T_j = -T_i; no force and no stress.
-template <class Real>
-PECLET_ALWAYS_INLINE PairLoadOf<Real> rolling_load(double rolling_stiffness, const Vector3Of<Real>& spring,
-                                                   double reduced_diameter,
-                                                   const PairGeometryOf<Real>& pair) {
-  const Vector3Of<Real> couple = Real{reduced_diameter * rolling_stiffness} * cross(pair.normal, spring);
-  return {{}, couple, -couple};
-}
+  // v_r = a n x (Omega_i - Omega_j), a = 2 a_i a_j / (a_i + a_j). Monti et al. (2021) eq. B.1.
+  template <class Real>
+  PECLET_ALWAYS_INLINE static Vector3Of<Real> stretch_rate(const ContactOf<Real>& contact,
+                                                           const PairMotionOf<Real>& motion) {
+    return Real{contact.reduced_diameter} *
+           cross(contact.pair.normal, motion.spin_first - motion.spin_second);
+  }
 
-// |k_r s_r| <= mu_r frictional_load(), as a length of the spring.
-template <class Real>
-PECLET_ALWAYS_INLINE Real longest_rolling_spring(const ContactParameters& contact, const Real& overlap) {
-  return (contact.rolling_friction / contact.rolling_stiffness) * frictional_load(contact, overlap);
-}
+  // T_i = a n x (k_r s_r), T_j = -T_i; no force and no stress.
+  template <class Real>
+  PECLET_ALWAYS_INLINE static PairLoadOf<Real> load(const ContactOf<Real>& contact,
+                                                    const Vector3Of<Real>& spring) {
+    const Vector3Of<Real> couple =
+        Real{contact.reduced_diameter * stiffness(contact.parameters)} * cross(contact.pair.normal, spring);
+    return {{}, couple, -couple};
+  }
 
-// The largest stiffness of a contact's springs, as if centres alone moved. A tangential spring acts on
-// centres and, through levers a, on spins with 2/5 m a^2: 1 + 5/2 times as stiff. A rolling spring turns both
-// spheres through the reduced diameter, at most the diameter of the smaller one.
-inline double largest_contact_stiffness(const ContactParameters& contact, double radius_first,
-                                        double radius_second) {
-  const double tangential = contact.friction > 0 ? 3.5 * contact.tangential_stiffness : 0;
-  const double reduced = 2 * radius_first * radius_second / (radius_first + radius_second);
-  const double smaller = radius_first < radius_second ? radius_first : radius_second;
-  const double rolling = 2.5 * contact.rolling_stiffness * (reduced / smaller) * (reduced / smaller);
-  return larger(larger(contact.normal_stiffness, tangential), rolling);
-}
-
-// The stiffness against Omega_i - Omega_j across n: a^2 k_r.
-inline double rolling_coupling(double rolling_stiffness, double reduced_diameter) {
-  return rolling_stiffness * reduced_diameter * reduced_diameter;
-}
+  // The stiffness against Omega_i - Omega_j across n: a^2 k_r.
+  PECLET_ALWAYS_INLINE static double coupling(const ContactParameters& of, double reduced_diameter) {
+    return of.rolling_stiffness * reduced_diameter * reduced_diameter;
+  }
+  // The spring turns both spheres, with 2/5 m a^2, through the reduced diameter, at most the diameter of the
+  // smaller one.
+  static double largest_stiffness(const ContactParameters& of, double first, double second) {
+    const double reduced = 2 * first * second / (first + second);
+    const double smaller = first < second ? first : second;
+    return 2.5 * of.rolling_stiffness * (reduced / smaller) * (reduced / smaller);
+  }
+};
 
 }  // namespace peclet::engine

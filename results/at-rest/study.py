@@ -1,25 +1,15 @@
 #!/usr/bin/python3
-"""The viscosity of frictionless suspensions at rest, by linear response.
-
-study.py BIN [FOLDER] [--quick | --from-table]
-"""
+"""The viscosity of frictionless suspensions at rest, by linear response."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.at_rest import SLOWEST, slow_rows
-from studies.command_line import main
-from studies.estimates import difference, estimate, over, quotient
-from studies.figure import BLUE, GREEN, RED, Figure, shade
-from studies.prices import ERROR, flow_over_rest, price, seconds_of_window
-from studies.published import JAMMED_AT_REST, diverging
-from studies.scenes import REFERENCE_SCENE, at_peclet, during, merged
-from studies.spectra import storage_by_loss, viscosity_at_high_frequency
-from studies.tables import entries, number, read_rows, write_table
-from studies.verdicts import Check, Finding
-
+from studies.driver import BLUE, Check, ERROR, Figure, Finding, GREEN, JAMMED_AT_REST, RED, REFERENCE_SCENE, SLOWEST
+from studies.driver import at_peclet, difference, diverging, entries, estimate, first, flow_over_rest, in_brownian_times
+from studies.driver import main, merged, number, over, price, quotient, read_rows, row_ratio, seconds_of_window, shade
+from studies.driver import slow_rows, storage_by_loss, viscosity_at_high_frequency, where, write_rows, write_table
 import numpy as np
 
 TITLE = "Viscosity at rest by linear response"
@@ -28,12 +18,10 @@ VISCOSITY, THERMAL_ENERGY = 0.1, 0.017
 BROWNIAN_TIME = VISCOSITY / THERMAL_ENERGY
 SCENE = merged(
     REFERENCE_SCENE,
-    {
-        "particles": {"count": 100},
-        "flow": {"shear_rate": 0},
-        "fluid": {"thermal_energy": THERMAL_ENERGY},
-        "observables": ["stress", "linear_response"],
-    },
+    particles={"count": 100},
+    flow={"shear_rate": 0},
+    fluid={"thermal_energy": THERMAL_ENERGY},
+    observables=["stress", "linear_response"],
 )
 EQUILIBRATION = 100  # Brownian times
 # Brownian times of the window, 80 times the viscosity or more, and seeds.
@@ -58,8 +46,8 @@ TIMES_OF_CORRELATION = 2.5
 
 
 def scene_at(fraction, patch=None):
-    window = during({"brownian_times": EQUILIBRATION}, {"brownian_times": WINDOWS[fraction][0]})
-    return merged(merged(SCENE, {"volume_fraction": fraction, **window}), patch or {})
+    window = in_brownian_times(EQUILIBRATION, WINDOWS[fraction][0])
+    return merged(SCENE, {"volume_fraction": fraction, **window}, patch or {})
 
 
 def point_of(program, name, scene, seeds):
@@ -91,84 +79,74 @@ def curve_rows(fraction, point):
             yield {"fraction": fraction, "curve": name, "at": place * scale, **entries("value", value)}
 
 
-def price_row(fraction, peclet, point, windows, quantity, viscosity, foretold=1.0, count=100):
+def price_row(fraction, peclet, point, window, quantity, viscosity, foretold=1.0, count=100):
     """`foretold`: the price over that at rest, as peclet plan guesses it."""
     values = [*point.by_seed(quantity).values()]
-    seconds = [seconds_of_window(result, *windows) for result in point.results]
+    seconds = [seconds_of_window(result, EQUILIBRATION, window) for result in point.results]
     row = {"fraction": fraction, "peclet": peclet, "count": count, "seeds": len(values), "foretold": foretold}
     return row | entries("viscosity", point.measured(quantity)) | entries("seconds", price(values, seconds, viscosity))
 
 
-def price_at_rest(fraction, at_rest, viscosity, count=100):
-    windows = EQUILIBRATION, WINDOWS[fraction][0]
-    return price_row(fraction, 0, at_rest, windows, TARGET, viscosity, count=count)
-
-
 def price_rows(program, fraction, viscosity):
-    """Of means in the flow."""
+    """Yields those of means in the flow."""
     for peclet in PECLETS:
-        windows = EQUILIBRATION, PRICE_WINDOW
-        patch = at_peclet(peclet) | {"observables": None, "volume_fraction": fraction}
-        patch |= during(*({"brownian_times": time} for time in windows))
-        scene = merged(merged(SCENE, {"fluid": {"thermal_energy": None}}), patch)
-        settings = [{"/volume_fraction": fraction}]
-        (point,) = program.run(f"price-{fraction:g}-{peclet:g}", scene, settings, PRICE_SEEDS)
+        patch = {"fluid": {"thermal_energy": None}, "observables": None, "volume_fraction": fraction}
+        scene = merged(SCENE, patch, at_peclet(peclet), in_brownian_times(EQUILIBRATION, PRICE_WINDOW))
+        (point,) = program.run(f"price-{fraction:g}-{peclet:g}", scene, [{"/volume_fraction": fraction}], PRICE_SEEDS)
         foretold = flow_over_rest(peclet, fraction, SCENE["particles"]["species"])
-        yield price_row(fraction, peclet, point, windows, "relative_viscosity", viscosity, foretold)
+        yield price_row(fraction, peclet, point, PRICE_WINDOW, "relative_viscosity", viscosity, foretold)
 
 
 def measure(program):
     rows, curves, prices = [], [], []
-    for fraction, (_, seeds) in WINDOWS.items():
+    for fraction, (window, seeds) in WINDOWS.items():
         at_rest = point_of(program, f"rest-{fraction:g}", scene_at(fraction), seeds)
         rows += rows_of(fraction, 100, "automatic", at_rest)
         curves += curve_rows(fraction, at_rest)
         viscosity, _ = at_rest.measured(TARGET)
         if fraction in PRICED:
-            prices.append(price_at_rest(fraction, at_rest, viscosity))
+            prices.append(price_row(fraction, 0, at_rest, window, TARGET, viscosity))
             prices += price_rows(program, fraction, viscosity)
         for count, other_seeds in OTHERS.get(fraction, ()):
             scene = scene_at(fraction, {"particles": {"count": count}})
             others = point_of(program, f"rest-{fraction:g}-{count}", scene, other_seeds)
             rows += rows_of(fraction, count, "automatic", others)
             if count < 100:
-                prices.append(price_at_rest(fraction, others, viscosity, count))
+                prices.append(price_row(fraction, 0, others, window, TARGET, viscosity, count=count))
     half = 0.5 * program.derived(scene_at(MIDDLE), TARGET)["timestep"]
     patch = {"integrator": {"method": "implicit", "timestep": half}}
     halved = point_of(program, "halved", scene_at(MIDDLE, patch), HALVED_SEEDS)
     rows += rows_of(MIDDLE, 100, "half of it", halved)
-    columns = ["fraction", "count", "step", "by", "seeds", "viscosity", "viscosity_error", "rise", "rise_error"]
-    write_table(HERE / "table.csv", columns, rows, 5)
-    write_table(HERE / "curves.csv", ["fraction", "curve", "at", "value", "value_error"], curves, 5)
-    numbers = ["viscosity", "viscosity_error", "seconds", "seconds_error", "foretold"]
-    write_table(HERE / "prices.csv", ["fraction", "peclet", "count", "seeds", *numbers], prices, 4)
-
-
-def select(table, **wanted):
-    return next(r for r in table if all(r[k] == v for k, v in wanted.items()))
+    write_table(HERE / "table.csv", "fraction, count, step, by, seeds, viscosity±, rise±", rows, 5)
+    write_rows(HERE / "curves.csv", curves, 5)
+    write_table(HERE / "prices.csv", "fraction, peclet, count, seeds, viscosity±, seconds±, foretold", prices, 4)
 
 
 def in_errors(a, b):
-    """The difference over its standard error, a number that has no error of its own."""
-    value, error = difference(a, b)
+    """Returns the difference of two viscosities over its standard error, a number that has no error of its own."""
+    value, error = difference(number(a, "viscosity"), number(b, "viscosity"))
     return value / error, 0.0
 
 
-def compared(table, fraction, label, **which):
+def compared(table, label, **which):
     """The two forms of one point."""
-    row, other = (select(table, fraction=fraction, by=by, **which) for by in ("momentum", "correlation"))
+    row, other = (first(table, by=by, **which) for by in ("momentum", "correlation"))
     text = f"{label}: by correlation less by momentum, in standard errors"
-    return Check(text, "two forms", *in_errors(number(other, "viscosity"), number(row, "viscosity")), -3, 3)
+    return Check(text, "two forms", *in_errors(other, row), -3, 3)
 
 
 def two_forms(table):
-    for fraction in WINDOWS:
-        row = select(table, fraction=fraction, by="momentum", **USUAL)
+    for fraction, row in usual_rows(table).items():
         found = number(row, "viscosity")
         yield Finding(f"φ = {fraction:g}: η_r at rest", "linear response", *found, row["seeds"] - 1)
-        yield compared(table, fraction, f"φ = {fraction:g}", **USUAL)
+        yield compared(table, f"φ = {fraction:g}", fraction=fraction, **USUAL)
         text = f"φ = {fraction:g}: rise from half of the time on, over η_r"
         yield Check(text, "the window", *quotient(number(row, "rise"), found), -0.1, 0.1, row["seeds"] - 1)
+
+
+def usual_rows(table):
+    """Returns the rows by momentum, by volume fraction."""
+    return {r["fraction"]: r for r in where(table, by="momentum", **USUAL)}
 
 
 def size_and_step(table):
@@ -176,35 +154,29 @@ def size_and_step(table):
     others = {(f, f"N = {n} less N = 100"): {"count": n, "step": "automatic"} for f, n in counts}
     others[MIDDLE, "half the step less the automatic one"] = {"count": 100, "step": "half of it"}
     for (fraction, text), which in others.items():
-        usual, other = (select(table, fraction=fraction, by="momentum", **w) for w in (USUAL, which))
+        usual, other = (first(table, fraction=fraction, by="momentum", **w) for w in (USUAL, which))
         text = f"φ = {fraction:g}: {text}, in standard errors"
-        yield Check(text, "size and step", *in_errors(*(number(r, "viscosity") for r in (other, usual))), -3, 3)
-    yield compared(table, 0.3, "φ = 0.3, N = 1000", count=1000, step="automatic")
-
-
-def in_slow_shear(table):
+        yield Check(text, "size and step", *in_errors(other, usual), -3, 3)
+    yield compared(table, "φ = 0.3, N = 1000", fraction=0.3, count=1000, step="automatic")
     for fraction, row in slow_rows().items():
-        rest = number(select(table, fraction=fraction, by="momentum", **USUAL), "viscosity")
         text = f"φ = {fraction:g}: η_r at Pe = {SLOWEST:g} less at rest, in standard errors"
-        yield Finding(text, "slow shear", *in_errors(number(row, "viscosity"), rest))
+        yield Finding(text, "slow shear", *in_errors(row, usual_rows(table)[fraction]))
 
 
 def modulus(curves, fraction, name):
-    """Frequencies in increasing order, values and standard errors of the storage or the loss modulus."""
-    rows = [(r["at"], *number(r, "value")) for r in curves if (r["fraction"], r["curve"]) == (fraction, name)]
-    return np.array(sorted(rows)).T
+    """Returns frequencies in increasing order, values and standard errors of the storage or the loss modulus."""
+    return np.array(sorted((r["at"], *number(r, "value")) for r in where(curves, fraction=fraction, curve=name))).T
 
 
 def moduli(curves, table):
     """The loss at the lowest frequency belongs to the viscosity at rest, the storage to the loss by Kramers and Kronig,
     and the loss at high frequencies, where structure is frozen, to a published formula for hard spheres."""
-    for fraction in WINDOWS:
+    for fraction, row in usual_rows(table).items():
         frequency, storage, storage_error = modulus(curves, fraction, "storage")
         _, loss, loss_error = modulus(curves, fraction, "loss")
-        rest = number(select(table, fraction=fraction, by="momentum", **USUAL), "viscosity")
+        viscosity = np.array((loss, loss_error)) / frequency
         text = f"φ = {fraction:g}: G″/(ηω) at the lowest frequency over η_r"
-        found = quotient((loss[0] / frequency[0], loss_error[0] / frequency[0]), rest)
-        yield Check(text, "G″ = η_r ηω for ω → 0", *found, 0.8, 1.1)
+        yield Check(text, "G″ = η_r ηω for ω → 0", *quotient(viscosity[:, 0], number(row, "viscosity")), 0.8, 1.1)
         inner = (frequency > frequency[0]) & (frequency < FROZEN)
         ratios = storage[inner] / storage_by_loss(frequency, loss)[inner]
         text = f"φ = {fraction:g}: G′ over that by Kramers and Kronig from G″, mean over frequencies"
@@ -213,33 +185,28 @@ def moduli(curves, table):
         relative = math.hypot(*(storage_error / storage)[:2])
         text = f"φ = {fraction:g}: power of ω in G′ between the two lowest frequencies (2 for ω → 0)"
         yield Finding(text, "G′ ∝ ω²", steep, relative / math.log(frequency[1] / frequency[0]))
-        place = np.searchsorted(frequency, FROZEN)
-        found = quotient((loss[place] / frequency[place], loss_error[place] / frequency[place]), (1, 0))
-        value = viscosity_at_high_frequency(fraction)
-        text = (
-            f"φ = {fraction:g}: G″/(ηω) at ωτ_B = {frequency[place]:.2g}; hard spheres, all interactions: {value:.2f}"
-        )
-        yield Finding(text, "Lionberger & Russel 1994", *found)
+        place, value = np.searchsorted(frequency, FROZEN), viscosity_at_high_frequency(fraction)
+        text = f"φ = {fraction:g}: G″/(ηω) at ωτ_B = {frequency[place]:.2g}; hard spheres, all interactions"
+        yield Finding(f"{text}: {value:.2f}", "Lionberger & Russel 1994", *viscosity[:, place].tolist())
 
 
 def saved(prices):
     for fraction in PRICED:
-        rest = number(select(prices, fraction=fraction, peclet=0, count=100), "seconds")
-        for row in prices:
-            if row["fraction"] == fraction and row["count"] < 100:
-                text = f"φ = {fraction:g}, at rest: processor time with N = {row['count']:g} over that with 100"
-                yield Finding(text, "price", *quotient(number(row, "seconds"), rest), row["seeds"] - 1)
-            if row["fraction"] == fraction and row["peclet"] in (0.001, 0.01):
-                label = f"φ = {fraction:g}, Pe = {row['peclet']:g}"
-                text = f"{label}: processor time over that at rest (foretold: {row['foretold']:.2g})"
-                yield Finding(text, "price", *quotient(number(row, "seconds"), rest), row["seeds"] - 1)
+        rest = first(prices, fraction=fraction, peclet=0, count=100)
+        for row in where(prices, fraction=fraction):
+            ratio, text = row_ratio(row, rest, "seconds"), f"φ = {fraction:g}"
+            if row["count"] < 100:
+                text += f", at rest: processor time with N = {row['count']:g} over that with 100"
+                yield Finding(text, "price", *ratio, row["seeds"] - 1)
+            if row["peclet"] in (0.001, 0.01):
+                text += f", Pe = {row['peclet']:g}: processor time over that at rest (foretold: {row['foretold']:.2g})"
+                yield Finding(text, "price", *ratio, row["seeds"] - 1)
 
 
 def judge():
     table, curves, prices = (read_rows(HERE / f"{name}.csv") for name in ("table", "curves", "prices"))
     yield from two_forms(table)
     yield from size_and_step(table)
-    yield from in_slow_shear(table)
     yield from moduli(curves, table)
     yield from saved(prices)
 
@@ -249,8 +216,7 @@ def draw_curves(figure, curves):
     moduli = figure.panel("ω τ_B", "G′, G″ (dashed) a³/kT", log="xy", key="top left", y_range=(1e-3, None))
     for fraction in WINDOWS:
         colour, label = colour_of(fraction), f"φ = {fraction:g}"
-        rows = [r for r in curves if r["fraction"] == fraction and r["curve"] == "viscosity"]
-        rise.points([(r["at"], *number(r, "value")) for r in rows[::3]], label, colour, size=0.4)
+        rise.rows(where(curves, fraction=fraction, curve="viscosity")[::3], "at", "value", label, colour, size=0.4)
         storage, loss = (zip(*modulus(curves, fraction, name)) for name in ("storage", "loss"))
         moduli.points([row for row in storage if row[1] > row[2]], label, colour, size=0.6)
         moduli.line([row[:2] for row in loss], None, colour, dash=2)
@@ -258,25 +224,20 @@ def draw_curves(figure, curves):
 
 def draw_viscosities(figure, table):
     divergence = figure.panel("φ", "η_r at rest", log="y", x_range=(0.25, 0.58), y_range=(1, 300), key="top left")
-    rows = [r for r in table if (r["by"], r["count"], r["step"]) == ("momentum", 100, "automatic")]
-    divergence.points([(r["fraction"], *number(r, "viscosity")) for r in rows], "at rest", BLUE)
-    sheared = [(f, *number(r, "viscosity")) for f, r in slow_rows().items()]
-    divergence.points(sheared, f"Pe = {SLOWEST}", RED, size=0.8)
-    divergence.curve(
-        lambda f: diverging(f, JAMMED_AT_REST, 1.5), "published fit of the limit", GREEN, (0.26, 0.56), dash=2
-    )
+    divergence.rows(usual_rows(table).values(), "fraction", "viscosity", "at rest", BLUE)
+    divergence.rows(slow_rows().values(), "fraction", "viscosity", f"Pe = {SLOWEST}", RED, size=0.8)
+    title = "published fit of the limit"
+    divergence.curve(lambda f: diverging(f, JAMMED_AT_REST, 1.5), title, GREEN, (0.26, 0.56), dash=2)
 
 
 def draw_prices(figure, prices):
-    ends = {"x_range": (min(PECLETS) / 2, max(PECLETS) * 2)}
-    panel = figure.panel(
-        "Pe", f"processor s to {100 * ERROR:g} % of η_r", log="xy", powers="x", key="top right", **ends
-    )
+    ends = {"x_range": (min(PECLETS) / 2, max(PECLETS) * 2), "key": "top right"}
+    panel = figure.panel("Pe", f"processor s to {100 * ERROR:g} % of η_r", log="xy", powers="x", **ends)
     for fraction in PRICED:
-        rows = [(r["peclet"], *number(r, "seconds")) for r in prices if (r["fraction"], r["count"]) == (fraction, 100)]
+        rest, *rows = where(prices, fraction=fraction, count=100)
         colour = colour_of(fraction)
-        panel.points([row for row in rows if row[0]], f"in the flow, φ = {fraction:g}", colour, joined=True)
-        panel.level(rows[0][1], f"at rest, φ = {fraction:g}", colour, dash=2)
+        panel.rows(rows, "peclet", "seconds", f"in the flow, φ = {fraction:g}", colour, joined=True)
+        panel.level(rest["seconds"], f"at rest, φ = {fraction:g}", colour, dash=2)
 
 
 def colour_of(fraction):
@@ -292,8 +253,8 @@ def draw():
 
 
 def quick_measure(program):
-    scene = merged(SCENE, {"volume_fraction": 0.3, **during({"brownian_times": 10}, {"brownian_times": 60})})
-    momentum = point_of(program, "quick", merged(scene, {"particles": {"count": 60}}), 12).measured(TARGET)
+    scene = merged(SCENE, in_brownian_times(10, 60), volume_fraction=0.3)
+    momentum = point_of(program, "quick", merged(scene, particles={"count": 60}), 12).measured(TARGET)
     # Einstein's and Batchelor's 1 + 2.5 phi + 5.9 phi^2 below, slow shear (2.3) within 20 % above.
     return [Check("φ = 0.3: η_r at rest", "1 + 2.5 φ + 5.9 φ² (Batchelor 1977), ± 20 %", *momentum, 1.82, 2.9, 11)]
 

@@ -1,22 +1,14 @@
 #!/usr/bin/python3
-"""Contacts in weak and in strong flow: how long they last, and what they connect.
-
-study.py BIN [FOLDER] [--quick | --from-table]
-"""
+"""Contacts in weak and in strong flow: how long they last, and what they connect."""
 import os
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import estimate, quotient
-from studies.figure import BLUE, GREEN, RED, Figure
-from studies.networks import contacts_per_sphere, frames_of, largest_cluster, lifetime
-from studies.scenes import TABLE_SCENE, at_peclet, during, merged
-from studies.tables import entries, number, read_rows, write_table
-from studies.verdicts import Finding, Statement
-
+from studies.driver import BLUE, Figure, Finding, GREEN, RED, Statement, TABLE_SCENE, at_peclet, contacts_per_sphere
+from studies.driver import during, entries, estimate, first, frames_of, largest_cluster, lifetime, main, merged, number
+from studies.driver import read_rows, row_ratio, write_rows
 import numpy as np
 
 TITLE = "Contacts in weak and in strong flow"
@@ -26,23 +18,11 @@ SEEDS = 8
 STEPS = 400  # each a frame
 FRACTION = 0.5
 SCENE = merged(
-    TABLE_SCENE,
-    {"volume_fraction": FRACTION, "observables": ["stress", "trajectory"], "trajectory": {"contacts": True}},
+    TABLE_SCENE, volume_fraction=FRACTION, observables=["stress", "trajectory"], trajectory={"contacts": True}
 )
 BEFORE = {"strain": 2, "brownian_times": 60}  # whichever is first
 # "Short-lived": as a share of the time in which the flow parts two spheres, a strain of 1, and of the Brownian time.
 SHORT = 0.1
-
-
-def timestep_of(program, peclet):
-    scene = merged(SCENE, {**at_peclet(peclet), **during(BEFORE, {"strain": 1}), "observables": None})
-    return program.derived(merged(scene, {"trajectory": None}))["timestep"]
-
-
-def scene_at(peclet, step, patch):
-    window = {"time": STEPS * step}
-    scene = merged(SCENE, {**at_peclet(peclet), **during(BEFORE, window), "trajectory": {"interval": {"time": step}}})
-    return merged(scene, patch)
 
 
 def of_seed(program, name, scene, seed):
@@ -57,8 +37,10 @@ def of_seed(program, name, scene, seed):
 
 
 def row_at(program, peclet, seeds, patch):
-    step = timestep_of(program, peclet)
-    scene = scene_at(peclet, step, patch)
+    bare = merged(SCENE, at_peclet(peclet), during(BEFORE, {"strain": 1}), observables=None, trajectory=None)
+    step = program.derived(bare)["timestep"]
+    window = {**during(BEFORE, {"time": STEPS * step}), "trajectory": {"interval": {"time": step}}}
+    scene = merged(SCENE, at_peclet(peclet), window, patch)
     found = [of_seed(program, f"pe-{peclet:g}-{seed}", scene, seed) for seed in range(seeds)]
     steps, *others, results = zip(*found)
     # Rate and Brownian time are those of the scene: by a group of the result over the step.
@@ -72,22 +54,20 @@ def row_at(program, peclet, seeds, patch):
 
 
 def measure(program):
-    rows = [row_at(program, peclet, SEEDS, {}) for peclet in PECLETS]
-    write_table(HERE / "table.csv", list(rows[0]), rows, 5)
+    write_rows(HERE / "table.csv", [row_at(program, peclet, SEEDS, {}) for peclet in PECLETS], 5)
 
 
 def rows_judged(table, degrees):
-    weak, strong = (next(r for r in table if r["peclet"] == peclet) for peclet in (WEAK, STRONG))
+    weak, strong = (first(table, peclet=peclet) for peclet in (WEAK, STRONG))
     lasts = f"Pe = {WEAK:g}: strain that a contact lasts (published: short-lived)"
     yield Statement(lasts, "L 4.2.5", *number(weak, "strain"), 0, SHORT, degrees)
     lasts = f"Pe = {WEAK:g}: Brownian times ηa³/k_BT that a contact lasts"
     yield Statement(lasts, "L 4.2.5", *number(weak, "brownian_times"), 0, SHORT, degrees)
     text = f"strain that a contact lasts at Pe = {STRONG:g} over that at {WEAK:g}: lasting only in strong flow"
-    yield Statement(text, "L 4.2.5", *quotient(number(strong, "strain"), number(weak, "strain")), 1, degrees=degrees)
+    yield Statement(text, "L 4.2.5", *row_ratio(strong, weak, "strain"), 1, degrees=degrees)
     for name, text in (("contacts", "contacts of a sphere"), ("largest", "spheres in the largest cluster of contacts")):
-        ratio = quotient(number(strong, name), number(weak, name))
         text = f"{text} at Pe = {STRONG:g} over that at {WEAK:g}: chains"
-        yield Statement(text, "L 4.2.5", *ratio, 1, degrees=degrees)
+        yield Statement(text, "L 4.2.5", *row_ratio(strong, weak, name), 1, degrees=degrees)
     row = max(table, key=lambda r: r["overlap"])
     text = f"mean overlap of contacts over the radius where it is largest (Pe = {row['peclet']:g})"
     yield Statement(f"{text}: orders of magnitude less", "L 3.8", *number(row, "overlap"), 0, 0.01, degrees)
@@ -112,10 +92,10 @@ def draw():
     x = {"log": "xy", "powers": "x", "x_range": (0.005, 2e4), "key": "top left"}
     panel = figure.panel("Pe", "time that a contact lasts", **x)
     for name, text, colour in (("strain", "in strains", RED), ("brownian_times", "in ηa³/k_{B}T", BLUE)):
-        panel.points([(r["peclet"], *number(r, name)) for r in table], text, colour, joined=True)
+        panel.rows(table, "peclet", name, text, colour, joined=True)
     panel = figure.panel("Pe", "contacts of a sphere; share in the largest cluster", **x)
     for name, text, colour in (("contacts", "contacts", RED), ("largest", "largest cluster", GREEN)):
-        panel.points([(r["peclet"], *number(r, name)) for r in table], text, colour, joined=True)
+        panel.rows(table, "peclet", name, text, colour, joined=True)
     figure.draw()
 
 

@@ -1,22 +1,14 @@
 #!/usr/bin/python3
 """What the stress B of the random forces takes away from the scatter: as a part of the stress, which is a control
-variate with the coefficient -1 of the rest, and by regression of the rest on its components.
-
-study.py BIN [FOLDER] [--quick | --from-table]
-"""
+variate with the coefficient -1 of the rest, and by regression of the rest on its components."""
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.controls import cross_fitted, variance_ratio
-from studies.estimates import estimate, jackknife
-from studies.figure import BLUE, GREEN, RED, Figure
-from studies.scenes import REFERENCE_SCENE, at_peclet, during, merged
-from studies.tables import entries, number, read_rows, write_table
-from studies.verdicts import Check, Finding
-
+from studies.driver import BLUE, Check, Figure, Finding, GREEN, RED, REFERENCE_SCENE, at_peclet, cross_fitted, during
+from studies.driver import entries, estimate, in_brownian_times, jackknife, main, merged, number, read_rows
+from studies.driver import variance_ratio, write_rows
 import numpy as np
 
 TITLE = "What control variates save"
@@ -24,7 +16,8 @@ PECLETS = (0.01, 1, 10, 100, 0.1)
 SEEDS = 400
 SCENE = merged(
     REFERENCE_SCENE,
-    {"particles": {"count": 60}, **during({"strain": 1, "brownian_times": 20}, {"strain": 2, "brownian_times": 40})},
+    during({"strain": 1, "brownian_times": 20}, {"strain": 2, "brownian_times": 40}),
+    particles={"count": 60},
 )
 BLOCKS = 32  # of a window
 XY = 3
@@ -83,8 +76,8 @@ def measure(program):
         results = results_at(program, peclet, SEEDS)
         table += rows_of(peclet, [r["mean"] for r in results])
         windows += window_rows(peclet, results)
-    write_table(HERE / "table.csv", list(table[0]), table, 5)
-    write_table(HERE / "windows.csv", list(windows[0]), windows, 4)
+    write_rows(HERE / "table.csv", table, 5)
+    write_rows(HERE / "windows.csv", windows, 4)
 
 
 def change_of(row, most=3):
@@ -106,9 +99,8 @@ def draw():
     table, windows = (read_rows(HERE / f"{name}.csv") for name in ("table", "windows"))
     figure = Figure(HERE / "chart.png", columns=2, size=(1100, 450))
     axes = {"y_range": (0, 1.2)}
-    panel = figure.panel(
-        "Pe", "variance over that of η_r", log="x", powers="x", x_range=(0.005, 200), key="bottom right", **axes
-    )
+    ends = {"x_range": (0.005, 200), "key": "bottom right", **axes}
+    panel = figure.panel("Pe", "variance over that of η_r", log="x", powers="x", **ends)
     for k, (name, colour) in enumerate(COLOURS.items()):
         rows = [(r["peclet"] * 1.12 ** (k - 1), *number(r, "ratio")) for r in table if r["controls"] == name]
         panel.points(rows, name, colour, joined=True)
@@ -120,7 +112,7 @@ def draw():
 
 
 def quick_measure(program):
-    scene = merged(SCENE, {"particles": {"count": 30}, **during({"brownian_times": 2}, {"brownian_times": 4})})
+    scene = merged(SCENE, in_brownian_times(2, 4), particles={"count": 30})
     for row in rows_of(1, [r["mean"] for r in results_at(program, 1, 200, scene)]):
         yield change_of(row, 6)
         # Over four Brownian times the white noise of B is most of the scatter.

@@ -1,33 +1,25 @@
 #!/usr/bin/python3
-"""Relative spread of the viscosity against the number of samples, with and without the control variate.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+"""Relative spread of the viscosity against the number of samples, with and without the control variate."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import difference, estimate, jackknife, over, quotient
-from studies.figure import BLACK, BLUE, GREEN, RED, Figure
-from studies.fits import line_through
-from studies.published import JAMMED_AT_REST, diverging
-from studies.scenes import REFERENCE_SCENE, at_peclet, during, merged
-from studies.tables import entries, read_numbers, read_rows, write_numbers, write_table
-from studies.verdicts import Check, Finding, Statement
-
+from studies.driver import BLACK, BLUE, Check, Figure, Finding, GREEN, JAMMED_AT_REST, RED, REFERENCE_SCENE, Statement
+from studies.driver import at_peclet, difference, diverging, entries, estimate, in_brownian_times, in_strains, jackknife
+from studies.driver import line_through, main, merged, over, quotient, read_numbers, read_rows, where, write_numbers
+from studies.driver import write_rows
 import numpy as np
 
 TITLE = "Convergence of the viscosity"
-SCENE = merged(REFERENCE_SCENE, {"particles": {"count": 250}})
+SCENE = merged(REFERENCE_SCENE, particles={"count": 250})
 # Averages that a result has of consecutive parts of its window; seeds that are left out together.
 BLOCKS, SET = 32, 16
 WINDOWS = [2**k for k in range(6)]  # blocks that are averaged together
 GROUPS = (1, 2, 4, 8)  # seeds that are
-BROWNIAN = during({"brownian_times": 2}, {"brownian_times": 16})
-SHEARED = during({"strain": 1}, {"strain": 4})
+BROWNIAN = in_brownian_times(2, 16)
+SHEARED = in_strains(1, 4)
 # Pe, seeds, durations; log10 of the published number of samples for 10 %, a sample being an explicit step of one
 # realisation with N = 1000.
 RUNS = ((0.01, 96, BROWNIAN, 8), (1, 96, BROWNIAN, None), (1e4, 192, SHEARED, 5))
@@ -122,7 +114,7 @@ def saving(series, blocks=BLOCKS):
 def explicit_steps(program, number, series, particles):
     """Explicit steps of N = 1000 spheres, in the units of Table 4.1, that take as long as the window."""
     limits = {"limits": {"shear_rate": 0.009, "thermal_energy": 0.017}, "integrator": {"method": "explicit"}}
-    answer = program.derived(merged(REFERENCE_SCENE, {**at_peclet(number), **limits}))
+    answer = program.derived(merged(REFERENCE_SCENE, at_peclet(number), limits))
     rate = min(0.009, number * 0.017 / (6 * math.pi * 0.1))
     return series.strain / rate / answer["timestep"] * particles / 1000
 
@@ -136,8 +128,7 @@ def samples_for_target(steps, found):
 
 def run(program, number, seeds, duration, patch=None, name=None):
     name = name or f"convergence-{number:g}"
-    scene = merged(SCENE, {**at_peclet(number), **duration, **(patch or {})})
-    program.run(name, scene, [{"/peclet": number}], seeds)
+    program.run(name, merged(SCENE, at_peclet(number), duration, patch or {}), [{"/peclet": number}], seeds)
     return Series(program.stored_results(name)[0], PUBLISHED_MEAN.get(number))
 
 
@@ -158,20 +149,11 @@ def summary_row(number, kind, series, steps):
     found = spread(series, kind)
     more = (found[0] / TARGET) ** 2
     log10_samples, log10_error = samples_for_target(steps, found)
-    return {
-        "peclet": number,
-        "estimate": kind,
-        "seeds": len(series.plain),
-        **entries("viscosity", series.measured),
-        "relative_to": series.mean(),
-        "window_steps": series.steps,
-        "window_strain": series.strain,
-        **entries("spread", found),
-        "implicit_steps_for_10_percent": series.steps * more,
-        "seconds_for_10_percent": series.seconds * more,
-        "log10_explicit_steps_1000": log10_samples,
-        "log10_error": log10_error,
-    }
+    row = {"peclet": number, "estimate": kind, "seeds": len(series.plain), **entries("viscosity", series.measured)}
+    row |= {"relative_to": series.mean(), "window_steps": series.steps, "window_strain": series.strain}
+    row |= {**entries("spread", found), "implicit_steps_for_10_percent": series.steps * more}
+    row |= {"seconds_for_10_percent": series.seconds * more, "log10_explicit_steps_1000": log10_samples}
+    return row | {"log10_error": log10_error}
 
 
 def spread_rows(number, series, steps):
@@ -179,12 +161,8 @@ def spread_rows(number, series, steps):
     for over_what, sizes in (("steps", WINDOWS), ("seeds", GROUPS[1:])):
         for size in sizes:
             parts = over_what == "steps"
-            row = {
-                "peclet": number,
-                "over": over_what,
-                "blocks": size if parts else BLOCKS * size,
-                "samples": steps * (size / BLOCKS if parts else size),
-            }
+            row = {"peclet": number, "over": over_what, "blocks": size if parts else BLOCKS * size}
+            row["samples"] = steps * (size / BLOCKS if parts else size)
             for kind in KINDS:
                 rows = averaged(series.of(kind), size) if parts else grouped(series.whole(kind)[:, None], size)
                 value = math.sqrt(variance_over_seeds(rows)) / series.mean()
@@ -203,8 +181,8 @@ def measure(program):
         mean = over(estimate(series.control), series.mean())
         numbers[f"Pe = {number:g}: {BROWNIAN_MEAN}"] = (*mean, seeds * program.times - 1)
         savings[number] = [(blocks * series.steps / BLOCKS, *saving(series, blocks)) for blocks in WINDOWS]
-    for name, table in (("table", summary), ("spread", spreads)):
-        write_table(HERE / f"{name}.csv", list(table[0]), table, 5)
+    write_rows(HERE / "table.csv", summary, 5)
+    write_rows(HERE / "spread.csv", spreads, 5)
     write_numbers(HERE / "numbers.csv", numbers | dict(comparisons(program, found)))
     draw(spreads, savings)
 
@@ -219,12 +197,11 @@ def comparisons(program, found):
     large = run(program, 1e4, 48, SHEARED, {"particles": {"count": 1000}}, "convergence-1000")
     value, error = quotient(spread(large, "plain"), spread(found[1e4], "plain"))
     yield OF_COUNT, (4 * value**2, 4 * 2 * value * error, 47)
-    short = during({"brownian_times": 1}, {"brownian_times": 4})
-    explicit = run(program, 1, 32, short, {"integrator": {"method": "explicit"}}, "convergence-explicit")
+    method = {"integrator": {"method": "explicit"}}
+    explicit = run(program, 1, 32, in_brownian_times(1, 4), method, "convergence-explicit")
     values = explicit.whole("plain")
     implicit = math.sqrt(variance_over_seeds(averaged(found[1].plain, 8))), 0
-    ratio = quotient(implicit, jackknife(lambda seeds: values[seeds].std(ddof=1), len(values)))
-    yield OF_METHOD, (*ratio, 31)
+    yield OF_METHOD, (*quotient(implicit, jackknife(lambda seeds: values[seeds].std(ddof=1), len(values))), 31)
 
 
 def sample_rows(table):
@@ -234,69 +211,49 @@ def sample_rows(table):
     for number, _, _, published in RUNS:
         if published:
             text = f"Pe = {number:g}: log10 of explicit steps for 10 %, N = 1000 (published: {published})"
-            ends = published - 1, published + 1
-            yield Statement(text, "L4.3a", *found[number], *ends, rows[number]["seeds"] - 1)
+            degrees = rows[number]["seeds"] - 1
+            yield Statement(text, "L4.3a", *found[number], published - 1, published + 1, degrees)
     for low, high in zip(sorted(rows), sorted(rows)[1:]):
         text = f"log10 of samples for 10 % at Pe = {low:g} less that at {high:g}: more are needed as Pe is reduced"
         yield Statement(text, "L4.3a", *difference(found[low], found[high]), 0, degrees=rows[low]["seeds"] - 1)
 
 
-def exponent_rows(numbers):
-    """Seeds are independent. Consecutive steps are not, and no exponent is published: the spread must only fall."""
-    for name, (value, error, degrees) in numbers.items():
-        if "over seeds" in name:
-            yield Check(name, "seeds", value, error, -0.6, -0.4, degrees)
-        elif "over steps, without" in name:
-            yield Statement(f"{name}: it falls", "L4.3a", value, error, high=0, degrees=degrees)
-        elif "over steps" in name:
-            yield Finding(name, "steps", value, error, degrees)
-
-
-def mean_rows(numbers):
-    """It "averages to zero": within three standard errors."""
-    for name, (value, error, _) in numbers.items():
-        if BROWNIAN_MEAN in name:
-            yield Statement(f"{name}, in standard errors", "L 3.6", value / error, 0, -3, 3)
-            yield Finding(name, "L 3.6", value, error)
-
-
 def judge():
     numbers = read_numbers(HERE / "numbers.csv")
     yield from sample_rows(read_rows(HERE / "table.csv"))
-    yield from mean_rows(numbers)
-    yield from exponent_rows(numbers)
+    for name, (value, error, _) in numbers.items():
+        if BROWNIAN_MEAN in name:  # it "averages to zero": within three standard errors
+            yield Statement(f"{name}, in standard errors", "L 3.6", value / error, 0, -3, 3)
+            yield Finding(name, "L 3.6", value, error)
+    # Seeds are independent. Consecutive steps are not, and no exponent is published: the spread must only fall.
+    for name, (*found, degrees) in numbers.items():
+        if "over seeds" in name:
+            yield Check(name, "seeds", *found, -0.6, -0.4, degrees)
+        elif "over steps, without" in name:
+            yield Statement(f"{name}: it falls", "L4.3a", *found, high=0, degrees=degrees)
+        elif "over steps" in name:
+            yield Finding(name, "steps", *found, degrees)
     for number, *_ in RUNS:
         name = f"Pe = {number:g}: variance with the control variate over that without"
-        value, error, degrees = numbers[name]
+        *found, degrees = numbers[name]
         ends = (-math.inf, 0.75) if number <= 1 else (0.9, 1.1)
-        yield Check(name, "control variate", value, error, *ends, degrees)
+        yield Check(name, "control variate", *found, *ends, degrees)
     for name in (OF_COUNT, OF_METHOD):
-        value, error, degrees = numbers[name]
-        yield Check(name, "conversion", value, error, 0.5, 2, degrees)
+        *found, degrees = numbers[name]
+        yield Check(name, "conversion", *found, 0.5, 2, degrees)
 
 
 def draw(spreads, savings):
     figure = Figure(HERE / "chart.png", columns=2)
     published = [(10**log, TARGET) for _, _, _, log in RUNS if log]
     decades = np.log10([row["samples"] for row in spreads] + [samples for samples, _ in published])
-    panel = figure.panel(
-        "samples: explicit steps of N = 1000 that take as long",
-        "standard deviation of η_r over its mean",
-        log="xy",
-        powers="xy",
-        x_range=(10 ** np.floor(decades.min()), 10 ** np.ceil(decades.max())),
-        y_range=(0.003, 100),
-    )
-    parts = figure.panel(
-        "implicit steps of a window",
-        "variance with the control variate over that without",
-        log="x",
-        powers="x",
-        y_range=(0, 1.2),
-        key=(0.98, 0.75),
-    )
+    titles = "samples: explicit steps of N = 1000 that take as long", "standard deviation of η_r over its mean"
+    ends = {"x_range": (10 ** np.floor(decades.min()), 10 ** np.ceil(decades.max())), "y_range": (0.003, 100)}
+    panel = figure.panel(*titles, log="xy", powers="xy", **ends)
+    titles = "implicit steps of a window", "variance with the control variate over that without"
+    parts = figure.panel(*titles, log="x", powers="x", y_range=(0, 1.2), key=(0.98, 0.75))
     for (number, shares), colour in zip(savings.items(), (BLUE, GREEN, RED)):
-        rows = [row for row in spreads if row["peclet"] == number]
+        rows = where(spreads, peclet=number)
         for kind, title, mark in (("plain", f"Pe = {number:g}", 7), ("controlled", "  with the control variate", 6)):
             bars = [(row["samples"], row[kind], 2 * row[f"{kind}_error"]) for row in rows]
             panel.points(bars, title, colour, mark, 0.8)
@@ -313,22 +270,18 @@ def draw(spreads, savings):
 
 def quick_measure(program):
     small = {"particles": {"count": 50}}
-    brownian = run(program, 1, 96, during({"brownian_times": 1}, {"brownian_times": 8}), small)
-    sheared = run(program, 1e4, 96, during({"strain": 1}, {"strain": 2}), small)
-    rows = []
+    brownian = run(program, 1, 96, in_brownian_times(1, 8), small)
+    sheared = run(program, 1e4, 96, in_strains(1, 2), small)
     for number, series in ((1, brownian), (1e4, sheared)):
-        for name, (value, error, degrees) in exponents(number, series):
+        for name, (*found, degrees) in exponents(number, series):
             if "over seeds" in name:
-                rows.append(Check(name, "seeds", value, error, -0.7, -0.3, degrees))
-    control = over(estimate(brownian.control), brownian.mean())
-    samples = samples_for_target(explicit_steps(program, 1e4, sheared, 50), spread(sheared, "plain"))
+                yield Check(name, "seeds", *found, -0.7, -0.3, degrees)
     name, (*found, degrees) = saving_of(1, brownian)
-    return [
-        *rows,
-        Check(name, "control variate", *found, high=0.8, degrees=degrees),
-        Check("Pe = 1: mean of the control variate over η_r", "PHYSICS.md", *control, -0.2, 0.2, 95),
-        Statement("Pe = 10^4: log10 of explicit steps for 10 %, N = 1000", "L4.3a", *samples, 4, 6, 95),
-    ]
+    yield Check(name, "control variate", *found, high=0.8, degrees=degrees)
+    control = over(estimate(brownian.control), brownian.mean())
+    yield Check("Pe = 1: mean of the control variate over η_r", "PHYSICS.md", *control, -0.2, 0.2, 95)
+    samples = samples_for_target(explicit_steps(program, 1e4, sheared, 50), spread(sheared, "plain"))
+    yield Statement("Pe = 10^4: log10 of explicit steps for 10 %, N = 1000", "L4.3a", *samples, 4, 6, 95)
 
 
 main(HERE, TITLE, measure, quick_measure, judge)

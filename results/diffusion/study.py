@@ -1,26 +1,18 @@
 #!/usr/bin/python3
-"""Mean squared displacements of dilute spheres, and self-diffusion from dilute to dense.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+"""Mean squared displacements of dilute spheres, and self-diffusion from dilute to dense."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import difference, estimate, over, quotient, weighted_mean
-from studies.figure import BLACK, BLUE, GREEN, RED, Figure
-from studies.fits import line_through
-from studies.scenes import REFERENCE_SCENE, during, merged
-from studies.tables import read_rows, read_table, write_table
-from studies.verdicts import Check, Finding, Statement
-
+from studies.driver import BLACK, BLUE, Check, Figure, Finding, GREEN, RED, REFERENCE_SCENE, Statement, difference
+from studies.driver import during, estimate, groups, in_brownian_times, line_through, main, merged, over, quotient
+from studies.driver import read_rows, weighted_mean, where, write_rows
 import numpy as np
 
 TITLE = "Mean squared displacement and self-diffusion"
-AT_REST = merged(REFERENCE_SCENE, {"flow": {"shear_rate": 0}, "observables": ["stress", "mean_squared_displacement"]})
+AT_REST = merged(REFERENCE_SCENE, flow={"shear_rate": 0}, observables=["stress", "mean_squared_displacement"])
 
 # tau_I = 0.1, tau_C = 1e-3; explicit steps, because inertia is what is looked at.
 VISCOSITY, DENSITY, STIFFNESS = 1.0, 0.1, 1e5
@@ -29,27 +21,18 @@ RATIOS = (1.7, 0.17, 0.017)  # tau_I / tau_B
 HOT, WARM, COLD = RATIOS
 DILUTE = merged(
     AT_REST,
-    {
-        "particles": {"count": 100, "density": DENSITY},
-        "volume_fraction": 0.001,
-        "fluid": {"viscosity": VISCOSITY},
-        "contact": {"normal_stiffness": STIFFNESS},
-        "integrator": {"method": "explicit", "timestep": 2e-5},
-        "mean_squared_displacement": {"interval": 5e-4},
-        **during({"time": 0.5}, {"time": 6}),
-    },
+    during({"time": 0.5}, {"time": 6}),
+    particles={"count": 100, "density": DENSITY},
+    volume_fraction=0.001,
+    fluid={"viscosity": VISCOSITY},
+    contact={"normal_stiffness": STIFFNESS},
+    integrator={"method": "explicit", "timestep": 2e-5},
+    mean_squared_displacement={"interval": 5e-4},
 )
 
 # The published units, tau_I = 1.
 FRACTIONS = (0.001, 0.1, 0.2, 0.3, 0.4, 0.45, 0.5, 0.55)
-CROWDED = merged(
-    AT_REST,
-    {
-        "particles": {"count": 250},
-        "integrator": {"method": "implicit"},
-        **during({"brownian_times": 10}, {"brownian_times": 9}),
-    },
-)
+CROWDED = merged(AT_REST, in_brownian_times(10, 9), particles={"count": 250}, integrator={"method": "implicit"})
 
 # Displacements over windows ten and twenty times longer, for the limit of long times: volume fractions, ratios.
 LONG = {90: ((0.001, 0.1, 0.3, 0.5), (WARM, COLD)), 180: ((0.1, 0.3, 0.5), (COLD,))}
@@ -59,11 +42,9 @@ LONG_SEEDS = 18
 BALLISTIC_FRACTIONS, BALLISTIC_SEEDS = (0.001, 0.1, 0.3, 0.5, 0.55), 8
 BALLISTIC = merged(
     CROWDED,
-    {
-        "integrator": {"method": "explicit"},
-        "mean_squared_displacement": {"interval": 0.005},
-        **during({"brownian_times": 10}, {"time": 4}),
-    },
+    during({"brownian_times": 10}, {"time": 4}),
+    integrator={"method": "explicit"},
+    mean_squared_displacement={"interval": 0.005},
 )
 SHORT_LAG = 0.05  # over tau_I
 
@@ -80,46 +61,37 @@ def free_displacement(time, energy, radius):
 
 
 def dilute_curves(program, ratios, seeds, patch=None):
-    """By ratio: rows of time, measured and free displacement of the small spheres, with the standard error, and the
-    same ratio of the two for both species, which all of its scatter is taken from."""
-    settings = [{"/fluid/thermal_energy": thermal_energy(r, VISCOSITY, DENSITY)} for r in ratios]
+    """Yields, for each ratio, rows of time, measured and free displacement of the small spheres, with the standard
+    error, and the same ratio of the two for both species, which all of its scatter is taken from."""
+    energies = [thermal_energy(r, VISCOSITY, DENSITY) for r in ratios]
+    settings = [{"/fluid/thermal_energy": energy} for energy in energies]
     points = program.run("dilute", merged(DILUTE, patch or {}), settings, seeds, "kinetic_temperature")
-    return {ratio: displacement_rows(ratio, point) for ratio, point in zip(ratios, points)}
+    for ratio, energy, point in zip(ratios, energies, points):
+        displacements = [r["mean"]["mean_squared_displacement"] for r in point["realisations"]]
+        times = np.array(displacements[0]["time"])
+        by_species = np.array(
+            [[small_of(s) / free_displacement(times, energy, s["radius"]) for s in d["species"]] for d in displacements]
+        )
+        for k, (time, free) in enumerate(zip(times.tolist(), free_displacement(times, energy, 1.0).tolist())):
+            mean, error = estimate(by_species[:, :, k].mean(axis=1))
+            displacement = estimate(by_species[:, 0, k])[0] * free
+            row = {"ratio": ratio, "time": time, "displacement": displacement, "free": free}
+            yield {**row, "over_free": mean, "standard_error": error}
 
 
-def displacement_rows(ratio, point):
-    energy = thermal_energy(ratio, VISCOSITY, DENSITY)
-    displacements = [r["mean"]["mean_squared_displacement"] for r in point["realisations"]]
-    times = np.array(displacements[0]["time"])
-
-    def over_free(species):
-        axes = np.array([species["x"], species["y"], species["z"]])
-        return axes.mean(axis=0) / free_displacement(times, energy, species["radius"])
-
-    by_species = np.array([[over_free(s) for s in d["species"]] for d in displacements])
-    rows = []
-    for k, (time, free) in enumerate(zip(times.tolist(), free_displacement(times, energy, 1.0).tolist())):
-        mean, error = estimate(by_species[:, :, k].mean(axis=1))
-        displacement = estimate(by_species[:, 0, k])[0] * free
-        row = {"ratio": ratio, "time": time, "displacement": displacement, "free": free}
-        rows.append({**row, "over_free": mean, "standard_error": error})
-    return rows
-
-
-def worst(rows, low, high):
-    """The row between two times that is furthest from the formula, in standard errors."""
-    chosen = [r for r in rows if low <= r["time"] <= high]
-    return max(chosen, key=lambda r: abs(r["over_free"] - 1) / r["standard_error"])
+def small_of(species):
+    """Returns the mean over the axes."""
+    return np.mean([species[axis] for axis in "xyz"], axis=0)
 
 
 def dilute_statements(curves, seeds, tolerance):
+    """Of the row between two times that is furthest from the formula, in standard errors."""
     for ratio, rows in curves.items():
         for name, low, high in (("before", 0, 0.1), ("around", 0.1, 1), ("beyond", 1, 30)):
-            row = worst(rows, low * INERTIAL_TIME, high * INERTIAL_TIME)
-            text = (
-                f"τ_I/τ_B = {ratio}: displacement over L4.1 at its worst {name} τ_I "
-                f"(t = {row['time'] / INERTIAL_TIME:.3g} τ_I)"
-            )
+            between = [r for r in rows if low * INERTIAL_TIME <= r["time"] <= high * INERTIAL_TIME]
+            row = max(between, key=lambda r: abs(r["over_free"] - 1) / r["standard_error"])
+            place = f"(t = {row['time'] / INERTIAL_TIME:.3g} τ_I)"
+            text = f"τ_I/τ_B = {ratio}: displacement over L4.1 at its worst {name} τ_I {place}"
             found = row["over_free"], row["standard_error"]
             yield Statement(text, "L4.2a", *found, 1 - tolerance, 1 + tolerance, seeds - 1)
 
@@ -128,12 +100,9 @@ def diffusion(program, ratios, fractions, seeds, patch=None, name="crowded"):
     cases = [(r, f) for r in ratios for f in fractions]
     settings = [{"/volume_fraction": f, "/fluid/thermal_energy": thermal_energy(r, 0.1, 0.1)} for r, f in cases]
     points = program.run(name, merged(CROWDED, patch or {}), settings, seeds, "self_diffusion")
-    table = []
-    for (ratio, fraction), point in zip(cases, points):
-        mean, error = point.measured("self_diffusion")
-        row = {"ratio": ratio, "fraction": fraction, "seeds": len(point.results)}
-        table.append({**row, "diffusion": mean, "standard_error": error})
-    return table
+    names = "ratio", "fraction", "seeds", "diffusion", "standard_error"
+    both = zip(cases, points)
+    return [dict(zip(names, (*case, len(p.results), *p.measured("self_diffusion")))) for case, p in both]
 
 
 def long_times(program):
@@ -147,22 +116,26 @@ def long_times(program):
 def short_times(program):
     """Displacements of the small spheres over those without any force, kT t^2 / m along each axis."""
     energy = thermal_energy(HOT, 0.1, 0.1)
-    scene = merged(BALLISTIC, {"fluid": {"thermal_energy": energy}})
+    scene = merged(BALLISTIC, fluid={"thermal_energy": energy})
     settings = [{"/volume_fraction": f} for f in BALLISTIC_FRACTIONS]
     points = program.run("ballistic", scene, settings, BALLISTIC_SEEDS, "kinetic_temperature")
     for fraction, point in zip(BALLISTIC_FRACTIONS, points):
         found = [mean["mean_squared_displacement"] for mean in point.means]
         times = np.array(found[0]["time"])
         free = energy * times**2 / (4 / 3 * math.pi * 0.1)
-        small = [np.mean([d["species"][0][axis] for axis in "xyz"], axis=0) / free for d in found]
-        for k, time in enumerate(times.tolist()):
-            value, error = estimate([values[k] for values in small])
+        small = np.array([small_of(d["species"][0]) / free for d in found])
+        for time, values in zip(times.tolist(), small.T):
+            value, error = estimate(values)
             row = {"fraction": fraction, "seeds": len(small), "time": time, "over_ballistic": value}
             yield {**row, "standard_error": error}
 
 
 def measured(row):
     return row["diffusion"], row["standard_error"]
+
+
+def measured_ratio(a, b):
+    return quotient(measured(a), measured(b))
 
 
 def beside(a, b):
@@ -202,8 +175,7 @@ def temperature_rows(long, short):
         warm, cold = short[WARM, fraction], short[COLD, fraction]
         yield Finding(f"φ = {fraction:g}, lags to 3 τ_B: {text}", "L4.2d", *beside(warm, cold), cold["seeds"] - 1)
     text = "φ = 0.5, lags to 3 τ_B: D / D_0 at τ_I/τ_B = 1.7 over that at 0.017"
-    found = quotient(measured(short[HOT, 0.5]), measured(short[COLD, 0.5]))
-    yield Finding(text, "L4.2d", *found, short[HOT, 0.5]["seeds"] - 1)
+    yield Finding(text, "L4.2d", *measured_ratio(short[HOT, 0.5], short[COLD, 0.5]), short[HOT, 0.5]["seeds"] - 1)
 
 
 def short_time_rows(of, degrees):
@@ -211,8 +183,7 @@ def short_time_rows(of, degrees):
     intercept, slope, slope_error, residuals = line_of([of[COLD, f] for f in FRACTIONS])
     residual, fraction = max(zip(residuals, FRACTIONS), key=lambda r: abs(r[0]))
     text = f"lags to 3 τ_B: largest distance of D / D_0 from a line in φ (at φ = {fraction:g}) over its dilute value"
-    distance = over((residual, of[COLD, fraction]["standard_error"]), intercept)
-    yield Finding(text, "L4.2d", *distance, degrees)
+    yield Finding(text, "L4.2d", *over((residual, of[COLD, fraction]["standard_error"]), intercept), degrees)
     yield Finding("lags to 3 τ_B: slope of that line over the dilute value", "L4.2d", slope, slope_error, degrees)
 
 
@@ -221,46 +192,41 @@ def long_time_rows(table):
     degrees = table[0]["seeds"] - 1
     for low, high in zip(table, table[1:]):
         text = f"lags to 24 τ_B: D / D_0 at φ = {high['fraction']:g} over that at {low['fraction']:g}: it falls"
-        yield Statement(text, "L4.2c", *quotient(measured(high), measured(low)), high=1, degrees=degrees)
-    first, *middle, last = table
-    distances = []
+        yield Statement(text, "L4.2c", *measured_ratio(high, low), high=1, degrees=degrees)
+    thin, *middle, dense = table
+    width, distances = dense["fraction"] - thin["fraction"], []
     for row in middle:
-        part = (row["fraction"] - first["fraction"]) / (last["fraction"] - first["fraction"])
-        on_line = first["diffusion"] + part * (last["diffusion"] - first["diffusion"])
-        errors = row["standard_error"], (1 - part) * first["standard_error"], part * last["standard_error"]
+        part = (row["fraction"] - thin["fraction"]) / width
+        on_line = thin["diffusion"] + part * (dense["diffusion"] - thin["diffusion"])
+        errors = row["standard_error"], (1 - part) * thin["standard_error"], part * dense["standard_error"]
         distances.append((row["diffusion"] - on_line, math.hypot(*errors), row["fraction"]))
     *distance, fraction = max(distances, key=lambda d: abs(d[0]))
-    text = (
-        "lags to 24 τ_B: largest distance of D / D_0 from the line through the first and the last φ "
-        f"(at φ = {fraction:g}) over its dilute value"
-    )
-    yield Statement(text, "L4.2d", *over(distance, first["diffusion"]), -0.05, 0.05, degrees)
-    slope = quotient(difference(measured(last), measured(first)), measured(first))
+    text = "lags to 24 τ_B: largest distance of D / D_0 from the line through the first and the last φ"
+    text += f" (at φ = {fraction:g}) over its dilute value"
+    yield Statement(text, "L4.2d", *over(distance, thin["diffusion"]), -0.05, 0.05, degrees)
+    slope = quotient(difference(measured(dense), measured(thin)), measured(thin))
     text = "lags to 24 τ_B: slope of that line over the dilute value (hard spheres without hydrodynamics: about -2)"
-    yield Finding(text, "L4.2d", *over(slope, last["fraction"] - first["fraction"]), degrees)
+    yield Finding(text, "L4.2d", *over(slope, width), degrees)
 
 
 def constant_rows(of):
     """That D approaches a constant: within a tenth, which a curve on logarithmic axes does not show."""
     for fraction in LONG[180][0]:
         long, longer = of["implicit, windows of 90", fraction], of["implicit, windows of 180", fraction]
-        text = (
-            f"φ = {fraction:g}: D between lags of 24 and 48 τ_B over that between 12 and 24: it approaches a constant"
-        )
-        yield Statement(text, "L4.2c", *quotient(measured(longer), measured(long)), 0.9, 1.1, long["seeds"] - 1)
+        text = f"φ = {fraction:g}: D between lags of 24 and 48 τ_B over that between 12 and 24"
+        found = measured_ratio(longer, long)
+        yield Statement(f"{text}: it approaches a constant", "L4.2c", *found, 0.9, 1.1, long["seeds"] - 1)
     for fraction in LONG[90][0]:
         short, long = of["implicit", fraction], of["implicit, windows of 90", fraction]
         text = f"φ = {fraction:g}: D between lags of 1.5 and 3 τ_B over that between 12 and 24"
-        yield Finding(text, "L4.2c", *quotient(measured(short), measured(long)), long["seeds"] - 1)
+        yield Finding(text, "L4.2c", *measured_ratio(short, long), long["seeds"] - 1)
 
 
 def ballistic_rows(table):
     """ "Roughly independent" of the volume fraction: within a tenth, at a lag well below τ_I; print gives none."""
     for lag, kind in ((SHORT_LAG, Statement), (SHORT_LAG / 5, Finding)):
-        dilute, *crowded = (
-            min((r for r in table if r["fraction"] == f), key=lambda r: abs(r["time"] - lag))
-            for f in BALLISTIC_FRACTIONS
-        )
+        of_fraction = groups(table, "fraction").values()
+        dilute, *crowded = (min(rows, key=lambda r: abs(r["time"] - lag)) for rows in of_fraction)
         for row in crowded:
             text = f"φ = {row['fraction']:g}, τ_I/τ_B = 1.7: ⟨x²⟩ at t = {lag:g} τ_I over that at φ = 0.001"
             found = quotient(*((r["over_ballistic"], r["standard_error"]) for r in (row, dilute)))
@@ -268,21 +234,14 @@ def ballistic_rows(table):
             yield kind(text, "L4.2b", *found, degrees=row["seeds"] - 1, **bounds)
 
 
-def rows_with(table, method, ratio):
-    return [r for r in table if (r["method"], r["ratio"]) == (method, ratio)]
-
-
 def judge():
-    curves = {}
-    for row in read_table(HERE / "displacement.csv"):
-        curves.setdefault(row["ratio"], []).append(row)
-    table = read_rows(HERE / "table.csv")
-    crowded, (explicit,) = ([r for r in table if r["method"] == method] for method in ("implicit", "explicit"))
+    curves, table = groups(read_rows(HERE / "displacement.csv"), "ratio"), read_rows(HERE / "table.csv")
+    crowded, (explicit,) = (where(table, method=method) for method in ("implicit", "explicit"))
     of, seeds = {(r["ratio"], r["fraction"]): r for r in crowded}, min(r["seeds"] for r in crowded)
-    long = {ratio: rows_with(table, "implicit, windows of 90", ratio) for ratio in (WARM, COLD)}
+    long = {ratio: where(table, method="implicit, windows of 90", ratio=ratio) for ratio in (WARM, COLD)}
     yield from dilute_statements(curves, seeds, 0.02)
     yield crossover_row(curves[COLD], COLD, seeds)
-    yield from ballistic_rows(read_table(HERE / "ballistic.csv"))
+    yield from ballistic_rows(read_rows(HERE / "ballistic.csv"))
     yield from temperature_rows(long, of)
     yield from long_time_rows(long[COLD])
     yield from constant_rows({(r["method"], r["fraction"]): r for r in table if r["ratio"] == COLD})
@@ -296,22 +255,18 @@ def judge():
 
 def measure(program):
     seeds = 32
-    curves = dilute_curves(program, RATIOS, seeds)
+    displacements = list(dilute_curves(program, RATIOS, seeds))
     one = {"integrator": {"method": "explicit"}}
     rows = [{"method": "implicit", **row} for row in diffusion(program, RATIOS, FRACTIONS, seeds)]
     rows += [{"method": "explicit", **row} for row in diffusion(program, [WARM], [0.3], 8, one, "crowded-explicit")]
     rows += long_times(program)
-    write_table(HERE / "table.csv", list(rows[0]), rows, 5)
-    rows = [row for rows in curves.values() for row in rows]
-    write_table(HERE / "displacement.csv", list(rows[0]), rows, 5)
-    rows = list(short_times(program))
-    write_table(HERE / "ballistic.csv", list(rows[0]), rows, 5)
+    write_rows(HERE / "table.csv", rows, 5)
+    write_rows(HERE / "displacement.csv", displacements, 5)
+    write_rows(HERE / "ballistic.csv", list(short_times(program)), 5)
 
 
 def draw():
-    table, curves = read_rows(HERE / "table.csv"), {}
-    for row in read_table(HERE / "displacement.csv"):
-        curves.setdefault(row["ratio"], []).append(row)
+    curves, table = groups(read_rows(HERE / "displacement.csv"), "ratio"), read_rows(HERE / "table.csv")
     figure = Figure(HERE / "chart.png", columns=2)
     colours = dict(zip(RATIOS, (RED, GREEN, BLUE)))
     panel = figure.panel("t / τ_I", "⟨x²⟩ / a², φ = 0.001", log="xy", powers="xy", key="bottom right")
@@ -325,9 +280,9 @@ def draw():
         return [(r["fraction"], r["diffusion"], 2 * r["standard_error"]) for r in rows]
 
     for ratio in RATIOS:
-        rows = rows_with(table, "implicit", ratio)
+        rows = where(table, method="implicit", ratio=ratio)
         panel.points(bars(rows), f"τ_I/τ_B = {ratio:g}", colours[ratio], size=0.7, joined=True)
-    long = bars(rows_with(table, "implicit, windows of 90", COLD))
+    long = bars(where(table, method="implicit, windows of 90", ratio=COLD))
     panel.points(long, "τ_I/τ_B = 0.017, windows of 90 τ_B", BLACK, mark=6, size=1.2)
     figure.draw()
 
@@ -335,13 +290,9 @@ def draw():
 def quick_measure(program):
     seeds = 8
     small = {"particles": {"count": 50}, "duration": {"production": {"time": 3}}}
-    curves = dilute_curves(program, RATIOS[:1], seeds, small)
+    yield from dilute_statements({HOT: list(dilute_curves(program, [HOT], seeds, small))}, seeds, 0.1)
     free, dense = diffusion(program, [WARM], [0.001, 0.45], seeds, {"particles": {"count": 100}})
-    slower = quotient(measured(dense), measured(free))
-    return [
-        *dilute_statements(curves, seeds, 0.1),
-        Statement("D at φ = 0.45 over D at 0.001", "L4.2c", *slower, 0.05, 0.5, seeds - 1),
-    ]
+    yield Statement("D at φ = 0.45 over D at 0.001", "L4.2c", *measured_ratio(dense, free), 0.05, 0.5, seeds - 1)
 
 
 main(HERE, TITLE, measure, quick_measure, judge, draw)

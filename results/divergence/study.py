@@ -1,38 +1,28 @@
 #!/usr/bin/python3
-"""How the viscosity of frictionless spheres diverges with their volume fraction, at rest, at Pe = 4.6 and at Pe = 10^4.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+"""How the viscosity of frictionless spheres diverges with their volume fraction, at rest, at Pe = 4.6 and at
+Pe = 10^4."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.at_rest import rows_at_rest
-from studies.command_line import main
-from studies.estimates import difference, jackknife, propagated, quotient
-from studies.figure import BLUE, GREEN, ORANGE, RED, Figure
-from studies.fits import jammed_and_exponent, lines, shapes_of
-from studies.green_kubo import table_at_rest
-from studies.published import JAMMED_AT_REST, JAMMED_IN_STRONG_FLOW, diverging
-from studies.scenes import TABLE_SCENE, during, merged
-from studies.tables import columns_of, entries, number, read_rows, write_table
-from studies.verdicts import Check, Finding, Statement
-from studies.viscosities import viscosity_row
-
+from studies.driver import BLUE, Check, Figure, Finding, GREEN, JAMMED_AT_REST, JAMMED_IN_STRONG_FLOW, ORANGE, RED
+from studies.driver import Statement, TABLE_SCENE, difference, diverging, entries, first, in_brownian_times, jackknife
+from studies.driver import jammed_and_exponent, lines, main, merged, number, propagated, read_rows, row_ratio
+from studies.driver import rows_at_rest, shapes_of, table_at_rest, where, write_rows, write_table
 import numpy as np
 
 TITLE = "Divergence of the viscosity with volume fraction"
 PECLET = (4.6, 1e4)
 NAMES = {0: "Pe → 0, published recipe", 4.6: "Pe = 4.6", 1e4: "Pe = 10⁴"}
 FRACTIONS = (0.40, 0.45, 0.48, 0.50, 0.52, 0.54, 0.56, 0.58, 0.59, 0.60, 0.61)
-SHEARED = merged(TABLE_SCENE, {"duration": {"production": {"strain": 3}}})
+SHEARED = merged(TABLE_SCENE, duration={"production": {"strain": 3}})
 SEEDS = 5
 
 # At rest: what the zero-shear study has of these volume fractions, and lubrication at a small Peclet number.
 REST_FRACTIONS = FRACTIONS[:7]
-SLOW = merged(TABLE_SCENE, {"peclet": 0.22, **during({"brownian_times": 20}, {"brownian_times": 20})})
+SLOW = merged(TABLE_SCENE, in_brownian_times(20, 20), peclet=0.22)
 SLOW_SEEDS = 3
 
 PUBLISHED = {0: (JAMMED_AT_REST, 1.5), 4.6: (None, None), 1e4: (JAMMED_IN_STRONG_FLOW, 1.5)}  # phi_J and lambda
@@ -66,37 +56,29 @@ def other_forms(rows, quantity, lowest):
     constants, exponents, left = lines(shapes, values)
     free_rest = np.sqrt(left / len(values))
     fixed, free = np.argmin(fixed_rest), np.argmin(free_rest)
-    return {
-        "fixed_jammed": jammed[fixed],
-        "fixed_rest": fixed_rest[fixed],
-        "free_jammed": jammed[free],
-        "free_exponent": exponents[free],
-        "free_prefactor": math.exp(constants[free]),
-        "free_rest": free_rest[free],
-    }
+    found = {"fixed_jammed": jammed[fixed], "fixed_rest": fixed_rest[fixed], "free_jammed": jammed[free]}
+    found |= {"free_exponent": exponents[free], "free_prefactor": math.exp(constants[free])}
+    return found | {"free_rest": free_rest[free]}
 
 
 def sheared(program, name, cases, seeds, patch=None):
-    """Rows of (Peclet number, volume fraction)."""
-    settings = [{"/peclet": p, "/volume_fraction": f} for p, f in cases]
-    points = program.run(name, merged(SHEARED, patch or {}), settings, seeds)
-    return [{"peclet": p, "fraction": f, **viscosity_row(point)} for (p, f), point in zip(cases, points)]
+    """Returns rows of (Peclet number, volume fraction)."""
+    pointers = {"peclet": "/peclet", "fraction": "/volume_fraction"}
+    return program.rows(name, merged(SHEARED, patch or {}), pointers, cases, seeds)
 
 
 def at_rest(program):
-    """Rows of eta_phi / eta (zero-shear's), the lubrication viscosity, and their sum."""
-    measured = table_at_rest()
-    settings = [{"/volume_fraction": f} for f in REST_FRACTIONS]
-    rows = []
-    for fraction, slow in zip(REST_FRACTIONS, program.run("slow", SLOW, settings, SLOW_SEEDS)):
-        rest = measured[fraction]
-        brownian, lubrication = number(rest, "viscosity"), number(viscosity_row(slow), "lubrication")
+    """Yields rows of eta_phi / eta (zero-shear's), the lubrication viscosity, and their sum."""
+    cases = [(fraction,) for fraction in REST_FRACTIONS]
+    for slow in program.rows("slow", SLOW, {"fraction": "/volume_fraction"}, cases, SLOW_SEEDS):
+        fraction = slow["fraction"]
+        rest = table_at_rest()[fraction]
+        brownian, lubrication = number(rest, "viscosity"), number(slow, "lubrication")
         pairs, error = brownian[0] + lubrication[0], math.hypot(brownian[1], lubrication[1])
         row = {"peclet": 0, "fraction": fraction, "seeds": round(rest["seeds"]), "lost": 0, "transient": 0}
         row |= entries("brownian", brownian) | entries("time", number(rest, "time"))
         row |= entries("lubrication", lubrication) | entries("pairs", (pairs, error))
-        rows.append(row | entries("viscosity", (1 + 2.5 * fraction + pairs, error)))
-    return rows
+        yield row | entries("viscosity", (1 + 2.5 * fraction + pairs, error))
 
 
 READINGS = {"pairs": "η_r of pairs", "viscosity": "η_r with 1 + 2.5 φ"}
@@ -121,21 +103,6 @@ def fit_rows(peclet, name, curve):
         yield Finding(text, "form", found, whole, degrees)
 
 
-def recipe_rows(curve):
-    """The published way to the limit: Green and Kubo's integral of the structural stress, and lubrication."""
-    for reading, of in READINGS.items():
-        fit = fit_with_error(curve, reading)
-        for (value, error, *_), what in zip(fit, ("φ_J", "λ")):
-            yield Finding(f"Pe → 0 by the published recipe: {what} of {of}", "L4.9a", value, error, len(curve) - 2)
-
-
-def held_rows(curve, name):
-    """At rest no exponent of one form meets all volume fractions: φ_J in the published form."""
-    for reading, of in READINGS.items():
-        value, _, error = fit_with_error(curve, reading, jammed_at)[0][:3]
-        yield Finding(f"{name}: φ_J of {of}, λ = 1.5", "form", value, error, min(r["seeds"] for r in curve) - 1)
-
-
 def shift_rows(curves):
     """In the published form, λ = 1.5 for both; and with λ free."""
     for reading, of in READINGS.items():
@@ -151,24 +118,24 @@ def lowest_rows(curves, name):
     middle = {r["fraction"]: r for r in curves[4.6]}
     for peclet, of in ((0, name), (1e4, NAMES[1e4])):
         both = [(middle[r["fraction"]], r) for r in curves[peclet] if r["fraction"] in middle]
-        ratios = [(quotient(number(a, "pairs"), number(b, "pairs")), b) for a, b in both]
+        ratios = [(row_ratio(a, b, "pairs"), b) for a, b in both]
         ratio, row = max(ratios, key=lambda r: r[0][0])
         text = f"largest η_r of pairs at Pe = 4.6 over that at {of} (at φ = {row['fraction']:g})"
         yield Statement(text, "L4.9a", *ratio, high=1, degrees=SEEDS - 1)
     for fraction in (FRACTIONS[0], FRACTIONS[-1]):
-        pair = (next(r for r in curves[p] if r["fraction"] == fraction) for p in PECLET)
+        pair = (first(curves[p], fraction=fraction) for p in PECLET)
         text = f"φ = {fraction:g}: η_r of pairs at Pe = 4.6 over that at 10⁴ (one φ_J for both: the same at every φ)"
-        yield Finding(text, "form", *quotient(*(number(r, "pairs") for r in pair)), SEEDS - 1)
+        yield Finding(text, "form", *row_ratio(*pair, "pairs"), SEEDS - 1)
     for peclet in PECLET:
-        steps = [quotient(number(b, "pairs"), number(a, "pairs")) for a, b in zip(curves[peclet], curves[peclet][1:])]
+        steps = [row_ratio(b, a, "pairs") for a, b in zip(curves[peclet], curves[peclet][1:])]
         text = f"{NAMES[peclet]}: least η_r of pairs at a φ over that at the next lower one (increasing sharply)"
         yield Statement(text, "L4.5d", *min(steps), 1, degrees=SEEDS - 1)
 
 
 def curves_of_table():
     table = read_rows(HERE / "table.csv")
-    rows = [r for r in table if r["method"] == "implicit"]
-    return {p: [r for r in rows if r["peclet"] == p] for p in (0, *PECLET)}, table
+    rows = where(table, method="implicit")
+    return {p: where(rows, peclet=p) for p in (0, *PECLET)}, table
 
 
 def judge():
@@ -177,42 +144,39 @@ def judge():
     name = f"Pe → 0 ({how})"
     recipe, curves[0] = curves[0], [rest[f] for f in sorted(rest) if f >= FRACTIONS[0]]
     yield from fit_rows(0, name, curves[0])
-    yield from held_rows(curves[0], name)
+    for reading, of in READINGS.items():  # at rest no exponent of one form meets all volume fractions
+        value, _, error = fit_with_error(curves[0], reading, jammed_at)[0][:3]
+        seeds = min(r["seeds"] for r in curves[0])
+        yield Finding(f"{name}: φ_J of {of}, λ = 1.5", "form", value, error, seeds - 1)
     yield from fit_rows(1e4, NAMES[1e4], curves[1e4])
     yield from shift_rows(curves)
     yield from lowest_rows(curves, name)
-    yield from recipe_rows(recipe)
-    methods = [next(r for r in table if r["method"] == f"{m} at rate 0.045") for m in ("implicit", "explicit")]
+    # The published way to the limit: Green and Kubo's integral of the structural stress, and lubrication.
+    for reading, of in READINGS.items():
+        for (value, error, *_), what in zip(fit_with_error(recipe, reading), ("φ_J", "λ")):
+            yield Finding(f"Pe → 0 by the published recipe: {what} of {of}", "L4.9a", value, error, len(recipe) - 2)
+    methods = [first(table, method=f"{m} at rate 0.045") for m in ("implicit", "explicit")]
     text = "φ = 0.5, Pe = 10⁴, rate 0.045: η_r with implicit steps over that with explicit ones"
-    ratio = quotient(*(number(r, "viscosity") for r in methods))
-    yield Check(text, "method", *ratio, 0.9, 1.1, methods[1]["seeds"] - 1)
-
-
-def write_tables(curves, methods, fits):
-    rows = [{"method": "implicit", **r} for c in curves.values() for r in c]
-    rows += [{"method": f"{m} at rate 0.045", **r} for m, r in methods.items()]
-    quantities = columns_of("viscosity", "pairs", "lubrication", "contact", "brownian", "time")
-    columns = ["method", "peclet", "fraction", "seeds", "lost", "transient", *quantities]
-    write_table(HERE / "table.csv", columns, rows, 4)
-    parts = ("", "_error", "_by_seeds", "_by_fractions")
-    columns = ["peclet", "quantity", *(name + part for name in ("jammed", "exponent") for part in parts)]
-    rows = [dict(zip(columns, [*key, *jammed, *exponent])) for key, (jammed, exponent) in fits.items()]
-    write_table(HERE / "fits.csv", columns, rows, 4)
-    cases = [(p, q, f) for p in curves for q in ("pairs", "viscosity") for f in (0.40, 0.48)]
-    rows = [{"peclet": p, "quantity": q, "lowest": f, **other_forms(curves[p], q, f)} for p, q, f in cases]
-    write_table(HERE / "forms.csv", list(rows[0]), rows, 4)
+    yield Check(text, "method", *row_ratio(*methods, "viscosity"), 0.9, 1.1, methods[1]["seeds"] - 1)
 
 
 def measure(program):
     rows = sheared(program, "sheared", [(p, f) for p in PECLET for f in FRACTIONS], SEEDS)
-    curves = {0: at_rest(program), **{p: [r for r in rows if r["peclet"] == p] for p in PECLET}}
-    fits = {(p, q): fit_with_error(c, q) for p, c in curves.items() for q in ("pairs", "viscosity")}
+    curves = {0: list(at_rest(program)), **{p: where(rows, peclet=p) for p in PECLET}}
+    table = [{"method": "implicit", **row} for curve in curves.values() for row in curve]
     fast = {"limits": {"shear_rate": 0.045}, "duration": {"production": {"strain": 2}}}
-    methods = {}
     for method in ("implicit", "explicit"):
-        patch = merged(fast, {"integrator": {"method": method}})
-        methods[method] = sheared(program, method, [(1e4, 0.5)], 6, patch)[0]
-    write_tables(curves, methods, fits)
+        (row,) = sheared(program, method, [(1e4, 0.5)], 6, merged(fast, integrator={"method": method}))
+        table.append({"method": f"{method} at rate 0.045", **row})
+    names = "method, peclet, fraction, seeds, lost, transient, viscosity±, pairs±, lubrication±, contact±, brownian±"
+    write_table(HERE / "table.csv", f"{names}, time±", table, 4)
+    parts = ("", "_error", "_by_seeds", "_by_fractions")
+    columns = ["peclet", "quantity", *(name + part for name in ("jammed", "exponent") for part in parts)]
+    fits = [(p, reading, *sum(fit_with_error(curves[p], reading), ())) for p in curves for reading in READINGS]
+    write_rows(HERE / "fits.csv", [dict(zip(columns, fit)) for fit in fits], 4)
+    cases = [(p, q, f) for p in curves for q in READINGS for f in (0.40, 0.48)]
+    rows = [{"peclet": p, "quantity": q, "lowest": f, **other_forms(curves[p], q, f)} for p, q, f in cases]
+    write_rows(HERE / "forms.csv", rows, 4)
 
 
 def draw_divergence(panel, title, colour, power, jammed, exponent, **style):
@@ -250,12 +214,10 @@ def quick_measure(program):
     *fast, slow = sheared(program, "quick", cases, 8, {"particles": {"count": 150}})
     found = propagated([number(r, "pairs") for r in fast], lambda values: jammed_and_exponent(fractions, values), 100)
     jammed, exponent = zip(*found)
-    ratio = quotient(number(slow, "pairs"), number(fast[1], "pairs"))
-    return [
-        Statement("Pe = 10⁴: φ_J of η_r of pairs", "L4.9a", *jammed, 0.58, 0.72, 7),
-        Statement("Pe = 10⁴: its λ", "L4.9a", *exponent, 1, 2.2, 7),
-        Statement("φ = 0.5: η_r of pairs at Pe = 4.6 over that at 10⁴", "L4.9a", *ratio, 0.3, 0.9, 7),
-    ]
+    yield Statement("Pe = 10⁴: φ_J of η_r of pairs", "L4.9a", *jammed, 0.58, 0.72, 7)
+    yield Statement("Pe = 10⁴: its λ", "L4.9a", *exponent, 1, 2.2, 7)
+    ratio = row_ratio(slow, fast[1], "pairs")
+    yield Statement("φ = 0.5: η_r of pairs at Pe = 4.6 over that at 10⁴", "L4.9a", *ratio, 0.3, 0.9, 7)
 
 
 main(HERE, TITLE, measure, quick_measure, judge, draw)

@@ -1,20 +1,13 @@
 #!/usr/bin/python3
-"""The pressure of Brownian spheres at rest beside the equation of state of hard spheres.
-
-study.py BIN [FOLDER] [--quick | --from-table]
-"""
+"""The pressure of Brownian spheres at rest beside the equation of state of hard spheres."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import over
-from studies.figure import BLUE, RED, Figure
-from studies.scenes import REFERENCE_SCENE, during, merged
-from studies.tables import entries, number, read_rows, write_table
-from studies.verdicts import Check
+from studies.driver import BLUE, Check, Figure, RED, REFERENCE_SCENE, entries, in_brownian_times, main, merged, number
+from studies.driver import over, read_rows, where, write_rows
 
 TITLE = "The pressure at rest"
 FRACTIONS = (0.20, 0.30, 0.40, 0.45, 0.50)
@@ -26,13 +19,11 @@ DENSEST = 4  # times as many at the largest volume fraction and the automatic st
 WIDTH = 0.01  # of agreement
 SCENE = merged(
     REFERENCE_SCENE,
-    {
-        "particles": {"count": 250},
-        "flow": {"shear_rate": 0},
-        "fluid": {"thermal_energy": THERMAL_ENERGY},
-        "contact": {"normal_stiffness": STIFFNESS},
-        **during({"brownian_times": 30}, {"brownian_times": 60}),
-    },
+    in_brownian_times(30, 60),
+    particles={"count": 250},
+    flow={"shear_rate": 0},
+    fluid={"thermal_energy": THERMAL_ENERGY},
+    contact={"normal_stiffness": STIFFNESS},
 )
 
 
@@ -50,11 +41,8 @@ def hard_pressure(fraction, radii, softness=0.0):
     m1, m2, m3 = (sum(x * (2 * a - softness) ** k for x, a in zip(shares, radii)) for k in (1, 2, 3))
     packed = fraction * m3 / full
     void = 1 - packed
-    return (
-        1 / void
-        + 3 * packed * m1 * m2 / (m3 * void**2)
-        + packed**2 * (3 - packed) * m2**3 / (m3**2 * void**3)
-    )
+    pairs = 3 * packed * m1 * m2 / (m3 * void**2)
+    return 1 / void + pairs + packed**2 * (3 - packed) * m2**3 / (m3**2 * void**3)
 
 
 def softness():
@@ -70,7 +58,7 @@ def number_density(fraction, radii):
 
 def row_of(program, sizes, fraction, step, seeds, patch):
     radii = SIZES[sizes]
-    scene = merged(SCENE, {"particles": {"species": species(radii)}, "volume_fraction": fraction, **patch})
+    scene = merged(SCENE, patch, particles={"species": species(radii)}, volume_fraction=fraction)
     if step != 1:
         # "auto" of this scene, not of its windows.
         scene["integrator"] = {"timestep": step * program.derived(scene, "pressure")["timestep"]}
@@ -89,7 +77,7 @@ def measure(program):
         for sizes in SIZES
         for fraction in FRACTIONS
     ]
-    write_table(HERE / "table.csv", list(rows[0]), rows, 5)
+    write_rows(HERE / "table.csv", rows, 5)
 
 
 def judged(row, width):
@@ -109,16 +97,14 @@ def draw():
         panel = figure.panel("φ", "P over that of the equation of state", f"sizes {sizes}", y_range=(0.97, 1.03))
         panel.box(None, None, 0.99, 1.01, "#eef4e8")
         for step, colour, shift in ((1, BLUE, -0.002), (0.25, RED, 0.002)):
-            rows = [
-                (r["fraction"] + shift, *number(r, "ratio")) for r in table if r["sizes"] == sizes and r["step"] == step
-            ]
-            panel.points(rows, "automatic step" if step == 1 else "a quarter of it", colour)
+            rows = where(table, sizes=sizes, step=step)
+            points = [(r["fraction"] + shift, *number(r, "ratio")) for r in rows]
+            panel.points(points, "automatic step" if step == 1 else "a quarter of it", colour)
     figure.draw()
 
 
 def quick_measure(program):
-    patch = during({"brownian_times": 15}, {"brownian_times": 60})
-    yield judged(row_of(program, "1 : 1.4", 0.30, 1, 8, patch), 0.03)
+    yield judged(row_of(program, "1 : 1.4", 0.30, 1, 8, in_brownian_times(15, 60)), 0.03)
 
 
 main(HERE, TITLE, measure, quick_measure, judge, draw)

@@ -1,26 +1,15 @@
 #!/usr/bin/python3
-"""The published flow curves, split by term, at three volume fractions, and with other contact stiffnesses.
-
-study.py BIN [FOLDER] [--quick] [--long] [--from-table]
-"""
+"""The published flow curves, split by term, at three volume fractions, and with other contact stiffnesses."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.at_rest import SLOWEST, rows_at_rest
-from studies.command_line import main
-from studies.estimates import estimate, logarithm, over, propagated, quotient
-from studies.figure import BLACK, BLUE, GREEN, GREY, RED, Figure
-from studies.fits import log_minimum
-from studies.green_kubo import table_at_rest
-from studies.published import JAMMED_AT_REST, JAMMED_IN_STRONG_FLOW, diverging
-from studies.scenes import TABLE_SCENE, during, merged
-from studies.tables import columns_of, entries, number, read_rows, write_table
-from studies.verdicts import Check, Finding, Statement
-from studies.viscosities import term, viscosity_row
-
+from studies.driver import BLACK, BLUE, Check, Figure, Finding, GREEN, GREY, JAMMED_AT_REST, JAMMED_IN_STRONG_FLOW, RED
+from studies.driver import SLOWEST, Statement, TABLE_SCENE, diverging, during, entries, estimate, first, log_minimum
+from studies.driver import logarithm, main, merged, number, over, propagated, propagated_lists, quotient, read_rows
+from studies.driver import row_ratio, rows_at_rest, table_at_rest, term, viscosity_row, where, write_table
 import numpy as np
 
 TITLE = "Flow curves of Brownian suspensions"
@@ -67,17 +56,7 @@ def rows_of(program, name, cases, seeds, patch=None):
     return rows
 
 
-USUAL = "implicit", 250, 1e4  # method, number of spheres, stiffness of contacts
-
-
-def pick(rows, **keys):
-    return next((r for r in rows if all(r[k] == v for k, v in keys.items())), None)
-
-
-def curve_of(rows, fraction):
-    return sorted((r for r in rows if r["fraction"] == fraction), key=lambda r: r["peclet"])
-
-
+USUAL = {"method": "implicit", "count": 250, "stiffness": 1e4}
 LOWEST = 4.6  # of the published points
 FOSS_AND_BRADY = 0.45  # of a volume fraction up to 0.49, by their abstract: J. Fluid Mech. 407, 167 (2000)
 KNOWN = 0.22  # below, errors are as large as the differences between points
@@ -87,46 +66,40 @@ class Curve:
     """Rows of one volume fraction by Peclet number, and rows about them."""
 
     def __init__(self, rows, fraction):
-        self.fraction, self.at = fraction, {r["peclet"]: r for r in curve_of(rows, fraction)}
+        curve = sorted(where(rows, fraction=fraction), key=lambda r: r["peclet"])
+        self.fraction, self.at = fraction, {r["peclet"]: r for r in curve}
 
     def row(self, kind, text, found, peclet=LOWEST, **bounds):
         degrees = self.at[peclet]["seeds"] - 1
         return kind(f"φ = {self.fraction:g}: {text}", SOURCES[self.fraction], *found, degrees=degrees, **bounds)
 
     def ratio(self, name, a, b):
-        return quotient(number(self.at[a], name), number(self.at[b], name))
+        return row_ratio(self.at[a], self.at[b], name)
 
-    def over_least(self, name):
-        """What is at 4.6 over the least of all other points."""
-        least = min((p for p in self.at if p != LOWEST), key=lambda p: self.at[p][name])
-        return self.ratio(name, LOWEST, least), least
-
-    def logs(self, *names):
-        """Of the points that are known: numbers of all names, one after the other."""
-        return [number(self.at[p], name) for name in names for p in sorted(self.at) if p >= KNOWN]
+    def known(self, name):
+        return [number(row, name) for peclet, row in self.at.items() if peclet >= KNOWN]
 
 
 def shape_rows(curve):
-    yield curve.row(
-        Statement, "η_r of pairs at Pe = 0.22 over that at 1: thinning", curve.ratio("pairs", 0.22, 1), low=1
-    )
-    for name, what in (("pairs", "η_r of pairs"), ("contact", "contact stress")):
-        found, least = curve.over_least(name)
+    thinning = curve.ratio("pairs", 0.22, 1)
+    yield curve.row(Statement, "η_r of pairs at Pe = 0.22 over that at 1: thinning", thinning, low=1)
+    stresses = {"pairs": "η_r of pairs", "contact": "contact stress"}
+    for name, what in stresses.items():
+        least = min((p for p in curve.at if p != LOWEST), key=lambda p: curve.at[p][name])
         text = f"{what} at Pe = 4.6 over the least of all other Pe (at {least:g}): 4.6 is lowest"
-        yield curve.row(Statement, text, found, high=1)
-    for name, what in (("pairs", "η_r of pairs"), ("contact", "contact stress")):
+        yield curve.row(Statement, text, curve.ratio(name, LOWEST, least), high=1)
+    for name, what in stresses.items():
         text = f"{what} at Pe = 10⁴ over that at 4.6: thickening"
         yield curve.row(Statement, text, curve.ratio(name, 1e4, LOWEST), low=1)
-    x = sorted(p for p in curve.at if p >= KNOWN)
-    minimum = propagated(curve.logs("pairs"), lambda values: log_minimum(x, values))
+    x = [p for p in curve.at if p >= KNOWN]
+    minimum = propagated(curve.known("pairs"), lambda values: log_minimum(x, values))
     yield curve.row(Finding, "log10 Pe of the minimum, by a parabola", minimum)
     if curve.fraction == FOSS_AND_BRADY:
         for a, b, what in ((KNOWN, LOWEST, "thinning below Pe = 10"), (22, LOWEST, "thickening beyond")):
             text = f"φ = {curve.fraction:g}: η_r of pairs at Pe = {a:g} over that at {b:g}: {what} (Foss & Brady 2000)"
             yield Statement(text, "L4.7", *curve.ratio("pairs", a, b), low=1, degrees=curve.at[a]["seeds"] - 1)
-    following = propagated(
-        curve.logs("pairs", "contact"),
-        lambda values: float(np.corrcoef(np.log(np.maximum(np.reshape(values, (2, -1)), 1e-9)))[0, 1]),
+    following = propagated_lists(
+        [curve.known(name) for name in stresses], lambda both: float(np.corrcoef(np.log(np.maximum(both, 1e-9)))[0, 1])
     )
     yield curve.row(Finding, "correlation of ln contact stress with ln η_r of pairs from Pe = 0.22 on", following)
 
@@ -146,19 +119,15 @@ def low_rows(curve):
     """The structural Brownian stress beside the contact stress: "maps quite closely" on axes of three decades is a
     factor of 1.5 either way, at the lowest Pe at which it is known."""
     text = "structural Brownian stress over contact stress at Pe = "
-    slow = SLOWEST
-    closely = number(curve.at[slow], "structural_over_contact")
-    yield curve.row(Statement, f"{text}{slow:g}", closely, slow, low=2 / 3, high=1.5, essential=False)
+    closely = number(curve.at[SLOWEST], "structural_over_contact")
+    yield curve.row(Statement, f"{text}{SLOWEST:g}", closely, SLOWEST, low=2 / 3, high=1.5, essential=False)
     for peclet in (0.22, 0.01):
         yield curve.row(Finding, f"{text}{peclet:g}", number(curve.at[peclet], "structural_over_contact"), peclet)
     text = "structural Brownian stress over contact stress without the control variate at Pe = 0.01"
     yield curve.row(Finding, text, number(curve.at[0.01], "structural_over_plain_contact"), 0.01)
-    last = curve.ratio("pairs", 0.01, slow)
-    text = f"η_r of pairs at Pe = 0.01 over that at {slow:g}"
-    if curve.fraction == 0.55:
-        yield curve.row(Statement, f"{text}: still rising", last, 0.01, low=1)
-    else:
-        yield curve.row(Finding, text, last, 0.01)
+    text = f"η_r of pairs at Pe = 0.01 over that at {SLOWEST:g}"
+    kind, more, bounds = (Statement, ": still rising", {"low": 1}) if curve.fraction == 0.55 else (Finding, "", {})
+    yield curve.row(kind, text + more, curve.ratio("pairs", 0.01, SLOWEST), 0.01, **bounds)
 
 
 def rest_rows(curves):
@@ -168,66 +137,47 @@ def rest_rows(curves):
     for fraction, curve in curves.items():
         if "by" in rest.get(fraction, {}) and fraction != 0.55:  # of linear response
             text = f"η_r of pairs at Pe = {SLOWEST:g} over that at rest ({how}): plateau"
-            found = quotient(number(curve.at[SLOWEST], "pairs"), number(rest[fraction], "pairs"))
+            found = row_ratio(curve.at[SLOWEST], rest[fraction], "pairs")
             yield curve.row(Statement, text, found, SLOWEST, low=0.8, high=1.25)
     known = [f for f in FRACTIONS if f in rest]
     for low, high in zip(known, known[1:]):
         text = f"η_r of pairs at rest ({how}) over that at φ = {low:g}"
-        yield curves[high].row(
-            Statement, text, quotient(*(number(rest[f], "pairs") for f in (high, low))), SLOWEST, low=1
-        )
+        yield curves[high].row(Statement, text, row_ratio(rest[high], rest[low], "pairs"), SLOWEST, low=1)
 
 
 def high_rows(curves):
     """Beside the same suspensions without noise, of the study literature."""
     steady = read_rows(HERE.parent / "literature" / "table.csv")
     for fraction, curve in curves.items():
-        bare = next(
-            r
-            for r in steady
-            if (r["method"], r["fraction"], r["friction"], r["gap"]) == ("implicit", fraction, 0, 0.05)
-        )
-        text = "η_r of pairs at Pe = 10⁴ over that without noise"
-        found = quotient(number(curve.at[1e4], "pairs"), number(bare, "pairs"))
-        yield curve.row(Statement, text, found, low=0.9, high=1.1)
+        bare = first(steady, method="implicit", fraction=fraction, friction=0, gap=0.05)
+        found = row_ratio(curve.at[1e4], bare, "pairs")
+        yield curve.row(Statement, "η_r of pairs at Pe = 10⁴ over that without noise", found, low=0.9, high=1.1)
     noisy = read_rows(HERE.parent / "literature" / "peclet.csv")
     for fraction in FRACTIONS[:2]:
-        wide = {r["peclet"]: r for r in noisy if (r["fraction"], r["gap"]) == (fraction, 0.5)}
+        wide = {r["peclet"]: r for r in where(noisy, fraction=fraction, gap=0.5)}
         text = f"φ = {fraction:g}, μ = 1, outer gap 0.5: lubrication at Pe = 10⁴ over that at 1"
-        found = quotient(*(number(wide[p], "lubrication") for p in (1e4, 1)))
-        yield Finding(text, "literature", *found, wide[1]["seeds"] - 1)
-
-
-def comparison(kind, text, source, a, b, width, degrees):
-    """That the viscosities of two rows are the same within `width`."""
-    ratio = quotient(number(a, "viscosity"), number(b, "viscosity"))
-    return kind(text, source, *ratio, 1 - width, 1 + width, degrees)
-
-
-def rows_with(table, method, count=250):
-    return [r for r in table if (r["method"], r["count"]) == (method, count)]
+        yield Finding(text, "literature", *row_ratio(wide[1e4], wide[1], "lubrication"), wide[1]["seeds"] - 1)
 
 
 def comparison_rows(table):
-    rows = rows_with(table, "implicit")
-    for row in rows:
+    """That the viscosities of two rows are the same."""
+    for row in where(table, method="implicit", count=250):
         if row["stiffness"] != 1e4:
             text = f"φ = 0.5, Pe = {row['peclet']:g}: η_r at k_n = {row['stiffness']:g} over that at 10⁴"
-            standard = pick(rows, fraction=0.5, stiffness=1e4, peclet=row["peclet"])
-            yield comparison(Statement, text, "L4.5b", row, standard, 0.05, row["seeds"] - 1)
-    for row in rows_with(table, "implicit", 1000):
+            ratio = row_ratio(row, first(table, **USUAL, fraction=0.5, peclet=row["peclet"]), "viscosity")
+            yield Statement(text, "L4.5b", *ratio, 0.95, 1.05, row["seeds"] - 1)
+    for row in where(table, method="implicit", count=1000):
         text = f"φ = 0.45, Pe = {row['peclet']:g}: η_r with N = 1000 over that with 250"
-        standard = pick(rows, fraction=0.45, stiffness=1e4, peclet=row["peclet"])
-        yield comparison(Check, text, "N", row, standard, 0.05, row["seeds"] - 1)
+        ratio = row_ratio(row, first(table, **USUAL, fraction=0.45, peclet=row["peclet"]), "viscosity")
+        yield Check(text, "N", *ratio, 0.95, 1.05, row["seeds"] - 1)
     text = "φ = 0.45, Pe = 100, rate 0.045: η_r with implicit steps over that with explicit ones"
-    implicit, explicit = (rows_with(table, f"{m} at rate 0.045")[0] for m in ("implicit", "explicit"))
-    yield comparison(Check, text, "method", implicit, explicit, 0.1, explicit["seeds"] - 1)
+    implicit, explicit = (first(table, method=f"{m} at rate 0.045") for m in ("implicit", "explicit"))
+    yield Check(text, "method", *row_ratio(implicit, explicit, "viscosity"), 0.9, 1.1, explicit["seeds"] - 1)
 
 
 def curves_of_table():
     table = read_rows(HERE / "table.csv")
-    rows = [r for r in rows_with(table, "implicit") if r["stiffness"] == 1e4]
-    return {f: Curve(rows, f) for f in FRACTIONS}, table
+    return {f: Curve(where(table, **USUAL), f) for f in FRACTIONS}, table
 
 
 def judge():
@@ -260,30 +210,28 @@ def measure(program):
     table = [{"method": "implicit", "count": 250, **r} for r in rows + stiffness]
     table += [{"method": "implicit", "count": 1000, **r} for r in large]
     table += [{"method": f"{m} at rate 0.045", "count": 250, **r} for m, r in methods.items()]
-    stresses = ("viscosity", "pairs", "lubrication", "contact", "controlled_contact", "structural")
-    ratios = ("structural_over_contact", "structural_over_plain_contact")
-    names = ["method", "count", "fraction", "stiffness", "peclet", "seeds", "lost", "transient"]
-    write_table(HERE / "table.csv", [*names, *columns_of(*stresses, *ratios)], table, 4)
+    names = "method, count, fraction, stiffness, peclet, seeds, lost, transient, viscosity±, pairs±, lubrication±, "
+    names += "contact±, controlled_contact±, structural±, structural_over_contact±, structural_over_plain_contact±"
+    write_table(HERE / "table.csv", names, table, 4)
 
 
-def draw_overview():
+def draw_overview(curves):
     """η_r with 1 + 2.5 φ of the usual runs, with 95 % intervals: Student's t by the seeds of the row, 16 or 8."""
     t = {16: 2.131, 8: 2.365}
     figure = Figure(HERE / "overview.png", columns=1, size=(1000, 460))
     ends = {"x_range": (5e-3, 2e4), "y_range": (3, 130)}
     titles = "Péclet number Pe (shear over Brownian motion)", "relative viscosity η_r"
     panel = figure.panel(*titles, log="xy", powers="x", **ends)
-    usual = [r for r in read_rows(HERE / "table.csv") if (r["method"], r["count"], r["stiffness"]) == USUAL]
     for fraction, colour in ((0.55, GREEN), (0.5, RED), (0.45, BLUE)):
-        rows = curve_of(usual, fraction)
+        rows = curves[fraction].at.values()
         points = [(r["peclet"], r["viscosity"], t[r["seeds"]] * r["viscosity_error"]) for r in rows]
         panel.points(points, f"volume fraction φ = {fraction:.2f}", colour, joined=True)
     figure.draw()
 
 
 def draw():
-    draw_overview()
     curves, _ = curves_of_table()
+    draw_overview(curves)
     terms = {
         "pairs": (BLACK, 7, "all pairs"),
         "controlled_contact": (RED, 5, "contact"),
@@ -296,12 +244,9 @@ def draw():
         ends = {"x_range": (5e-3, 3e4), "y_range": (0.1, largest)}
         panel = figure.panel("Pe", "σ / (η γ̇)", f"φ = {fraction:g}", log="xy", powers="x", **ends)
         for name, (colour, mark, title) in terms.items():
-            curve = [(p, *number(r, name)) for p, r in sorted(curves[fraction].at.items())]
-            panel.points(curve, title, colour, mark, 0.8, joined=True)
-        title = "published fits of both ends"
-        for jammed, span in ((JAMMED_AT_REST, (5e-3, 0.02)), (JAMMED_IN_STRONG_FLOW, (3e3, 3e4))):
-            panel.level(diverging(fraction, jammed), title, GREY, span, width=3)
-            title = None
+            panel.rows(curves[fraction].at.values(), "peclet", name, title, colour, mark, 0.8, joined=True)
+        panel.level(diverging(fraction, JAMMED_AT_REST), "published fits of both ends", GREY, (5e-3, 0.02), width=3)
+        panel.level(diverging(fraction, JAMMED_IN_STRONG_FLOW), None, GREY, (3e3, 3e4), width=3)
         if fraction in rest:
             recipe = rest[fraction]["viscosity"]
             panel.level(recipe, "its integral at rest (zero-shear)", GREEN, (5e-3, 0.1), width=2, dash=2)
@@ -312,17 +257,18 @@ def quick_measure(program):
     parts = during({"brownian_times": 10}, {"brownian_times": 20, "strain": 3})
     cases = [(0.5, 1e4, p) for p in (0.22, 4.6, 1e4)]
     low, middle, high = rows_of(program, "quick", cases, 8, {"particles": {"count": 100}, **parts})
-    thickening = quotient(number(high, "pairs"), number(middle, "pairs"))
-    lubrication = quotient(number(middle, "lubrication"), number(high, "lubrication"))
-    structural = number(low, "structural_over_contact")
-    name = "φ = 0.5: η_r of pairs at Pe"
-    text = "φ = 0.5: structural Brownian stress over contact stress at Pe = 0.22"
-    return [
-        Statement(f"{name} = 10⁴ over that at 4.6 (thickening)", "L4.5b", *thickening, 1.1, 2.5, 7),
-        Statement(f"{name} = 4.6", "L4.5b", *number(middle, "pairs"), 4, 10, 7),
-        Statement("φ = 0.5: lubrication at Pe = 4.6 over that at 10⁴", "L4.5b", *lubrication, 0.1, 0.8, 7),
-        Statement(text, "L4.5b", *structural, 0.25, 2, 7),
-    ]
+    for text, found, least, most in (
+        ("η_r of pairs at Pe = 10⁴ over that at 4.6 (thickening)", row_ratio(high, middle, "pairs"), 1.1, 2.5),
+        ("η_r of pairs at Pe = 4.6", number(middle, "pairs"), 4, 10),
+        ("lubrication at Pe = 4.6 over that at 10⁴", row_ratio(middle, high, "lubrication"), 0.1, 0.8),
+        (
+            "structural Brownian stress over contact stress at Pe = 0.22",
+            number(low, "structural_over_contact"),
+            0.25,
+            2,
+        ),
+    ):
+        yield Statement(f"φ = 0.5: {text}", "L4.5b", *found, least, most, 7)
 
 
 main(HERE, TITLE, measure, quick_measure, judge, draw)

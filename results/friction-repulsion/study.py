@@ -1,23 +1,14 @@
 #!/usr/bin/python3
-"""Flow curves with friction and with a repulsion whose strength is a multiple of kT.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+"""Flow curves with friction and with a repulsion whose strength is a multiple of kT."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import difference, propagated, quotient
-from studies.figure import BLUE, GREEN, ORANGE, RED, Figure
-from studies.fits import log_of_share, thickening_decades
-from studies.scenes import TABLE_SCENE, during, merged
-from studies.tables import columns_of, number, read_rows, write_table
-from studies.verdicts import Check, Finding, Statement
-from studies.viscosities import viscosity_row
-
+from studies.driver import BLUE, Check, Figure, Finding, GREEN, ORANGE, RED, Statement, TABLE_SCENE, difference, during
+from studies.driver import first, in_strains, log_of_share, main, merged, number, propagated, quotient, read_rows
+from studies.driver import row_ratio, thickening_decades, viscosity_row, where, write_table
 import numpy as np
 
 TITLE = "Friction and repulsion in flow curves"
@@ -32,11 +23,9 @@ CURVES = [
 ]
 SCENE = merged(
     TABLE_SCENE,
-    {
-        "contact": {"friction": 0},
-        "repulsion": {"form": "exponential", "strength": 0},
-        **during({"strain": 2, "brownian_times": 25}, {"strain": 4, "brownian_times": 30}),
-    },
+    during({"strain": 2, "brownian_times": 25}, {"strain": 4, "brownian_times": 30}),
+    contact={"friction": 0},
+    repulsion={"form": "exponential", "strength": 0},
 )
 SEEDS, SLOW_SEEDS, METHOD_SEEDS = 5, 8, 12
 # Largest rate and kT, eta, and kappa of two unit spheres.
@@ -52,15 +41,8 @@ def thermal_energy(peclet):
 
 def measured(program, name, cases, seeds, patch=None):
     """Rows of (volume fraction, friction, strength, Peclet number)."""
-    settings = [
-        {
-            "/volume_fraction": fraction,
-            "/contact/friction": friction,
-            "/repulsion/strength": strength * thermal_energy(peclet),
-            "/peclet": peclet,
-        }
-        for fraction, friction, strength, peclet in cases
-    ]
+    pointers = "/volume_fraction", "/contact/friction", "/repulsion/strength", "/peclet"
+    settings = [dict(zip(pointers, (f, m, a * thermal_energy(p), p))) for f, m, a, p in cases]
     points = program.run(name, merged(SCENE, patch or {}), settings, seeds)
     return [row_of(case, point) for case, point in zip(cases, points)]
 
@@ -74,8 +56,8 @@ def row_of(case, point):
 
 
 def curve_of(rows, *case):
-    """Of a volume fraction, a friction coefficient and a strength of the repulsion."""
-    chosen = (r for r in rows if (r["fraction"], r["friction"], r["strength"]) == case)
+    """Returns the rows of a volume fraction, a friction coefficient and a strength of the repulsion."""
+    chosen = where(rows, **dict(zip(("fraction", "friction", "strength"), case)))
     return sorted(chosen, key=lambda r: r["peclet"])
 
 
@@ -95,23 +77,8 @@ def width(curve):
     return of_curve(curve, lambda x, values: log_of_share(x, values, 0.9) - log_of_share(x, values, 0.1))
 
 
-def extent(curve):
-    """Decades of Pe from the minimum to 95 % of the thickening."""
-    return of_curve(curve, thickening_decades)
-
-
-def middle_stress(curve, scale):
-    """log10 of the stress in the middle of the thickening, in units of A / (a^2 kappa) or, with `scale` 1, of kT /
-    a^3."""
-
-    def place(x, values):
-        return log_of_share(np.array(values) * x / (6 * math.pi) * scale, values, 0.5)
-
-    return of_curve(curve, place)
-
-
 def ratio_of(a, b):
-    return quotient(number(a, "pairs"), number(b, "pairs"))
+    return row_ratio(a, b, "pairs")
 
 
 def plateau(curve, share):
@@ -124,11 +91,6 @@ def plateau(curve, share):
         return float((np.interp(fine, x, logs) <= logs.min() + math.log1p(share)).mean() * (x[-1] - x[0]))
 
     return of_curve(curve, decades)
-
-
-def rise(curve):
-    """Of the thickening: the viscosity at the highest Pe over the least."""
-    return of_curve(curve, lambda x, values: values[-1] / min(values))
 
 
 def friction_rows(rows, degrees):
@@ -146,7 +108,8 @@ def friction_rows(rows, degrees):
         yield Statement(text, "L4.9b", *ratio, low=1, degrees=degrees)
     for low, high in ((0.45, 0.5), (0.5, 0.53)):
         text = f"μ = 0.5, A = 0: η_r at Pe = 10⁶ over its least, φ = {high:g} over that at {low:g}"
-        grown = quotient(*(rise(curve_of(rows, f, 0.5, 0)) for f in (high, low)))
+        curves = (curve_of(rows, f, 0.5, 0) for f in (high, low))
+        grown = quotient(*(of_curve(curve, lambda x, values: values[-1] / min(values)) for curve in curves))
         yield Statement(text, "L4.9c", *grown, low=1, degrees=degrees)
 
 
@@ -156,7 +119,7 @@ def thickening_rows(rows, fraction, friction, source, degrees):
     if fraction == 0.5:
         # Where print begins and ends to count is not said; half a decade either way.
         text = f"{name}, A = 0: decades of Pe from the minimum to 95 % of the thickening (published: 4 to 5)"
-        yield Statement(text, source, *extent(bare), 3.5, 5.5, degrees, essential=False)
+        yield Statement(text, source, *of_curve(bare, thickening_decades), 3.5, 5.5, degrees, essential=False)
         text = f"{name}, A = 0: decades of Pe from a tenth to nine tenths of the thickening"
         yield Finding(text, source, *width(bare), degrees)
     for strength in (1, 100, 1000):
@@ -164,41 +127,43 @@ def thickening_rows(rows, fraction, friction, source, degrees):
         if not repelled:
             continue
         text = f"with A = {strength} kT less that with A = 0, decades of Pe"
-        narrowed, shifted = difference(width(repelled), width(bare)), difference(middle(repelled), middle(bare))
-        width_text, middle_text = f"{name}: width {text}", f"{name}: middle of the thickening {text}"
-        if strength == 1:
-            yield Finding(width_text, source, *narrowed, degrees)
-            yield Finding(middle_text, source, *shifted, degrees)
-        else:
-            yield Statement(width_text, source, *narrowed, high=0, degrees=degrees)
-            yield Statement(middle_text, source, *shifted, low=0, degrees=degrees)
+        for what, function, bound in (("width", width, {"high": 0}), ("middle of the thickening", middle, {"low": 0})):
+            kind, bounds = (Finding, {}) if strength == 1 else (Statement, bound)
+            moved = difference(function(repelled), function(bare))
+            yield kind(f"{name}: {what} {text}", source, *moved, degrees=degrees, **bounds)
 
 
 def plateau_rows(rows, degrees):
     """Beside the curve without repulsion of the study literature, which has Pe = 4.6 and 22, too. A tenth is the
     published error of a point; within a half the bare plateau goes on below Pe = 1, where its curve ends."""
-    bare = [r for r in read_rows(HERE.parent / "literature" / "peclet.csv") if (r["fraction"], r["gap"]) == (0.5, 0.05)]
+    bare = where(read_rows(HERE.parent / "literature" / "peclet.csv"), fraction=0.5, gap=0.05)
     repelled = curve_of(rows, 0.5, 1, 1000)
     for kind, share, words, bound in ((Statement, 0.1, "a tenth", {"low": 0}), (Finding, 0.5, "a half", {})):
         text = f"φ = 0.5, μ = 1: decades of Pe within {words} of the minimum, A = 1000 kT less A = 0: a broader plateau"
-        broader = difference(plateau(repelled, share), plateau(bare, share))
-        yield kind(text, "L 7", *broader, degrees=degrees, **bound)
+        yield kind(text, "L 7", *difference(plateau(repelled, share), plateau(bare, share)), degrees=degrees, **bound)
 
 
 def stress_rows(rows, degrees):
     """The unit of stress of the figure is not defined."""
+
+    def middle_stress(friction, strength):
+        """Returns log10 of the stress in the middle of the thickening, in units of A / (a^2 kappa)."""
+        scale = LENGTH / strength
+
+        def place(x, values):
+            return log_of_share(np.array(values) * x / (6 * math.pi) * scale, values, 0.5)
+
+        return of_curve(curve_of(rows, 0.5, friction, strength), place)
+
     for friction in (0.5, 1):
-        weak, strong = (middle_stress(curve_of(rows, 0.5, friction, a), LENGTH / a) for a in (100, 1000))
-        text = (
-            f"φ = 0.5, μ = {friction}: log10 of σ a² κ / A in the middle of the thickening, A = 1000 kT less 100 kT "
-            "(0: the repulsion alone sets the stress)"
-        )
-        yield Finding(text, "L4.9d", *difference(strong, weak), degrees)
+        less = difference(middle_stress(friction, 1000), middle_stress(friction, 100))
+        text = f"φ = 0.5, μ = {friction}: log10 of σ a² κ / A in the middle of the thickening, A = 1000 kT less 100 kT"
+        yield Finding(f"{text} (0: the repulsion alone sets the stress)", "L4.9d", *less, degrees)
 
 
 def judge():
     table = read_rows(HERE / "table.csv")
-    rows = [r for r in table if r["method"] == "implicit"]
+    rows = where(table, method="implicit")
     degrees = min(r["seeds"] for r in rows) - 1
     yield from friction_rows(rows, degrees)
     for case in THICKENING:
@@ -206,21 +171,15 @@ def judge():
     yield from plateau_rows(rows, degrees)
     yield from stress_rows(rows, degrees)
     text = "φ = 0.5, μ = 0.5, A = 1000 kT, Pe = 10⁴: η_r with implicit steps over that with explicit ones"
-    methods = [next(r for r in table if r["method"] == f"{m} at rate 0.045") for m in ("implicit", "explicit")]
-    ratio = quotient(*(number(r, "viscosity") for r in methods))
-    yield Check(text, "method", *ratio, 0.9, 1.1, methods[1]["seeds"] - 1)
+    methods = [first(table, method=f"{m} at rate 0.045") for m in ("implicit", "explicit")]
+    yield Check(text, "method", *row_ratio(*methods, "viscosity"), 0.9, 1.1, methods[1]["seeds"] - 1)
 
 
 def measured_method(program, method):
     """At five times the rate, where explicit steps cost a fifth; kT follows it."""
-    fast = {
-        "limits": {"shear_rate": 0.045},
-        **during({"strain": 1}, {"strain": 2}),
-        "contact": {"friction": 0.5},
-        "repulsion": {"strength": 1000 * thermal_energy(1e4) * 5},
-        "integrator": {"method": method},
-    }
-    (point,) = program.run(method, merged(SCENE, fast), [{"/peclet": 1e4}], METHOD_SEEDS)
+    fast = {"limits": {"shear_rate": 0.045}, "contact": {"friction": 0.5}, "integrator": {"method": method}}
+    scene = merged(SCENE, fast, in_strains(1, 2), repulsion={"strength": 1000 * thermal_energy(1e4) * 5})
+    (point,) = program.run(method, scene, [{"/peclet": 1e4}], METHOD_SEEDS)
     row = row_of((0.5, 0.5, 1000, 1e4), point)
     # The table has no stresses of these.
     del row["stress"], row["stress_over_repulsion"]
@@ -233,9 +192,8 @@ def measure(program):
     methods = {m: measured_method(program, m) for m in ("implicit", "explicit")}
     table = [{"method": "implicit", **r} for r in rows]
     table += [{"method": f"{m} at rate 0.045", **r} for m, r in methods.items()]
-    names = ["method", "fraction", "friction", "strength", "peclet", "seeds", "lost", "transient"]
-    names += columns_of("viscosity", "pairs", "lubrication", "contact", "repulsion")
-    write_table(HERE / "table.csv", [*names, "stress", "stress_over_repulsion"], table, 4)
+    names = "method, fraction, friction, strength, peclet, seeds, lost, transient, viscosity±, pairs±, lubrication±, "
+    write_table(HERE / "table.csv", names + "contact±, repulsion±, stress, stress_over_repulsion", table, 4)
     draw(rows)
 
 
@@ -244,12 +202,10 @@ def draw(rows):
     colours = (BLUE, GREEN, ORANGE, RED)
 
     def panel(curves, x, label, x_range, y_range):
-        axes = figure.panel(
-            label, "η_r of pairs", log="xy", powers="x", key="top left", x_range=x_range, y_range=y_range
-        )
+        ends = {"x_range": x_range, "y_range": y_range, "key": "top left"}
+        axes = figure.panel(label, "η_r of pairs", log="xy", powers="x", **ends)
         for case, title, colour, mark in curves:
-            points = [(r[x], *number(r, "pairs")) for r in curve_of(rows, *case)]
-            axes.points(points, title, colour, mark, 0.8, joined=True)
+            axes.rows(curve_of(rows, *case), x, "pairs", title, colour, mark, 0.8, joined=True)
 
     ends = (0.5, 2e6), (2, 300)
     rough = [((0.5, m, 0), f"φ = 0.5, A = 0, μ = {m}", c, 7) for m, c in zip(FRICTIONS, colours)]
@@ -270,16 +226,12 @@ def draw(rows):
 def quick_measure(program):
     cases = [(0.5, 0, 0, 1e4), (0.5, 1, 0, 1e4), (0.5, 1, 1000, 1e4), (0.5, 0, 0, 1), (0.5, 1, 0, 1)]
     parts = during({"strain": 1, "brownian_times": 5}, {"strain": 3, "brownian_times": 10})
-    rows = measured(program, "quick", cases, 8, {"particles": {"count": 100}, **parts})
-    smooth, rough, repelled, smooth_slow, rough_slow = rows
-    name = "φ = 0.5, Pe = 10⁴"
-    text = f"{name}, μ = 1: η_r of pairs with A = 1000 kT over that with A = 0"
-    slow = "φ = 0.5, Pe = 1: η_r of pairs with μ = 1 over that without"
-    return [
-        Statement(f"{name}: η_r of pairs with μ = 1 over that without", "L4.9b", *ratio_of(rough, smooth), 2, 12, 7),
-        Statement(text, "L4.9b", *ratio_of(repelled, rough), 0.05, 0.8, 7),
-        Statement(slow, "L4.9b", *ratio_of(rough_slow, smooth_slow), 0.5, 1.6, 7),
-    ]
+    smooth, rough, repelled, *slow = measured(program, "quick", cases, 8, {"particles": {"count": 100}, **parts})
+    text = "η_r of pairs with μ = 1 over that without"
+    yield Statement(f"φ = 0.5, Pe = 10⁴: {text}", "L4.9b", *ratio_of(rough, smooth), 2, 12, 7)
+    of_repulsion = "φ = 0.5, Pe = 10⁴, μ = 1: η_r of pairs with A = 1000 kT over that with A = 0"
+    yield Statement(of_repulsion, "L4.9b", *ratio_of(repelled, rough), 0.05, 0.8, 7)
+    yield Statement(f"φ = 0.5, Pe = 1: {text}", "L4.9b", *ratio_of(*slow[::-1]), 0.5, 1.6, 7)
 
 
 main(HERE, TITLE, measure, quick_measure, judge)

@@ -1,24 +1,15 @@
 #!/usr/bin/python3
-"""Viscosity against inertia: of the flow without noise, and of the thermal motion.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+"""Viscosity against inertia: of the flow without noise, and of the thermal motion."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import over, quotient, weighted_mean
-from studies.figure import BLUE, GREEN, ORANGE, PURPLE, RED, Figure
-from studies.fits import line_through
-from studies.published import DENSITY, STIFFNESS, TABLE_4_1, VISCOSITY, mari_fit
-from studies.scenes import REFERENCE_SCENE, during, merged
-from studies.tables import read_rows, write_table
-from studies.verdicts import Check, Finding, Statement
-from studies.viscosities import counts_text, flags
-
+from studies.driver import BLUE, Check, DENSITY, Figure, Finding, GREEN, ORANGE, PURPLE, RED, REFERENCE_SCENE, STIFFNESS
+from studies.driver import Statement, TABLE_4_1, VISCOSITY, counts_text, first, flags, in_brownian_times, in_strains
+from studies.driver import line_through, main, mari_fit, merged, over, quotient, read_rows, weighted_mean, where
+from studies.driver import write_rows
 import numpy as np
 
 TITLE = "Viscosity and inertia"
@@ -29,39 +20,32 @@ FLAT = 0.1  # change that a published curve on logarithmic axes does not show
 FLOW_BOUND = 0.1
 STOKES = (0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10)
 SMALL = {"particles": {"count": 250}}
-FLOW = merged(REFERENCE_SCENE, {**SMALL, "volume_fraction": 0.55, "flow": {"shear_rate": RATE}})
+FLOW = merged(REFERENCE_SCENE, SMALL, volume_fraction=0.55, flow={"shear_rate": RATE})
 
 # With noise: tau_I / tau_B = rho kT / (eta^2 a), by the density too; tau_I / tau_S = Pe / (6 pi) tau_I / tau_B stays
 # below 0.01. Pe, seeds, values of tau_I / tau_B, equilibration and window.
 THERMAL_BOUND = 0.01
 THERMAL_RUNS = (
-    (0.1, 32, (0.01, 1.8), during({"brownian_times": 5}, {"brownian_times": 30})),
-    (0.3, 16, (0.01, 0.1, 0.6), during({"brownian_times": 5}, {"brownian_times": 30})),
-    (1, 24, (0.001, 0.003, 0.01, 0.03, 0.18), during({"brownian_times": 5}, {"brownian_times": 30})),
-    (10, 16, (0.001, 0.003, 0.01, 0.018), during({"strain": 1}, {"strain": 3})),
+    (0.1, 32, (0.01, 1.8), in_brownian_times(5, 30)),
+    (0.3, 16, (0.01, 0.1, 0.6), in_brownian_times(5, 30)),
+    (1, 24, (0.001, 0.003, 0.01, 0.03, 0.18), in_brownian_times(5, 30)),
+    (10, 16, (0.001, 0.003, 0.01, 0.018), in_strains(1, 3)),
 )
-THERMAL = merged(REFERENCE_SCENE, {**SMALL, "volume_fraction": 0.45, "fluid": {"thermal_energy": THERMAL_ENERGY}})
+THERMAL = merged(REFERENCE_SCENE, SMALL, volume_fraction=0.45, fluid={"thermal_energy": THERMAL_ENERGY})
 
 
 def row_of(point, curve, ratio):
-    mean, error = point.measured("relative_viscosity_pair")
-    return {
-        "curve": curve,
-        "ratio": ratio,
-        "seeds": len(point.results),
-        "lost": point.lost,
-        "flags": counts_text(flags(point)),
-        "viscosity": mean,
-        "standard_error": error,
-    }
+    row = {"curve": curve, "ratio": ratio, "seeds": len(point.results), "lost": point.lost}
+    row["flags"] = counts_text(flags(point))
+    return row | dict(zip(("viscosity", "standard_error"), point.measured("relative_viscosity_pair")))
 
 
 def flow_rows(program, ratios, seeds, patch=None, name="flow", window=6):
     """The equilibration grows with the time in which velocities adapt."""
-    settings = []
-    for stokes in ratios:
-        parts = during({"strain": 2 + stokes}, {"strain": window})
-        settings.append({"/particles/density": stokes * VISCOSITY / RATE, "/duration": parts["duration"]})
+    settings = [
+        {"/particles/density": stokes * VISCOSITY / RATE, "/duration": in_strains(2 + stokes, window)["duration"]}
+        for stokes in ratios
+    ]
     points = program.run(name, merged(FLOW, patch or {}), settings, seeds)
     return [row_of(point, "flow", stokes) for stokes, point in zip(ratios, points)]
 
@@ -138,11 +122,8 @@ def flow_judged(rows):
     below, flat = flat_part(rows, FLOW_BOUND)
     degrees = rows[0]["seeds"] - 1
     row, found = furthest(below)
-    text = (
-        "φ = 0.55, no noise: η_r over that of the others, less 1, where it differs most of all τ_I/τ_S ≤ 0.1 "
-        f"(at {row['ratio']:g})"
-    )
-    yield Statement(text, "L4.6a", *found, -FLAT, FLAT, degrees)
+    text = "φ = 0.55, no noise: η_r over that of the others, less 1, where it differs most of all τ_I/τ_S ≤ 0.1"
+    yield Statement(f"{text} (at {row['ratio']:g})", "L4.6a", *found, -FLAT, FLAT, degrees)
     text = "change of ln η_r from τ_I/τ_S = 0.005 to 0.1, by a line"
     yield Statement(text, "L4.6a", *change(below), -FLAT, FLAT, degrees)
     yield leaving_row(Statement, f"τ_I/τ_S = {rows[-1]['ratio']:g}", "L4.6a", rows[-1], flat, low=FLAT)
@@ -157,11 +138,8 @@ def thermal_judged(curves):
         degrees = rows[0]["seeds"] - 1
         if len(below) > 1:
             row, found = furthest(below)
-            text = (
-                f"φ = 0.45, Pe = {number:g}: the same where it differs most of all τ_I/τ_B ≤ 0.01 "
-                f"(at {row['ratio']:g})"
-            )
-            yield Statement(text, "L4.6b", *found, -FLAT, FLAT, degrees)
+            text = f"φ = 0.45, Pe = {number:g}: the same where it differs most of all τ_I/τ_B ≤ 0.01"
+            yield Statement(f"{text} (at {row['ratio']:g})", "L4.6b", *found, -FLAT, FLAT, degrees)
             text = f"Pe = {number:g}: change of ln η_r from τ_I/τ_B = {below[0]['ratio']:g} to 0.01, by a line"
             yield Statement(text, "L4.6b", *change(below), -FLAT, FLAT, degrees)
     # Where the curve leaves its flat part is not in print; "only when > 0.01" is, and holds wherever it is flat below.
@@ -197,21 +175,18 @@ def judge():
     table = read_rows(HERE / "table.csv")
 
     def curve(name, method="implicit"):
-        return [r for r in table if (r["curve"], r["method"]) == (name, method)]
-
-    def at(rows, ratio):
-        return next(r for r in rows if r["ratio"] == ratio)
+        return where(table, curve=name, method=method)
 
     flow, curves = curve("flow"), {run[0]: curve(f"Pe {run[0]:g}") for run in THERMAL_RUNS}
     yield from flow_judged(flow)
     yield from thermal_judged(curves)
     yield from groups_of_table()
     for row in curve("flow", "explicit"):
-        yield comparison(f"τ_I/τ_S = {row['ratio']:g}", at(flow, row["ratio"]), row)
-    yield comparison("Pe = 1, τ_I/τ_B = 0.18", at(curves[1], 0.18), curve("Pe 1", "explicit")[0])
+        yield comparison(f"τ_I/τ_S = {row['ratio']:g}", first(flow, ratio=row["ratio"]), row)
+    yield comparison("Pe = 1, τ_I/τ_B = 0.18", first(curves[1], ratio=0.18), curve("Pe 1", "explicit")[0])
     of_step = "the automatic step over that by a quarter of it"
     (fine,) = curve("Pe 10", "implicit, a quarter of the step")
-    yield comparison("Pe = 10, τ_I/τ_B = 0.001", at(curves[10], 0.001), fine, of_step)
+    yield comparison("Pe = 10, τ_I/τ_B = 0.001", first(curves[10], ratio=0.001), fine, of_step)
 
 
 def measure(program):
@@ -219,19 +194,17 @@ def measure(program):
     curves = {run[0]: thermal_rows(program, *run) for run in THERMAL_RUNS}
     # Where inertia is least, steps that are small beside the automatic one; explicit ones take too long there.
     number, seeds, _, parts = THERMAL_RUNS[-1]
-    step = {"integrator": {"timestep": 0.0011}}
-    fine = thermal_rows(program, number, seeds, (0.001,), parts, step, "thermal-fine")
+    fine = thermal_rows(program, number, seeds, (0.001,), parts, {"integrator": {"timestep": 0.0011}}, "thermal-fine")
     explicit = {"integrator": {"method": "explicit"}}
     flow_explicit = flow_rows(program, (0.1, 10), 12, explicit, "flow-explicit")
-    parts = during({"brownian_times": 5}, {"brownian_times": 20})
-    thermal_explicit = thermal_rows(program, 1, 8, (0.18,), parts, explicit, "thermal-explicit")
+    thermal_explicit = thermal_rows(program, 1, 8, (0.18,), in_brownian_times(5, 20), explicit, "thermal-explicit")
     by_method = {
         "implicit": [*flow, *(r for rows in curves.values() for r in rows)],
         "implicit, a quarter of the step": fine,
         "explicit": [*flow_explicit, *thermal_explicit],
     }
     table = [{"method": method, **row} for method, rows in by_method.items() for row in rows]
-    write_table(HERE / "table.csv", list(table[0]), table, 5)
+    write_rows(HERE / "table.csv", table, 5)
     draw(flow, flow_explicit, curves, thermal_explicit)
 
 
@@ -241,8 +214,8 @@ def draw(flow, flow_explicit, curves, thermal_explicit):
 
     figure = Figure(HERE / "chart.png", columns=2)
     name = "η_r of the pairs"
-    ends = {"x_range": (0.003, 20), "y_range": (15, 100)}
-    panel = figure.panel("τ_I / τ_S", name, "φ = 0.55, no noise", log="xy", powers="x", key="top left", **ends)
+    ends = {"x_range": (0.003, 20), "y_range": (15, 100), "powers": "x", "key": "top left"}
+    panel = figure.panel("τ_I / τ_S", name, "φ = 0.55, no noise", log="xy", **ends)
     panel.upright(FLOW_BOUND)
     panel.text("published: flat", 0.09, 17, "right")
     panel.level(flat_part(flow, FLOW_BOUND)[1][0], "mean up to 0.1", dash=2)
@@ -259,22 +232,18 @@ def draw(flow, flow_explicit, curves, thermal_explicit):
 
 
 def quick_measure(program):
-    seeds, small = 8, {"particles": {"count": 100}}
-    degrees = seeds - 1
-    slow, flat, fast = flow_rows(program, (0.005, 0.1, 5), seeds, small, window=3)
-    parts = during({"brownian_times": 3}, {"brownian_times": 10})
-    little, more = thermal_rows(program, 1, seeds, (0.001, 0.01), parts, small)
+    small = {"particles": {"count": 100}}
+    slow, flat, fast = flow_rows(program, (0.005, 0.1, 5), 8, small, window=3)
+    little, more = thermal_rows(program, 1, 8, (0.001, 0.01), in_brownian_times(3, 10), small)
     of_fit = over((flat["viscosity"] + 1 + 2.5 * 0.55, flat["standard_error"]), mari_fit(0.55, 0))
-    text = "η_r with solvent and stresslet over Mari's fit"
-    return [
-        Statement("η_r at τ_I/τ_S = 0.1 over that at 0.005", "L4.6a", *ratio_of(flat, slow), 0.7, 1.4, degrees),
-        Statement("η_r at τ_I/τ_S = 5 over that at 0.1", "L4.6a", *ratio_of(fast, flat), 1 + FLAT, degrees=degrees),
-        Statement(text, "M table 1", *of_fit, 0.7, 1.3, degrees),
-        Statement(
-            "Pe = 1: η_r at τ_I/τ_B = 0.01 over that at 0.001", "L4.6b", *ratio_of(more, little), 0.5, 2, degrees
-        ),
-        Statement("Pe = 1: η_r is below that of Pe = 10^4", "L4.9a", *measured(more), 1, 6.11, degrees),
-    ]
+    for text, source, found, least, most in (
+        ("η_r at τ_I/τ_S = 0.1 over that at 0.005", "L4.6a", ratio_of(flat, slow), 0.7, 1.4),
+        ("η_r at τ_I/τ_S = 5 over that at 0.1", "L4.6a", ratio_of(fast, flat), 1 + FLAT, math.inf),
+        ("η_r with solvent and stresslet over Mari's fit", "M table 1", of_fit, 0.7, 1.3),
+        ("Pe = 1: η_r at τ_I/τ_B = 0.01 over that at 0.001", "L4.6b", ratio_of(more, little), 0.5, 2),
+        ("Pe = 1: η_r is below that of Pe = 10^4", "L4.9a", measured(more), 1, 6.11),
+    ):
+        yield Statement(text, source, *found, least, most, 7)
 
 
 main(HERE, TITLE, measure, quick_measure, judge)

@@ -1,26 +1,18 @@
 #!/usr/bin/python3
 """Suspensions driven by waves of the flow: profiles with errors, the balance of momentum, and what a uniform flow at
-the same local stress would do (Li 2023, ch. 6, Fig. 6.1 and Eqs 6.7 to 6.9).
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+the same local stress would do (Li 2023, ch. 6, Fig. 6.1 and Eqs 6.7 to 6.9)."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import difference, estimate, jackknife, propagated, quotient
-from studies.figure import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, Figure
-from studies.fits import divergence
-from studies.hours import Hours
-from studies.inhomogeneous import FIGURE, FLOWS, OTHER, PUBLISHED, QUANTITIES, SCENE, TRAINING, UNSEEN
-from studies.inhomogeneous import Flow, bin_rows, growth, profile_of, symmetric_bin_rows, symmetries, wave
-from studies.scenes import during, merged
-from studies.tables import columns_of, entries, number, read_numbers, read_rows, write_numbers, write_table
-from studies.verdicts import Check, Finding, Statement
-
+from studies.driver import BLACK, BLUE, Check, Figure, Finding, GREEN, GREY, Hours, ORANGE, PURPLE, RED, Statement
+from studies.driver import column, difference, divergence, during, entries, estimate, groups, in_strains, jackknife
+from studies.driver import main, merged, number, propagated, quotient, read_numbers, read_rows, write_numbers
+from studies.driver import write_rows, write_table
+from studies.inhomogeneous import FIGURE, FLOWS, Flow, OTHER, PUBLISHED, SCENE, TRAINING, UNSEEN, bin_rows, growth
+from studies.inhomogeneous import profile_of, symmetric_bin_rows, symmetries, wave
 import numpy as np
 from scipy.optimize import least_squares
 
@@ -37,19 +29,14 @@ def uniform_quantities(mean):
     stress = np.array(mean["profiles"]["stress"]["pairs"], float).mean(axis=1)
     pressure = -stress[:3].mean()
     scatter = math.sqrt(np.mean(mean["profiles"]["velocity_variance"][0])) / UNIFORM_RATE
-    return {
-        "J": 1 / pressure,
-        "mu": abs(stress[3]) / pressure,
-        "Theta": scatter / pressure,
-        "normal": -stress[1] / pressure,
-    }
+    found = {"J": 1 / pressure, "mu": abs(stress[3]) / pressure, "Theta": scatter / pressure}
+    return found | {"normal": -stress[1] / pressure}
 
 
 def uniform_rows(program, hours):
     """Steady shear without waves: one J for each volume fraction."""
-    scene = merged(SCENE, {"box": None, "profiles": {"bins": 5}, "flow": None})
-    scene = merged(scene, {"flow": {"shear_rate": UNIFORM_RATE}, "particles": {"count": 1000}})
-    scene = merged(scene, during({"strain": 4}, {"strain": 12}))
+    patch = {"flow": {"shear_rate": UNIFORM_RATE}, "particles": {"count": 1000}, "profiles": {"bins": 5}}
+    scene = merged(SCENE, {"box": None, "flow": None}, patch, in_strains(4, 12))
     settings = [{"/volume_fraction": fraction} for fraction in UNIFORM]
     hours.plan("uniform", scene, settings)
     hours.add(program.run("uniform", scene, settings, SEEDS))
@@ -111,35 +98,32 @@ def flow_row(flow, results, profiles):
     return row
 
 
-FLOW_COLUMNS = ["flow", "mean", "height", "count", "seeds", "mirrored"]
-FLOW_NUMBERS = (
-    "lag", "unevenness", "change", "densest", "contrast", "separation", "separation change", "imbalance"
-)  # fmt: skip
-BIN_COLUMNS = ["flow", "mean", "height", "y", "driving", *columns_of(*QUANTITIES)]
+IN_TIME = merged(SCENE, during({"strain": None, "time": 1}, {"strain": None, "time": 1}))
+
+
+def results_of(program, flow):
+    """Returns the points of a campaign of one flow, whose bins are its own; its whole results; their profiles."""
+    points = program.run(flow.name, IN_TIME, [flow.settings()], SEEDS, observable="pressure")
+    (results,) = program.stored_results(flow.name)
+    return points, results, [profile_of(flow, r["mean"]["profiles"]) for r in results]
 
 
 def measure(program):
-    scene = merged(SCENE, during({"strain": None, "time": 1}, {"strain": None, "time": 1}))
     bins, distinct, flows, hours = [], [], [], Hours(program, SEEDS)
     uniform = list(uniform_rows(program, hours))
     for one in FLOWS:
-        # Each by itself: profiles of one campaign have the same bins.
-        hours.plan(one.name, scene, [one.settings()], "pressure")
-        hours.add(program.run(one.name, scene, [one.settings()], SEEDS, observable="pressure"))
-        (results,) = program.stored_results(one.name)
-        profiles = [profile_of(one, r["mean"]["profiles"]) for r in results]
+        hours.plan(one.name, IN_TIME, [one.settings()], "pressure")
+        points, results, profiles = results_of(program, one)
+        hours.add(points)
         bins += bin_rows(one, profiles)
         distinct += symmetric_bin_rows(one, profiles)
         flows.append(flow_row(one, results, profiles))
-    write_table(HERE / "bins.csv", BIN_COLUMNS, bins, 6)
-    write_table(HERE / "distinct_bins.csv", BIN_COLUMNS, distinct, 6)
-    write_table(HERE / "flows.csv", [*FLOW_COLUMNS, *columns_of(*FLOW_NUMBERS)], flows, 5)
-    write_table(HERE / "uniform.csv", ["fraction", "seeds", *columns_of(*UNIFORM_QUANTITIES)], uniform, 6)
+    write_rows(HERE / "bins.csv", bins, 6)
+    write_rows(HERE / "distinct_bins.csv", distinct, 6)
+    names = "flow, mean, height, count, seeds, mirrored, lag±, unevenness±, change±, densest±, contrast±, separation±, "
+    write_table(HERE / "flows.csv", names + "separation change±, imbalance±", flows, 5)
+    write_rows(HERE / "uniform.csv", uniform, 6)
     write_numbers(HERE / "numbers.csv", hours.numbers())
-
-
-def column(rows, name):
-    return np.array([row[name] for row in rows], float)
 
 
 class Tables:
@@ -150,13 +134,9 @@ class Tables:
         self._bins = read_rows(HERE / "bins.csv")
         self._distinct = read_rows(HERE / "distinct_bins.csv")
 
-    def bins(self, *flows):
+    def bins(self, *flows, distinct=False):
         names = {flow.name for flow in flows}
-        return [r for r in self._bins if r["flow"] in names]
-
-    def distinct_bins(self, *flows):
-        names = {flow.name for flow in flows}
-        return [r for r in self._distinct if r["flow"] in names]
+        return [r for r in (self._distinct if distinct else self._bins) if r["flow"] in names]
 
     def largest(self, flows, name):
         """Of some flows, the number of the one that has the largest."""
@@ -212,9 +192,7 @@ def collapse(rows):
 
 def sheared(rows):
     """Bins where the flow has a direction: rates above a twentieth of the largest of their flow."""
-    largest = {}
-    for row in rows:
-        largest[row["flow"]] = max(largest.get(row["flow"], 0), abs(row["rate"]))
+    largest = {flow: np.abs(column(of, "rate")).max() for flow, of in groups(rows, "flow").items()}
     return [r for r in rows if abs(r["rate"]) > 0.05 * largest[r["flow"]]]
 
 
@@ -247,7 +225,7 @@ def noise(rows, name):
 
 
 def noise_rows(tables):
-    rows, distinct = tables.bins(*TRAINING), tables.distinct_bins(*TRAINING)
+    rows, distinct = tables.bins(*TRAINING), tables.bins(*TRAINING, distinct=True)
     symbols = {"mu": "μ", "fraction": "φ_loc", "Theta": "Θ", "lag": "Δ_v", "J": "J"}
     for name, symbol in symbols.items():
         text = f"noise of {symbol} in a bin, relative, median of {len(rows)}"
@@ -263,9 +241,8 @@ def law_rows(tables):
     yield Finding("Eq. 6.7, uniform flow: rms of ln(J/μ)", "L eq 6.7", uniform[2], 0)
     where = by_flow(TRAINING, tables, lambda rows: law_of_fraction(sheared(rows))[1])
     text = "Eq. 6.7: φ_J of the training flows less that of uniform flow"
-    yield Statement(
-        text, "L eq 6.7", where[0] - uniform[1], where[1], -0.005, 0.005, len(TRAINING) - 1, essential=False
-    )
+    shift = where[0] - uniform[1], where[1]
+    yield Statement(text, "L eq 6.7", *shift, -0.005, 0.005, len(TRAINING) - 1, essential=False)
     left = by_flow(TRAINING, tables, lambda rows: law_of_fraction(rows)[2])
     yield Finding("Eq. 6.7, training flows: rms of ln(J/μ)", "L eq 6.7", *left, len(TRAINING) - 1)
     everything = TRAINING + PUBLISHED
@@ -311,10 +288,9 @@ def residuals(tables, side):
     known = np.log(column(order, "J")), np.log(column(order, "mu"))
 
     def of(chosen):
-        flows = [TRAINING[k] for k in chosen]
-        rows = [
-            r for f in flows for r in sorted(tables.bins(f), key=lambda r: -side * abs(r["rate"]))[: f.bins // 10 + 1]
-        ]
+        rows = []
+        for flow in (TRAINING[k] for k in chosen):
+            rows += sorted(tables.bins(flow), key=lambda r: -side * abs(r["rate"]))[: flow.bins // 10 + 1]
         expected = np.exp(np.interp(np.log(column(rows, "J")), *known))
         return float(np.median(np.abs(column(rows, "mu") - expected) / column(rows, "mu_error")))
 
@@ -335,15 +311,12 @@ def other_rows(tables):
         yield Finding(text, "other physics", *quotient(number(tables.flows[flow.name], "contrast"), plain), SEEDS - 1)
 
 
-def hours_rows(tables):
-    ratio = tables.numbers["planned"][0] / tables.numbers["taken"][0]
-    yield Check("hours planned before over those taken", "`peclet plan`", ratio, 0, 0.5, 2)
-
-
 def judge():
     tables = Tables()
-    for some in (steady_rows, noise_rows, law_rows, intro_rows, separation_rows, other_rows, hours_rows):
+    for some in (steady_rows, noise_rows, law_rows, intro_rows, separation_rows, other_rows):
         yield from some(tables)
+    ratio = tables.numbers["planned"][0] / tables.numbers["taken"][0]
+    yield Check("hours planned before over those taken", "`peclet plan`", ratio, 0, 0.5, 2)
 
 
 def draw():
@@ -359,28 +332,26 @@ def draw():
     height = FIGURE[0].height
     one.curve(lambda x: FIGURE[0].driving(x * height), "u∞", GREY, span=(0, 1), samples=101)
     one.points(by_height("figure-50", "velocity"), "u", BLUE)
-    one = figure.panel("y/L_y", "φ", "volume fraction, k = 0.1", y_range=(0.38, 0.76), key="top right")
-    colours = {"sine-50-50": BLUE, "sine-50-56": RED, "sine-100-56": ORANGE, "square": GREEN}
-    for name, colour in colours.items():
-        one.points(by_height(name, "fraction"), name, colour)
-    one = figure.panel("y/L_y", "share", "share of the larger spheres", y_range=(0.4, 1.15), key="top right")
-    for name, colour in colours.items():
-        one.points(by_height(name, "largest share"), name, colour)
+    for symbol, quantity, title, ends in (
+        ("φ", "fraction", "volume fraction, k = 0.1", (0.38, 0.76)),
+        ("share", "largest share", "share of the larger spheres", (0.4, 1.15)),
+    ):
+        one = figure.panel("y/L_y", symbol, title, y_range=ends, key="top right")
+        for name, colour in zip(("sine-50-50", "sine-50-56", "sine-100-56", "square"), (BLUE, RED, ORANGE, GREEN)):
+            one.points(by_height(name, quantity), name, colour)
     one = figure.panel("y/L_y", "over the mean −σ_{yy}", "stress, φ = 0.56, L_y = 50", key="bottom left")
     scale = float(np.mean(column(tables.bins(flows["sine-50-56"]), "normal stress")))
     parts = ("normal stress", "−σ_{yy}", BLUE), ("pressure", "P", PURPLE), ("shear stress", "σ_{xy}", RED)
     for name, title, colour in parts:
         one.points([(y, v / scale, e / scale) for y, v, e in by_height("sine-50-56", name)], title, colour)
     kinds = (TRAINING, "training", BLUE), (PUBLISHED, "tests", ORANGE), (UNSEEN, "others", GREEN)
-    one = figure.panel(
-        "J", "μ", "friction coefficient", log="xy", powers="x", key="top left", x_range=(1e-5, 1), y_range=(1e-3, 10)
-    )
-    one.points([(r["J"], *number(r, "mu")) for r in tables.uniform], "uniform flow", BLACK, 7)
+    ends = {"x_range": (1e-5, 1), "y_range": (1e-3, 10), "log": "xy", "key": "top left"}
+    one = figure.panel("J", "μ", "friction coefficient", powers="x", **ends)
+    one.rows(tables.uniform, "J", "mu", "uniform flow", BLACK, 7)
     for some, name, colour in kinds:
-        one.points([(r["J"], *number(r, "mu")) for r in tables.bins(*some)], name, colour, 6)
-    one = figure.panel(
-        "J", "Θ^{1.44} μ^{2.5}", "Eq. 6.8: where the shear has a direction", log="xy", powers="xy", key="top left"
-    )
+        one.rows(tables.bins(*some), "J", "mu", name, colour, 6)
+    titles = "J", "Θ^{1.44} μ^{2.5}", "Eq. 6.8: where the shear has a direction"
+    one = figure.panel(*titles, log="xy", powers="xy", key="top left")
     for some, name, colour in kinds:
         rows = sheared(tables.bins(*some))
         one.points([(r["J"], r["Theta"] ** 1.44 * r["mu"] ** 2.5) for r in rows], name, colour, 6)
@@ -392,10 +363,7 @@ def draw():
 def quick_measure(program):
     """A small box: spheres leave the layers of fast shear, and momentum is balanced."""
     small = Flow("quick", [wave(0.1)], 24, 0.5, 25, 40, width=12)
-    scene = merged(SCENE, during({"strain": None, "time": 1}, {"strain": None, "time": 1}))
-    program.run(small.name, scene, [small.settings()], 4, observable="pressure")
-    (results,) = program.stored_results(small.name)
-    profiles = [profile_of(small, r["mean"]["profiles"]) for r in results]
+    _, results, profiles = results_of(program, small)
     slow = estimate([float((p.fraction[[2, 3, 8, 9]] - p.fraction[[0, 5, 6, 11]]).mean()) for p in profiles])
     yield Statement("φ where the flow turns less φ where it is fastest", "L6.1", *slow, 0.03, 0.3, 3)
     imbalance = estimate([r["mean"]["profiles"]["momentum_imbalance"] for r in results])

@@ -1,24 +1,16 @@
 #!/usr/bin/python3
 """Friction of 1: where the viscosity diverges without noise, how many contacts spheres have there, and which Peclet
-numbers flow between the two volume fractions of jamming.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+numbers flow between the two volume fractions of jamming."""
+import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import difference, estimate, propagated, quotient
-from studies.figure import BLUE, RED, Figure
-from studies.fits import jammed_and_exponent
-from studies.published import JAMMED_AT_REST, mari_fit
-from studies.scenes import REFERENCE_SCENE, TABLE_SCENE, during, merged
-from studies.tables import columns_of, entries, number, read_rows, write_table
-from studies.verdicts import Finding, Statement
-from studies.viscosities import viscosity_row
-
+from studies.driver import BLUE, Figure, Finding, JAMMED_AT_REST, RED, REFERENCE_SCENE, Statement, TABLE_SCENE
+from studies.driver import difference, during, entries, estimate, first, in_brownian_times, in_strains
+from studies.driver import jammed_and_exponent, main, mari_fit, merged, number, over, propagated, read_rows, row_ratio
+from studies.driver import viscosity_row, where, write_table
 import numpy as np
 
 TITLE = "Large friction"
@@ -27,32 +19,21 @@ FRACTIONS = {0: (0.58, 0.60, 0.61, 0.62), 1: (0.40, 0.45, 0.50, 0.53, 0.54, 0.55
 FITTED = 0.55  # of friction 1, the densest of the fit
 SOFT = {"guard": {"largest_overlap": 0.3}}  # jammed spheres of this stiffness overlap by more than the guard's 0.05
 NETWORK = {"observables": ["stress", "contact_network"]}
-STEADY = merged(
-    REFERENCE_SCENE,
-    {
-        "particles": {"count": 250},
-        "contact": {"friction": 0},
-        **NETWORK,
-        **SOFT,
-        **during({"strain": 2}, {"strain": 4}),
-    },
-)
+STEADY = merged(REFERENCE_SCENE, NETWORK, SOFT, in_strains(2, 4), particles={"count": 250}, contact={"friction": 0})
 SEEDS = 8
 # Spheres with fewer contacts carry nothing: forces balance with four of them without friction, with two with it.
 CARRYING = {0: 4, 1: 2}
 # With noise: between 0.57, where the fits for friction 1 diverge, and 0.587, that at rest.
 DENSE, PECLET, LOWEST = 0.58, (1, 4.6, 10, 22, 100, 1e3, 1e4), 4.6
 SLOW_PECLET = (0.02, 0.1)
-SLOW = during({"brownian_times": 100}, {"brownian_times": 100})
+SLOW = in_brownian_times(100, 100)
 STIFF = 4  # times
 NOISY = merged(
     TABLE_SCENE,
-    {
-        "contact": {"friction": 1},
-        **NETWORK,
-        **SOFT,
-        **during({"strain": 1, "brownian_times": 40}, {"strain": 2, "brownian_times": 40}),
-    },
+    NETWORK,
+    SOFT,
+    during({"strain": 1, "brownian_times": 40}, {"strain": 2, "brownian_times": 40}),
+    contact={"friction": 1},
 )
 NOISY_SEEDS = 6
 PUBLISHED_CONTACTS = {0: 6, 1: 4}
@@ -66,28 +47,25 @@ def carried(mean, friction):
     return float((count * shares)[least:].sum() / carrying), float(1 - carrying)
 
 
-def rows_of(program, name, scene, settings, keys, seeds):
-    rows = []
-    for case, point in zip(settings, program.run(name, scene, settings, seeds)):
-        friction = int(scene["contact"]["friction"])
-        row = {"friction": friction} | dict(zip(keys, case.values())) | viscosity_row(point)
+def rows_of(program, name, scene, pointer, values, seeds):
+    friction = int(scene["contact"]["friction"])
+    for value, point in zip(values, program.run(name, scene, [{pointer: v} for v in values], seeds)):
+        row = {"friction": friction, pointer.split("_")[-1].strip("/"): value} | viscosity_row(point)
         found = np.array([carried(m, friction) for m in point.means])
-        for column, quantity in enumerate(("contacts", "rattlers")):
-            row |= entries(quantity, estimate(found[:, column]) if len(found) else (float("nan"), float("nan")))
-        rows.append(row)
-    return rows
+        for k, quantity in enumerate(("contacts", "rattlers")):
+            row |= entries(quantity, estimate(found[:, k]) if len(found) else (math.nan, math.nan))
+        yield row
 
 
 def steady(program, name, friction, fractions, seeds, patch=None):
-    scene = merged(merged(STEADY, {"contact": {"friction": friction}}), patch or {})
-    rows = rows_of(program, name, scene, [{"/volume_fraction": f} for f in fractions], ["fraction"], seeds)
+    scene = merged(STEADY, {"contact": {"friction": friction}}, patch or {})
+    rows = rows_of(program, name, scene, "/volume_fraction", fractions, seeds)
     return [{"peclet": "no noise", **row} for row in rows]
 
 
 def noisy(program, name, peclets, seeds, patch=None):
-    scene = merged(merged(NOISY, {"volume_fraction": DENSE}), patch or {})
-    rows = rows_of(program, name, scene, [{"/peclet": p} for p in peclets], ["peclet"], seeds)
-    return [{"fraction": DENSE, **row} for row in rows]
+    scene = merged(NOISY, {"volume_fraction": DENSE}, patch or {})
+    return [{"fraction": DENSE, **row} for row in rows_of(program, name, scene, "/peclet", peclets, seeds)]
 
 
 def measure(program):
@@ -99,31 +77,25 @@ def measure(program):
     stiff = {"contact": {"normal_stiffness": STIFF * NOISY["contact"]["normal_stiffness"]}}
     rows += [{"stiffness": STIFF, **row} for row in noisy(program, "stiff", PECLET[-1:], NOISY_SEEDS, stiff)]
     rows = [{"stiffness": 1} | row for row in rows]
-    names = ["peclet", "friction", "fraction", "stiffness", "seeds", "lost", "transient"]
-    names += columns_of("viscosity", "pairs", "lubrication", "contact", "contacts", "rattlers")
-    write_table(HERE / "table.csv", names, rows, 5)
+    names = (
+        "peclet, friction, fraction, stiffness, seeds, lost, transient, viscosity±, pairs±, lubrication±, contact±, "
+    )
+    write_table(HERE / "table.csv", names + "contacts±, rattlers±", rows, 5)
 
 
 def without_noise(table, friction):
-    return [r for r in table if r["peclet"] == "no noise" and r["friction"] == friction and r["seeds"] > 1]
+    return [r for r in where(table, peclet="no noise", friction=friction) if r["seeds"] > 1]
 
 
 def with_noise(table):
-    return [r for r in table if r["peclet"] != "no noise" and r["stiffness"] == 1]
-
-
-def fit_of(rows):
-    """phi_J and lambda of (1 - phi / phi_J)^-lambda through the viscosities of the pairs."""
-    return propagated(
-        [number(r, "pairs") for r in rows],
-        lambda values: jammed_and_exponent([r["fraction"] for r in rows], values),
-        100,
-    )
+    return [r for r in where(table, stiffness=1) if r["peclet"] != "no noise"]
 
 
 def jamming_rows(table):
     rows = [r for r in without_noise(table, 1) if r["fraction"] <= FITTED]
-    (jammed, exponent), (jammed_error, exponent_error) = fit_of(rows)
+    fractions, numbers = [r["fraction"] for r in rows], [number(r, "pairs") for r in rows]
+    found = propagated(numbers, lambda values: jammed_and_exponent(fractions, values), 100)
+    (jammed, exponent), (jammed_error, exponent_error) = found
     text = f"μ = 1, no noise: φ_J of η_r of pairs, φ = 0.4 to {FITTED:g}, less that at rest, 0.587 in print"
     yield Statement(text, "L 4.2.6", jammed - JAMMED_AT_REST, jammed_error, high=0, degrees=len(rows) - 2)
     yield Finding("μ = 1, no noise: its λ", "L 4.2.6", exponent, exponent_error, len(rows) - 2)
@@ -147,13 +119,12 @@ def between_rows(table):
     text = f"φ = {DENSE:g}, μ = 1: seeds that end at Pe = {LOWEST:g} (finite), of {NOISY_SEEDS}"
     yield Statement(text, "L 4.2.6", middle["seeds"] / NOISY_SEEDS, 0, 1)
     for peclet in (*SLOW_PECLET, 22, 1e4):
-        row = rows[peclet]
         text = f"φ = {DENSE:g}, μ = 1: η_r of pairs at Pe = {peclet:g} over that at {LOWEST:g}"
-        ratio = quotient(number(row, "pairs"), number(middle, "pairs"))
-        yield Statement(text, "L 4.2.6", *ratio, 1, degrees=row["seeds"] - 1)
-    (stiff,) = (r for r in table if r["stiffness"] == STIFF)
+        ratio = row_ratio(rows[peclet], middle, "pairs")
+        yield Statement(text, "L 4.2.6", *ratio, 1, degrees=rows[peclet]["seeds"] - 1)
+    stiff = first(table, stiffness=STIFF)
     text = f"φ = {DENSE:g}, μ = 1, Pe = 10⁴: η_r of pairs with four times k_n over that with k_n (jammed: above 1)"
-    yield Finding(text, "L 4.2.6", *quotient(number(stiff, "pairs"), number(rows[1e4], "pairs")), stiff["seeds"] - 1)
+    yield Finding(text, "L 4.2.6", *row_ratio(stiff, rows[1e4], "pairs"), stiff["seeds"] - 1)
     for peclet in (LOWEST, 22):
         text = f"φ = {DENSE:g}, μ = 1, Pe = {peclet:g}: contacts of a sphere that carries"
         yield Finding(text, "L 4.2.7", *number(rows[peclet], "contacts"), rows[peclet]["seeds"] - 1)
@@ -167,35 +138,29 @@ def judge():
 def draw():
     table = read_rows(HERE / "table.csv")
     figure = Figure(HERE / "chart.png", columns=3, size=(1400, 440))
-    ends = {"x_range": (0.38, 0.64), "y_range": (2, 2e4)}
-    panel = figure.panel("φ", "η_r of pairs, no noise", log="y", key="bottom right", **ends)
-    contacts = figure.panel(
-        "φ", "contacts of a sphere that carries", key="top left", x_range=(0.38, 0.64), y_range=(2, 7)
-    )
+    ends = {"x_range": (0.38, 0.64)}
+    panel = figure.panel("φ", "η_r of pairs, no noise", log="y", key="bottom right", y_range=(2, 2e4), **ends)
+    contacts = figure.panel("φ", "contacts of a sphere that carries", key="top left", y_range=(2, 7), **ends)
     for friction, colour in ((0, BLUE), (1, RED)):
         rows = without_noise(table, friction)
-        panel.points([(r["fraction"], *number(r, "pairs")) for r in rows], f"μ = {friction}", colour, 7, 0.9)
-        contacts.points([(r["fraction"], *number(r, "contacts")) for r in rows], f"μ = {friction}", colour, 7, 0.9)
+        panel.rows(rows, "fraction", "pairs", f"μ = {friction}", colour, 7, 0.9)
+        contacts.rows(rows, "fraction", "contacts", f"μ = {friction}", colour, 7, 0.9)
         contacts.level(PUBLISHED_CONTACTS[friction], None, colour, (0.38, 0.64), dash=2)
     panel.curve(lambda f: mari_fit(f, 1), "Mari fit (published), μ = 1", RED, (0.38, 0.57), dash=2)
     ends = {"x_range": (0.01, 3e4), "y_range": (10, 3e5)}
     panel = figure.panel("Pe", "η_r of pairs, μ = 1", f"φ = {DENSE:g}", log="xy", powers="xy", **ends)
-    panel.points([(r["peclet"], *number(r, "pairs")) for r in with_noise(table)], None, RED, 7, 0.9, joined=True)
+    panel.rows(with_noise(table), "peclet", "pairs", None, RED, 7, 0.9, joined=True)
     figure.draw()
 
 
 def quick_measure(program):
     small = {"particles": {"count": 100}}
     smooth, rough = (steady(program, f"quick-{m}", m, (f,), 6, small)[0] for m, f in ((0, 0.60), (1, 0.53)))
-    text = "μ = 1, φ = 0.53: η_r of pairs over the published fit of η_r"
-    ratio = rough["pairs"] / mari_fit(0.53, 1), rough["pairs_error"] / mari_fit(0.53, 1)
-    return [
-        Statement(
-            "μ = 0, φ = 0.60: contacts of a sphere that carries", "L 4.2.7", *number(smooth, "contacts"), 4, 7, 5
-        ),
-        Statement("μ = 1, φ = 0.53: the same", "L 4.2.7", *number(rough, "contacts"), 2, 5, 5),
-        Statement(text, "L 4.2.6", *ratio, 0.3, 1.5, 5),
-    ]
+    text = "μ = 0, φ = 0.60: contacts of a sphere that carries"
+    yield Statement(text, "L 4.2.7", *number(smooth, "contacts"), 4, 7, 5)
+    yield Statement("μ = 1, φ = 0.53: the same", "L 4.2.7", *number(rough, "contacts"), 2, 5, 5)
+    ratio = over(number(rough, "pairs"), mari_fit(0.53, 1))
+    yield Statement("μ = 1, φ = 0.53: η_r of pairs over the published fit of η_r", "L 4.2.6", *ratio, 0.3, 1.5, 5)
 
 
 main(HERE, TITLE, measure, quick_measure, judge, draw)

@@ -24,15 +24,8 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.estimates import student_quantile
-from studies.inhomogeneous import (
-    QUANTITIES,
-    bin_rows,
-    driving_of_scene,
-    growth,
-    profile_of,
-    symmetric_bin_rows,
-    waves_of,
-)
+from studies.inhomogeneous import QUANTITIES, bin_rows, driving_of_scene, growth, profile_of, symmetric_bin_rows
+from studies.inhomogeneous import waves_of
 from studies.learning import all_methods, columns_of_rows, left_out, open_model, relative_error, save_model, taken
 from studies.tables import columns_of, read_rows, write_table
 
@@ -218,9 +211,8 @@ def main():
         verb.add_argument("table")
         verb.add_argument("--inputs", nargs="+", required=True)
         verb.add_argument("--output", required=True)
-        if name == "train":
-            verb.add_argument("--method", default="gaussian process")
-            verb.add_argument("--model", required=True)
+    verbs.choices["train"].add_argument("--method", default="gaussian process")
+    verbs.choices["train"].add_argument("--model", required=True)
     verb = verbs.add_parser("predict")
     verb.add_argument("model")
     verb.add_argument("table")

@@ -2,10 +2,9 @@
 """Maps between local quantities of flows that vary along their gradient, learned from some and asked of others, beside
 what fitted laws and mechanics know (Li 2023, ch. 6, Figs 6.2 to 6.4).
 
-study.py BIN [FOLDER] [--quick] [--from-table]
-
 The bins are those of ../inhomogeneous-flow, which this study does not run again.
 """
+import functools
 import json
 import math
 import sys
@@ -14,42 +13,12 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import quotient
-from studies.figure import BLUE, GREEN, GREY, ORANGE, RED, Figure
-from studies.learned_maps import (
-    BALANCE,
-    BINS_FOLDER,
-    CANDIDATES,
-    CASES,
-    DEGREES,
-    ERRORS,
-    MAPS,
-    OTHER,
-    PUBLISHED,
-    SOLVED,
-    TRAINING,
-    UNSEEN,
-    all_numbers,
-    bins_by_flow,
-    error_rows,
-    solver_rows,
-    together,
-)
-from studies.learning import METHODS, LawOfFraction, all_methods, columns_of_rows, taken
-from studies.pages import rewrite_part
-from studies.tables import (
-    markdown_head,
-    markdown_row,
-    number,
-    number_text,
-    read_numbers,
-    read_rows,
-    write_numbers,
-    write_table,
-)
-from studies.verdicts import Check, Finding, Statement
-
+from studies.driver import BLUE, Check, Figure, Finding, GREEN, GREY, ORANGE, RED, Statement, groups, main
+from studies.driver import markdown_head, markdown_row, number, number_text, quotient, read_numbers, read_rows
+from studies.driver import rewrite_part, row_ratio, write_numbers, write_table
+from studies.learned_maps import BALANCE, BINS_FOLDER, CANDIDATES, CASES, DEGREES, ERRORS, MAPS, OTHER, PUBLISHED
+from studies.learned_maps import SOLVED, TRAINING, UNSEEN, all_numbers, bins_by_flow, error_rows, solver_rows, together
+from studies.learning import LawOfFraction, METHODS, all_methods, columns_of_rows, taken
 import numpy as np
 
 TITLE = "Learned rheology of flows that vary"
@@ -113,26 +82,21 @@ def baseline_rows(rows, distinct):
     """The learned method over the baseline, each that which is best with training flows left out."""
     for map_, output in CASES:
         (method, best), (base, its) = best_of(rows, map_, output), best_of(rows, map_, output, BASELINES)
-        ratio = quotient(number(best, "unseen"), number(its, "unseen"))
         text = f"{name_of(map_, output)}, flows never used: {method} over the best baseline, {base}"
-        yield Finding(text, "baselines", *ratio, DEGREES)
+        yield Finding(text, "baselines", *row_ratio(best, its, "unseen"), DEGREES)
     for output in ("fraction", "mu"):
         method, best = best_of(rows, 2, output)
-        ratio = quotient(number(distinct[2, output, method], "published"), number(best, "published"))
         text = f"{name_of(2, output)}: error of {method} with bins averaged over symmetries, over that"
-        yield Finding(text, "symmetries", *ratio, DEGREES)
+        yield Finding(text, "symmetries", *row_ratio(distinct[2, output, method], best, "published"), DEGREES)
 
 
-def rank_statements(rows):
-    best = [best_of(rows, *case)[0] for case in CASES]
-    text = "maps, of five, that XGBoost is best at with training flows left out"
-    yield Statement(text, "L 6.1.2", sum(name in TREES for name in best), 0, low=len(CASES), essential=False)
+def of_number(kind, numbers, name, text, source="L 6.2", **bounds):
+    *found, degrees = numbers[name]
+    return kind(text, source, *found, degrees=int(degrees), **bounds)
 
 
 def sentence_statements(numbers):
-    def of(name, text, source="L 6.2", **bounds):
-        value, error, degrees = numbers[name]
-        return Statement(text, source, value, error, degrees=int(degrees), **bounds)
+    of = functools.partial(of_number, Statement, numbers)
 
     text = "map 2, cube of sine: μ foretold less μ where the rate is below a tenth of its largest"
     yield of("signed where slow", text, "L6.3", high=0, essential=False)
@@ -140,8 +104,7 @@ def sentence_statements(numbers):
     for output in ("fraction", "mu"):
         text = f"{SYMBOLS[output]}: error of map 3 over that of map 2 (nearly identical)"
         yield of(f"map 3 over map 2, {output}", text, low=0.67, high=1.5)
-    text = "map 2, μ: error at φ ≥ 0.57 or L_y ≥ 120 over that of the tests"
-    yield of("beyond over within, mu", text, low=1)
+    yield of("beyond over within, mu", "map 2, μ: error at φ ≥ 0.57 or L_y ≥ 120 over that of the tests", low=1)
     for count in (25, 100, 300):
         text = f"map 1: error with {count} points of uniform flow added, over that without"
         yield of(f"uniform added, {count}", text, low=0.9)
@@ -157,16 +120,12 @@ def sentence_statements(numbers):
 
 
 def sentence_findings(numbers):
-    def of(name, text, source="L 6.2"):
-        value, error, degrees = numbers[name]
-        return Finding(text, source, value, error, int(degrees))
-
+    of = functools.partial(of_number, Finding, numbers)
     text = "map 1, cube of sine: rms error where the rate is below a tenth of its largest, over elsewhere"
     yield of("slow over fast", text, "L6.2")
     text = "map 2: μ foretold less μ there, with the slow bins of three more flows in the training"
     yield of("signed with more slow bins", text, "L6.3")
-    text = "map 2, φ_loc: error at φ ≥ 0.57 or L_y ≥ 120 over that of the tests"
-    yield of("beyond over within, fraction", text)
+    yield of("beyond over within, fraction", "map 2, φ_loc: error at φ ≥ 0.57 or L_y ≥ 120 over that of the tests")
     for output in ("fraction", "mu"):
         text = f"map 2, {SYMBOLS[output]}: error with tuned settings over that with defaults"
         yield of(f"tuned over default, {output}", text)
@@ -176,28 +135,21 @@ def sentence_findings(numbers):
 
 def other_rows(rows):
     words = {"friction": "with friction 0.5", "noise": "with noise at Pe = 10"}
+    row = rows[2, "mu", "published"]
     for flow in OTHER:
-        ratio = quotient(number(rows[2, "mu", "published"], flow), number(rows[2, "mu", "published"], "published"))
         text = f"map 2, μ: error in a flow {words[flow]}, over that of the tests"
-        yield Finding(text, "other physics", *ratio, DEGREES)
-
-
-def runtime_rows(rows):
-    slowest = max(rows[map_, output, "published"]["seconds"] for map_, output in CASES)
-    yield Statement("seconds of training and prediction, one core", "L 6.2", slowest, 0, high=1)
+        yield Finding(text, "other physics", *quotient(number(row, flow), number(row, "published")), DEGREES)
 
 
 def solved_profiles():
-    rows = {}
-    for row in read_rows(HERE / "profiles.csv"):
-        rows.setdefault(row["flow"], []).append(row)
-    return {flow: columns_of_rows(of, SOLVED[1:]) for flow, of in rows.items()}
+    return {
+        f: columns_of_rows(rows, SOLVED[1:]) for f, rows in groups(read_rows(HERE / "profiles.csv"), "flow").items()
+    }
 
 
 def solver_judged(numbers):
-    value, error, degrees = numbers["momentum"]
     text = "σ_xy as the integral of the drag, four flows: rms of the difference, relative"
-    yield Check(text, "momentum", value, error, high=0.05, degrees=int(degrees))
+    yield of_number(Check, numbers, "momentum", text, "momentum", high=0.05)
     solved = solved_profiles()
     for flow, table in solved.items():
         amplitude = np.max(np.abs(table["driving"]))
@@ -214,9 +166,12 @@ def solver_judged(numbers):
 def judge():
     rows, numbers = read_errors("errors.csv"), read_numbers(HERE / "numbers.csv")
     yield from error_statements(rows)
-    yield from rank_statements(rows)
+    best = [best_of(rows, *case)[0] for case in CASES]
+    text = "maps, of five, that XGBoost is best at with training flows left out"
+    yield Statement(text, "L 6.1.2", sum(name in TREES for name in best), 0, low=len(CASES), essential=False)
     yield from sentence_statements(numbers)
-    yield from runtime_rows(rows)
+    slowest = max(rows[*case, "published"]["seconds"] for case in CASES)
+    yield Statement("seconds of training and prediction, one core", "L 6.2", slowest, 0, high=1)
     yield from floor_rows(rows)
     yield from sentence_findings(numbers)
     yield from baseline_rows(rows, read_errors("errors_of_distinct_bins.csv"))

@@ -1,34 +1,19 @@
 #!/usr/bin/python3
-"""Viscosities beside published fits, without noise, and with noise and friction for two outer gaps of lubrication.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+"""Viscosities beside published fits, without noise, and with noise and friction for two outer gaps of lubrication."""
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import difference, over, propagated, quotient
-from studies.figure import BLUE, GREEN, RED, Figure
-from studies.fits import jammed_and_exponent, log_minimum
-from studies.published import mari_fit
-from studies.scenes import REFERENCE_SCENE, TABLE_SCENE, during, merged
-from studies.tables import columns_of, entries, number, read_rows, write_table
-from studies.verdicts import Check, Finding, Statement
-from studies.viscosities import viscosity_row
+from studies.driver import BLUE, Check, Figure, Finding, GREEN, RED, REFERENCE_SCENE, Statement, TABLE_SCENE, difference
+from studies.driver import entries, first, in_strains, jammed_and_exponent, log_minimum, main, mari_fit, merged, number
+from studies.driver import over, propagated, quotient, read_rows, row_ratio, where, write_table
 
 TITLE = "Published viscosities, and the outer gap"
 GAPS = (0.05, 0.2, 0.5)
 FRACTIONS = {0: (0.30, 0.40, 0.45, 0.50, 0.55), 1: (0.30, 0.40, 0.45, 0.50, 0.53)}
 STEADY = merged(
-    REFERENCE_SCENE,
-    {
-        "particles": {"count": 500},
-        "flow": {"shear_rate": 0.05},
-        "contact": {"friction": 0},
-        **during({"strain": 2}, {"strain": 5}),
-    },
+    REFERENCE_SCENE, in_strains(2, 5), particles={"count": 500}, flow={"shear_rate": 0.05}, contact={"friction": 0}
 )
 SEEDS = 8
 # With more seeds: these lie near the bound of 0.9.
@@ -44,36 +29,32 @@ VARIANT_SEEDS = 6
 EXPLICIT = {"integrator": {"method": "explicit"}, "duration": {"production": {"strain": 3}}}
 
 PECLET = (1, 4.6, 22, 100, 460, 2200, 1e4)
-NOISY = merged(TABLE_SCENE, {"contact": {"friction": 1}, "duration": {"production": {"strain": 3}}})
+NOISY = merged(TABLE_SCENE, contact={"friction": 1}, duration={"production": {"strain": 3}})
 NOISY_SEEDS = 8
 NOISY_FRACTIONS, NOISY_GAPS = (0.45, 0.50), (0.05, 0.5)
 
 
 def steady(program, name, cases, seeds, patch=None):
     """Rows of (fraction, friction, gap) without noise."""
-    settings = [{"/volume_fraction": f, "/contact/friction": m, "/lubrication/outer_gap": g} for f, m, g in cases]
-    points = program.run(name, merged(STEADY, patch or {}), settings, seeds)
-    rows = []
-    for (fraction, friction, gap), point in zip(cases, points):
-        published = mari_fit(fraction, friction)
-        row = {"fraction": fraction, "friction": friction, "gap": gap, "fit": published}
-        row |= viscosity_row(point, "first_normal_difference", "second_normal_difference")
+    pointers = {"fraction": "/volume_fraction", "friction": "/contact/friction", "gap": "/lubrication/outer_gap"}
+    others = "first_normal_difference", "second_normal_difference"
+    rows = program.rows(name, merged(STEADY, patch or {}), pointers, cases, seeds, *others)
+    for row in rows:
+        row["fit"] = mari_fit(row["fraction"], row["friction"])
         for of in ("viscosity", "pairs"):
-            row |= entries(f"{of}_over_fit", over(number(row, of), published))
-        rows.append(row)
+            row |= entries(f"{of}_over_fit", over(number(row, of), row["fit"]))
     return rows
 
 
 def noisy(program):
-    """Rows of (volume fraction, outer gap, Peclet number) with friction."""
+    """Returns rows of (volume fraction, outer gap, Peclet number) with friction."""
     cases = [(f, g, p) for f in NOISY_FRACTIONS for g in NOISY_GAPS for p in PECLET]
-    settings = [{"/volume_fraction": f, "/lubrication/outer_gap": g, "/peclet": p} for f, g, p in cases]
-    points = program.run("noisy", NOISY, settings, NOISY_SEEDS)
-    return [dict(zip(("fraction", "gap", "peclet"), c)) | viscosity_row(p) for c, p in zip(cases, points)]
+    pointers = {"fraction": "/volume_fraction", "gap": "/lubrication/outer_gap", "peclet": "/peclet"}
+    return program.rows("noisy", NOISY, pointers, cases, NOISY_SEEDS)
 
 
 def curve_of(rows, fraction, gap):
-    return sorted((r for r in rows if r["fraction"] == fraction and r["gap"] == gap), key=lambda r: r["peclet"])
+    return sorted(where(rows, fraction=fraction, gap=gap), key=lambda r: r["peclet"])
 
 
 def noisy_rows(rows):
@@ -96,8 +77,7 @@ def noisy_rows(rows):
         factors = [quotient(wide, narrow) for narrow, wide in zip(*curves)]
         text = f"{name}: smallest factor over all Pe from outer gap 0.05 to 0.5: it depends quantitatively"
         yield Statement(text, "L4.7", *min(factors), low=1, degrees=degrees)
-        text = f"{name}: largest factor over all Pe from outer gap 0.05 to 0.5"
-        yield Finding(text, "L4.7", *max(factors), degrees)
+        yield Finding(f"{name}: largest factor over all Pe from outer gap 0.05 to 0.5", "L4.7", *max(factors), degrees)
 
 
 def steady_rows(rows):
@@ -128,25 +108,13 @@ def jamming_rows(rows):
 
 def judge():
     table, curves = read_rows(HERE / "table.csv"), read_rows(HERE / "peclet.csv")
-    rows = [r for r in table if r["method"] == "implicit"]
+    rows = where(table, method="implicit")
     yield from noisy_rows(curves)
     yield from steady_rows(rows)
     yield from jamming_rows(rows)
-    (explicit,) = (r for r in table if r["method"] == "explicit")
-    implicit = next(r for r in rows if (r["fraction"], r["friction"], r["gap"]) == (0.45, 1, 0.05))
-    ratio = quotient(number(implicit, "viscosity"), number(explicit, "viscosity"))
+    explicit, implicit = first(table, method="explicit"), first(rows, fraction=0.45, friction=1, gap=0.05)
     text = "φ = 0.45, μ = 1, no noise: implicit steps over explicit ones"
-    yield Check(text, "method", *ratio, 0.9, 1.1, explicit["seeds"] - 1)
-
-
-def write_tables(table, curves):
-    names = ["method", "fraction", "friction", "gap", "seeds", "lost", "transient"]
-    names += columns_of("viscosity", "pairs", "lubrication", "contact")
-    names += columns_of("first_normal_difference", "second_normal_difference")
-    write_table(HERE / "table.csv", [*names, "fit", *columns_of("viscosity_over_fit", "pairs_over_fit")], table, 4)
-    names = ["fraction", "gap", "peclet", "seeds", "lost", "transient"]
-    names += columns_of("viscosity", "pairs", "lubrication", "contact", "structural")
-    write_table(HERE / "peclet.csv", names, curves, 4)
+    yield Check(text, "method", *row_ratio(implicit, explicit, "viscosity"), 0.9, 1.1, explicit["seeds"] - 1)
 
 
 def measure(program):
@@ -159,8 +127,12 @@ def measure(program):
     for k, (name, patch) in enumerate(VARIANTS.items()):
         (row,) = steady(program, f"variant-{k}", [(0.5, 1, 0.05)], VARIANT_SEEDS, patch)
         table.append({"method": name, **row})
+    names = "method, fraction, friction, gap, seeds, lost, transient, viscosity±, pairs±, lubrication±, contact±, "
+    names += "first_normal_difference±, second_normal_difference±, fit, viscosity_over_fit±, pairs_over_fit±"
+    write_table(HERE / "table.csv", names, table, 4)
     curves = noisy(program)
-    write_tables(table, curves)
+    names = "fraction, gap, peclet, seeds, lost, transient, viscosity±, pairs±, lubrication±, contact±, structural±"
+    write_table(HERE / "peclet.csv", names, curves, 4)
     draw(rows.values(), curves)
 
 
@@ -170,37 +142,40 @@ def draw(rows, curves):
     ends = {"x_range": (0.28, 0.57), "y_range": (2, 1000)}
     panel = figure.panel("φ", "η_r = σ / (η γ̇)", log="y", key="top left", **ends)
     for friction, dash in ((0, 2), (1, 1)):
-        panel.curve(
-            lambda phi, friction=friction: mari_fit(phi, friction),
-            f"Mari fit, μ = {friction}",
-            span=(0.28, 0.56),
-            dash=dash,
-        )
+        title = f"Mari fit, μ = {friction}"
+        panel.curve(lambda phi, m=friction: mari_fit(phi, m), title, span=(0.28, 0.56), dash=dash)
     for friction in (0, 1):
         for gap in GAPS:
-            chosen = [r for r in rows if (r["friction"], r["gap"]) == (friction, gap)]
+            chosen = where(rows, friction=friction, gap=gap)
             points = [(r["fraction"], *number(r, "viscosity")) for r in chosen]
             if points:
-                title = f"μ = {friction}, outer gap {gap}"
-                panel.points(points, title, colours[gap], 7 if friction else 6, 0.8)
+                panel.points(points, f"μ = {friction}, outer gap {gap}", colours[gap], 7 if friction else 6, 0.8)
     ends = {"x_range": (0.1, 3e4), "y_range": (2, 150)}
     panel = figure.panel("Pe", "η_r of pairs, μ = 1", log="xy", powers="x", key="top left", **ends)
     for fraction, mark in zip(NOISY_FRACTIONS, (6, 7)):
         for gap in NOISY_GAPS:
-            points = [(r["peclet"], *number(r, "pairs")) for r in curve_of(curves, fraction, gap)]
-            panel.points(points, f"φ = {fraction:g}, outer gap {gap}", colours[gap], mark, 0.8, joined=True)
+            panel.rows(
+                curve_of(curves, fraction, gap),
+                "peclet",
+                "pairs",
+                f"φ = {fraction:g}, outer gap {gap}",
+                colours[gap],
+                mark,
+                0.8,
+                joined=True,
+            )
     figure.draw()
 
 
 def quick_measure(program):
     cases = [(0.45, 0, 0.05), (0.40, 1, 0.05), (0.45, 0, 0.5)]
-    small = {"particles": {"count": 200}, **during({"strain": 1}, {"strain": 4})}
+    small = {"particles": {"count": 200}, **in_strains(1, 4)}
     *narrow, wide = steady(program, "quick", cases, 8, small)
     for row in narrow:
         text = f"φ = {row['fraction']:g}, μ = {row['friction']}: η_r over the fit"
         yield Check(text, "Mari fit", *number(row, "viscosity_over_fit"), 0.8, 1.2, row["seeds"] - 1)
     text = "φ = 0.45, μ = 0: η_r of pairs at outer gap 0.5 over that at 0.05"
-    yield Statement(text, "L4.7", *quotient(number(wide, "pairs"), number(narrow[0], "pairs")), 1.1, 1.8, 7)
+    yield Statement(text, "L4.7", *row_ratio(wide, narrow[0], "pairs"), 1.1, 1.8, 7)
 
 
 main(HERE, TITLE, measure, quick_measure, judge)

@@ -1,42 +1,30 @@
 #!/usr/bin/python3
-"""Where neighbours are in the plane of flow and gradient, from weak to strong flow.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+"""Where neighbours are in the plane of flow and gradient, from weak to strong flow."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import difference, estimate, over, propagated, quotient
-from studies.figure import BLUE, GREEN, RED, Figure
-from studies.scenes import REFERENCE_SCENE, at_peclet, during, merged
-from studies.tables import entries, number, read_numbers, read_rows, write_numbers, write_table
-from studies.verdicts import Check, Finding, Statement
-
+from studies.driver import BLUE, Check, Figure, Finding, GREEN, RED, REFERENCE_SCENE, Statement, at_peclet, difference
+from studies.driver import entries, estimate, in_brownian_times, in_strains, main, merged, number, over, propagated
+from studies.driver import quotient, read_numbers, read_rows, row_ratio, where, write_numbers, write_rows
 import numpy as np
 
 TITLE = "Microstructure in the flow"
 FRACTION, BIN = 0.5, 0.05
 SCENE = merged(
     REFERENCE_SCENE,
-    {
-        "particles": {"count": 500},
-        "volume_fraction": FRACTION,
-        "observables": ["stress", "pair_distribution"],
-        "pair_distribution": {"range": 5, "bin": BIN, "slab": 0.1},
-    },
+    particles={"count": 500},
+    volume_fraction=FRACTION,
+    observables=["stress", "pair_distribution"],
+    pair_distribution={"range": 5, "bin": BIN, "slab": 0.1},
 )
 RINGS = (2.0, 2.4, 2.8)  # distances at which two small spheres touch, a small and a large one, two large ones
-BROWNIAN = during({"brownian_times": 40}, {"brownian_times": 20})
-SHEARED = during({"strain": 2}, {"strain": 6})
+BROWNIAN = in_brownian_times(40, 20)
+SHEARED = in_strains(2, 6)
 RUNS = ((0.01, 32, BROWNIAN), (1, 48, BROWNIAN), (1e4, 64, SHEARED))
-QUICK_RUNS = (
-    (0.01, 16, during({"brownian_times": 4}, {"brownian_times": 8})),
-    (1e4, 16, during({"strain": 1}, {"strain": 8})),
-)
+QUICK_RUNS = ((0.01, 16, in_brownian_times(4, 8)), (1e4, 16, in_strains(1, 8)))
 SECTORS = 12  # of the angle from the flow to minus it
 MAP_COLOURS = {0: "#ffffff", 0.5: "#c8daf0", 1: "#7fb0d8", 2: "#2060b0", 4: "#301860", 8: "#100020"}
 
@@ -103,7 +91,7 @@ class Structure:
 
 
 def point_of(program, number, seeds, duration, patch=None, name=None):
-    scene = merged(SCENE, {**at_peclet(number), **duration, **(patch or {})})
+    scene = merged(SCENE, at_peclet(number), duration, patch or {})
     return Structure(program.run(name or f"microstructure-{number:g}", scene, [{"/peclet": number}], seeds)[0])
 
 
@@ -116,7 +104,7 @@ def sharpness_rows(found, degrees):
     for ring in RINGS:
         for peclet in (strong, *between):
             text = f"ring at {ring:g} a: sharpness at Pe = {peclet:g} over that at {weak:g}"
-            ratio = quotient(*(number(found[p][ring], "sharpness") for p in (peclet, weak)))
+            ratio = row_ratio(found[peclet][ring], found[weak][ring], "sharpness")
             yield Statement(text, "L4.8", *ratio, 1, degrees=degrees)
 
 
@@ -142,17 +130,16 @@ def anisotropy_rows(found, sectors, degrees):
         name = f"ring at {ring:g} a"
         text = f"{name}, Pe = {weak:g}: compressive less extensional quadrant over their sum: isotropic"
         yield Statement(text, "L4.8", *number(found[weak][ring], "anisotropy"), -0.05, 0.05, degrees)
-        varied = {p: variation([r for r in sectors if (r["peclet"], r["distance"]) == (p, ring)]) for p in peclets}
+        varied = {p: variation(where(sectors, peclet=p, distance=ring)) for p in peclets}
         for low, high in zip(peclets, peclets[1:]):
             text = f"{name}: relative rms of g over the angle, at Pe = {high:g} less that at {low:g}: anisotropy grows"
             yield Statement(text, "L4.8", *difference(varied[high], varied[low]), 0, degrees=degrees)
     for ring in RINGS[:2]:
         for low, high in zip(peclets, peclets[1:]):
             for quantity, words in (("difference", "g"), ("anisotropy", "quadrant over their sum")):
-                text = (
-                    f"ring at {ring:g} a: compressive less extensional {words}, at Pe = {high:g} less that at {low:g}"
-                )
                 risen = difference(*(number(found[p][ring], quantity) for p in (high, low)))
+                ends = f"at Pe = {high:g} less that at {low:g}"
+                text = f"ring at {ring:g} a: compressive less extensional {words}, {ends}"
                 yield Finding(text, "quadrants", *risen, degrees)
 
 
@@ -169,8 +156,7 @@ def touching(structure):
 
 def method_row(peclet, implicit, explicit):
     text = f"Pe = {peclet}: ring at 2 a by implicit steps over that by explicit ones"
-    ratio = quotient(number(implicit, "height"), number(explicit, "height"))
-    return Check(text, "method", *ratio, 0.9, 1.1, explicit["seeds"] - 1)
+    return Check(text, "method", *row_ratio(implicit, explicit, "height"), 0.9, 1.1, explicit["seeds"] - 1)
 
 
 def judge():
@@ -180,8 +166,8 @@ def judge():
     degrees = min(r["seeds"] for rings in found.values() for r in rings.values()) - 1
     yield from sharpness_rows(found, degrees)
     yield from anisotropy_rows(found, sectors, degrees)
-    value, error, seeds = read_numbers(HERE / "numbers.csv")[TOUCHING]
-    yield Check(TOUCHING, "Mansoori et al.", value, error, 0.8, 1, seeds)
+    *value, degrees = read_numbers(HERE / "numbers.csv")[TOUCHING]
+    yield Check(TOUCHING, "Mansoori et al.", *value, 0.8, 1, degrees)
     yield method_row("10^4", of["implicit", 1e4, 2], of["explicit", 1e4, 2])
     short = (of[f"{method}, 10 Brownian times", 0.01, 2] for method in ("implicit", "explicit"))
     yield method_row("0.01", *short)
@@ -195,20 +181,8 @@ def ring_rows(method, peclet, structure):
         yield row
 
 
-def radial_rows(structures):
-    for peclet, structure in structures.items():
-        for r, values in zip(structure.distance.tolist(), (structure.counts / structure.ideal).T):
-            mean, error = estimate(values)
-            yield {"peclet": peclet, "distance": r, "g": mean, "standard_error": error}
-
-
-def sector_rows(structures):
-    for peclet, structure in structures.items():
-        for ring in RINGS:
-            for k, values in enumerate(structure.sectors(ring, SECTORS).T):
-                mean, error = estimate(values)
-                place = {"peclet": peclet, "distance": ring, "from_degrees": 180 * k / SECTORS}
-                yield {**place, "g": mean, "standard_error": error}
+def row_of_g(values, **place):
+    return place | dict(zip(("g", "standard_error"), estimate(values)))
 
 
 def measure(program):
@@ -216,16 +190,23 @@ def measure(program):
     explicit = {"integrator": {"method": "explicit"}}
     strong = point_of(program, 1e4, 4, SHEARED, explicit, "microstructure-explicit-10000")
     # Explicit steps do not reach equilibrium here; both methods from the same packings over the same time.
-    short = during({"brownian_times": 5}, {"brownian_times": 5})
+    short = in_brownian_times(5, 5)
     weak = point_of(program, 0.01, 8, short, explicit, "microstructure-explicit-0.01")
     weak_implicit = point_of(program, 0.01, 16, short, None, "microstructure-short-0.01")
-    table = [row for peclet, structure in structures.items() for row in ring_rows("implicit", peclet, structure)]
+    table, radial, sectors = [], [], []
+    for peclet, structure in structures.items():
+        table += ring_rows("implicit", peclet, structure)
+        shells = zip(structure.distance.tolist(), (structure.counts / structure.ideal).T)
+        radial += [row_of_g(values, peclet=peclet, distance=r) for r, values in shells]
+        for ring in RINGS:
+            for k, values in enumerate(structure.sectors(ring, SECTORS).T):
+                place = {"peclet": peclet, "distance": ring, "from_degrees": 180 * k / SECTORS}
+                sectors.append(row_of_g(values, **place))
     table += ring_rows("explicit", 1e4, strong)
     table += ring_rows("explicit, 10 Brownian times", 0.01, weak)
     table += ring_rows("implicit, 10 Brownian times", 0.01, weak_implicit)
-    radial, sectors = [*radial_rows(structures)], [*sector_rows(structures)]
     for name, rows in (("table", table), ("radial", radial), ("sectors", sectors)):
-        write_table(HERE / f"{name}.csv", list(rows[0]), rows, 5)
+        write_rows(HERE / f"{name}.csv", rows, 5)
     draw(structures, radial)
     write_numbers(HERE / "numbers.csv", {TOUCHING: touching(structures[0.01])})
 
@@ -262,17 +243,13 @@ def quick_measure(program):
     small = {"particles": {"count": 200}, "pair_distribution": {"range": 4}}
     weak, strong = (point_of(program, *run, small).rings()[2.0] for run in QUICK_RUNS)
     sharper = quotient(strong["sharpness"], weak["sharpness"])
+    yield Statement("ring at 2 a: sharpness at Pe = 10^4 over that at 0.01", "L4.8", *sharper, 2, degrees=15)
     height = over(weak["height"], 0.5 * contact_value(FRACTION))
-    text = (
-        "Pe = 0.01: height of the ring at 2 a over that of hard spheres in contact at rest, half of it within contact"
-    )
-    even = "ring at 2 a, Pe = 0.01: compressive less extensional quadrant over their sum"
-    return [
-        Statement("ring at 2 a: sharpness at Pe = 10^4 over that at 0.01", "L4.8", *sharper, 2, degrees=15),
-        Statement(text, "Mansoori et al.", *height, 0.6, 1.6, 15),
-        Statement(even, "L4.8", *weak["anisotropy"], -0.2, 0.2, 15),
-        Statement("ring at 2 a, Pe = 10^4: the same", "L4.8", *strong["anisotropy"], 0.05, 0.8, 15),
-    ]
+    text = "Pe = 0.01: height of the ring at 2 a over that of hard spheres in contact at rest"
+    yield Statement(f"{text}, half of it within contact", "Mansoori et al.", *height, 0.6, 1.6, 15)
+    text = "ring at 2 a, Pe = 0.01: compressive less extensional quadrant over their sum"
+    yield Statement(text, "L4.8", *weak["anisotropy"], -0.2, 0.2, 15)
+    yield Statement("ring at 2 a, Pe = 10^4: the same", "L4.8", *strong["anisotropy"], 0.05, 0.8, 15)
 
 
 main(HERE, TITLE, measure, quick_measure, judge)

@@ -1,26 +1,17 @@
 #!/usr/bin/python3
 """The jamming map of colloids and grains: the volume fraction at which mixtures of radii 1, 1.4, 5 and 7 jam, over the
-share of grains and the Peclet number of the mean radius, found by bisection (Li 2023, Figs 5.4, 5.5 and 5.6).
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+share of grains and the Peclet number of the mean radius, found by bisection (Li 2023, Figs 5.4, 5.5 and 5.6)."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
 from studies.compositions import ALIKE, ALIKE_NOISE, DENSITY, MIXTURE_SCENE, NOISE, STIFFNESS, THERMAL_ENERGY
-from studies.compositions import composition_row, mean_peclet, packing_models, setting_of, windows
-from studies.estimates import difference, over, place_of_largest, propagated, quotient
-from studies.figure import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, RED, Figure
-from studies.hours import Hours
-from studies.scenes import merged
-from studies.tables import columns_of, number, read_numbers, read_rows, write_numbers, write_table
-from studies.verdicts import Check, Statement
-from studies.viscosities import viscosity_row
-
+from studies.compositions import composition_row, draw_models, from_nearer_model, mean_peclet, setting_of, windows
+from studies.driver import BLACK, BLUE, Check, Figure, GREEN, GREY, Hours, ORANGE, PURPLE, RED, Statement, difference
+from studies.driver import entries, first, main, merged, number, over, place_of_largest, propagated, quotient
+from studies.driver import read_numbers, read_rows, row_ratio, viscosity_row, write_numbers, write_rows, write_table
 import numpy as np
 
 TITLE = "The jamming map of colloids and grains"
@@ -70,8 +61,8 @@ def colloids_peclet(row, alpha):
 def first_fractions(row, alpha):
     if row in ALONE and alpha in (0, 1):
         return list(ALONE[row])
-    start = START[SMOOTH if row == SMOOTH else ROUGH][alpha]
-    found = [round(start + d, 4) for d in (SLOWER if row in (10, FIXED) else ABOUT)]
+    steps = SLOWER if row in (10, FIXED) else ABOUT
+    found = [round(START[SMOOTH if row == SMOOTH else ROUGH][alpha] + step, 4) for step in steps]
     # One that both shares have: else the share would follow from the volume fraction, as along a line of addition.
     return found + [COMMON] if row == FIXED and COMMON not in found else found
 
@@ -81,9 +72,7 @@ def bracket(points):
     more jam, or contacts are soft; None for what there is none of."""
     hard = (p for p in points if p["state"] in ("flowing", "partly jammed") and p["overlap"] <= SOFTEST)
     flowing = max((p["fraction"] for p in hard), default=None)
-    tried = (p["fraction"] for p in points if p["seeds"])
-    beyond = (fraction for fraction in tried if fraction > (flowing or 0))
-    return flowing, min(beyond, default=None)
+    return flowing, min((p["fraction"] for p in points if p["seeds"] and p["fraction"] > (flowing or 0)), default=None)
 
 
 def next_fraction(fractions, flowing, stuck):
@@ -103,79 +92,58 @@ def curves_of(program, name, only=None):
 
 
 def search(program, hours, row, shares):
-    """Rows of the table and of the map: rounds of runs, each between what flows and what does not in the one before."""
-    name = str(row)
-    scene = merged(SCENE if row in (SMOOTH, ROUGH) else NOISY, {"contact": {"friction": 0 if row == SMOOTH else 1}})
+    """Returns rows of the table and of the map: rounds of runs, each between what flows and what does not in the one
+    before."""
     fractions = {alpha: first_fractions(row, alpha) for alpha in shares}
     for turn in range(ROUNDS):
         cases = [(alpha, fraction) for alpha in shares for fraction in fractions[alpha]]
-        settings = [setting(alpha, fraction, row) for alpha, fraction in cases]
-        if turn == 0:
-            hours.plan(name, scene, settings)
-        points = program.run(name, scene, settings, SEEDS)
-        if turn == 0:
-            hours.add(points)
-        curves = curves_of(program, name, shares[0])
+        rows, curves = run_row(program, row, cases, hours if turn == 0 else None)
         brackets = {alpha: bracket(curve["points"]) for alpha, curve in curves.items()}
         more = {alpha: next_fraction(fractions[alpha], *brackets[alpha]) for alpha in shares}
         if not any(more.values()):
             break
         for alpha, fraction in more.items():
             fractions[alpha] += [fraction] if fraction else []
-    rows = rows_of(row, cases, points, curves)
     return rows, [map_entry(row, alpha, brackets[alpha]) for alpha in shares]
 
 
-def slow_rows(program):
-    settings = [setting(alpha, fraction, SLOW) for alpha, fraction in SLOW_CASES]
-    points = program.run(SLOW, merged(NOISY, {"contact": {"friction": 1}}), settings, SEEDS)
-    return rows_of(SLOW, SLOW_CASES, points, curves_of(program, SLOW, 1))
-
-
-def rows_of(row, cases, points, curves):
-    states = {(alpha, p["fraction"]): p["state"] for alpha, curve in curves.items() for p in curve["points"]}
-    return [
-        {
-            "row": row,
-            **composition_row(setting(alpha, fraction, row)),
-            "peclet": colloids_peclet(row, alpha),
-            "state": states[alpha, fraction],
-            **viscosity_row(point, "mean_overlap", "contacts_per_particle"),
-        }
-        for (alpha, fraction), point in zip(cases, points)
-    ]
+def run_row(program, row, cases, hours=None):
+    """Runs (share of grains, volume fraction) of a row of the map; returns rows of the table, and curves_of()."""
+    scene = merged(SCENE if row in (SMOOTH, ROUGH) else NOISY, contact={"friction": 0 if row == SMOOTH else 1})
+    settings = [setting(alpha, fraction, row) for alpha, fraction in cases]
+    if hours:
+        hours.plan(str(row), scene, settings)
+    points = program.run(str(row), scene, settings, SEEDS)
+    if hours:
+        hours.add(points)
+    curves, rows = curves_of(program, str(row), cases[0][0]), []
+    for (alpha, fraction), one, point in zip(cases, settings, points):
+        state = first(curves[alpha]["points"], fraction=fraction)["state"]
+        found = {"row": row, **composition_row(one), "peclet": colloids_peclet(row, alpha), "state": state}
+        rows.append(found | viscosity_row(point, "mean_overlap", "contacts_per_particle"))
+    return rows, curves
 
 
 def map_entry(row, alpha, bracket):
     flowing, stuck = (math.nan if x is None else x for x in bracket)
     peclet = colloids_peclet(row, alpha)
-    return {
-        "row": row,
-        "alpha": alpha,
-        "peclet": peclet,
-        "mean peclet": mean_peclet(alpha, peclet),
-        "flowing": flowing,
-        "stuck": stuck,
-        "jammed": (flowing + stuck) / 2,
-        "jammed_error": abs(stuck - flowing) / math.sqrt(12),
-    }
-
-
-MAP = ["row", "alpha", "peclet", "mean peclet", "flowing", "stuck", *columns_of("jammed")]
+    found = {"row": row, "alpha": alpha, "peclet": peclet, "mean peclet": mean_peclet(alpha, peclet)}
+    jammed = (flowing + stuck) / 2, abs(stuck - flowing) / math.sqrt(12)
+    return found | {"flowing": flowing, "stuck": stuck, **entries("jammed", jammed)}
 
 
 def measure(program):
-    rows, entries, hours = [], [], Hours(program, SEEDS)
+    table, jams, hours = [], [], Hours(program, SEEDS)
     everything = {SMOOTH: (*COUNTS,), ROUGH: (*COUNTS,), **NOISY_ROWS, FIXED: FIXED_SHARES}
     for row, shares in everything.items():
-        found = search(program, hours, row, shares)
-        rows += found[0]
-        entries += found[1]
-    rows += slow_rows(program)
-    names = ["row", "alpha", "fraction", "peclet", "count", "grains", "state", "seeds", "lost", "transient"]
-    names += columns_of("viscosity", "pairs", "lubrication", "contact", "mean_overlap", "contacts_per_particle")
-    write_table(HERE / "table.csv", names, rows, 5)
-    write_table(HERE / "map.csv", MAP, entries, 6)
+        rows, found = search(program, hours, row, shares)
+        table += rows
+        jams += found
+    table += run_row(program, SLOW, SLOW_CASES)[0]
+    names = "row, alpha, fraction, peclet, count, grains, state, seeds, lost, transient, viscosity±, pairs±, "
+    names += "lubrication±, contact±, mean_overlap±, contacts_per_particle±"
+    write_table(HERE / "table.csv", names, table, 5)
+    write_rows(HERE / "map.csv", jams, 6)
     write_numbers(HERE / "numbers.csv", hours.numbers())
 
 
@@ -193,8 +161,8 @@ class Map:
     def jammed(self, row, alpha):
         return number(self._entries[self.name(row), alpha], "jammed")
 
-    def entry(self, row, alpha):
-        return self._entries[self.name(row), alpha]
+    def shift(self, row, other, alpha):
+        return difference(self.jammed(row, alpha), self.jammed(other, alpha))
 
     def shares(self, row):
         return sorted(alpha for name, alpha in self._entries if name == self.name(row))
@@ -204,8 +172,10 @@ class Map:
         return sorted(here, key=lambda r: r["fraction"])
 
     def viscosity(self, row, alpha, fraction):
-        (found,) = [r for r in self.curve(row, alpha) if r["fraction"] == fraction]
-        return number(found, "viscosity")
+        return number(first(self.curve(row, alpha), fraction=fraction), "viscosity")
+
+    def ratio(self, row, other, alpha, fraction):
+        return quotient(self.viscosity(row, alpha, fraction), self.viscosity(other, alpha, fraction))
 
     def flowing(self, row, alpha):
         return [r["fraction"] for r in self.curve(row, alpha) if r["state"] == "flowing"]
@@ -214,64 +184,51 @@ class Map:
         """Of the viscosity between neighbours that are no further apart than 0.01; infinite to what is jammed."""
         curve = self.curve(row, alpha)
         near = [(a, b) for a, b in zip(curve, curve[1:]) if b["fraction"] - a["fraction"] < 0.0101 and a["seeds"]]
-        steps = [
-            quotient(number(b, "viscosity"), number(a, "viscosity")) if b["seeds"] else (math.inf, 0.0) for a, b in near
-        ]
-        return max(steps)
+        return max(row_ratio(b, a, "viscosity") if b["seeds"] else (math.inf, 0.0) for a, b in near)
 
 
 DEGREES = SEEDS - 1
-
-
-def name_of_row(row):
-    return f"Pe_cg = {row:g}"
+# Rows, where either group alone jams by the packing models, and names.
+NAMES = {SMOOTH: (0.64, "μ = 0, no noise"), ROUGH: (0.57, "no noise"), 100: (0.57, "Pe_cg = 100")}
 
 
 def rows_of_curves(jams):
     """Fig. 5.4 a: viscosities of one share of grains, and of colloids alone."""
     both = max(set(jams.flowing(ROUGH, 0.4)) & set(jams.flowing(100, 0.4)))
-    ratio = quotient(jams.viscosity(100, 0.4, both), jams.viscosity(ROUGH, 0.4, both))
     text = f"α = 0.4, φ = {both:g}, the densest that flows in both: η_r at Pe_cg = 100 over that without noise"
-    yield Statement(text, "L5.4a", *ratio, high=1 / 3, degrees=DEGREES)
-    shift = difference(jams.jammed(100, 0.4), jams.jammed(ROUGH, 0.4))
+    yield Statement(text, "L5.4a", *jams.ratio(100, ROUGH, 0.4, both), high=1 / 3, degrees=DEGREES)
+    shift = jams.shift(100, ROUGH, 0.4)
     yield Statement("α = 0.4: φ_m at Pe_cg = 100 less that without noise", "L5.4a", *shift, -0.01, 0.01)
     text = "α = 0.4: largest factor of η_r within Δφ = 0.01,"
     yield Statement(f"{text} Pe_cg = 100", "L5.4a", *jams.largest_jump(100, 0.4), 5, degrees=DEGREES)
     yield Statement(f"{text} without noise", "L5.4a", *jams.largest_jump(ROUGH, 0.4), high=5, degrees=DEGREES)
     for alpha, rows in ((0, (100, 10, 1, 0.1)), (0.4, (100, 10))):
         for fast, slow in zip(rows, rows[1:]):
-            rise = difference(jams.jammed(slow, alpha), jams.jammed(fast, alpha))
             text = f"α = {alpha:g}: φ_m at Pe_cg = {slow:g} less that at {fast:g}"
-            yield Statement(text, "L5.4a", *rise, 0)
+            yield Statement(text, "L5.4a", *jams.shift(slow, fast, alpha), 0)
     for fraction in (0.55, 0.6):
         for slow, fast in ((0.1, 1), (1, 10)):
-            ratio = quotient(jams.viscosity(slow, 0, fraction), jams.viscosity(fast, 0, fraction))
             text = f"α = 0, φ = {fraction:g}: η_r at Pe_cg = {slow:g} over that at {fast:g}"
-            yield Statement(text, "L5.4a", *ratio, 1, degrees=DEGREES)
-    lowered = difference(jams.jammed(1, 0), jams.jammed(ROUGH, 0))
+            yield Statement(text, "L5.4a", *jams.ratio(slow, fast, 0, fraction), 1, degrees=DEGREES)
+    lowered = jams.shift(1, ROUGH, 0)
     yield Statement("α = 0: φ_m at Pe_cg = 1 less that without noise", "L 2.5", *lowered, 0.04)
 
 
 def rows_of_branches(jams):
     """Fig. 5.4 b."""
-    for row, name in ((SMOOTH, "μ = 0, no noise"), (ROUGH, "no noise"), *((r, name_of_row(r)) for r in (100, 10, 1))):
+    names = {row: name for row, (_, name) in NAMES.items()} | {row: f"Pe_cg = {row:g}" for row in (10, 1)}
+    for row, name in names.items():
         ends = difference(jams.jammed(row, 0), jams.jammed(row, 1))
         yield Statement(f"{name}: φ_m of colloids alone less that of grains alone", "L5.4b", *ends, -0.004, 0.004)
-    for row, alone, name in ((SMOOTH, 0.64, "μ = 0, no noise"), (ROUGH, 0.57, "no noise"), (100, 0.57, "Pe_cg = 100")):
-        models = packing_models(alone).values()
-        left = [
-            min((difference(jams.jammed(row, a), (m(a), 0)) for m in models), key=lambda d: abs(d[0]))
-            for a in jams.shares(row)
-        ]
+    for row, (alone, name) in NAMES.items():
+        left = [from_nearer_model(jams.jammed(row, alpha), alpha, alone) for alpha in jams.shares(row)]
         distance = propagated(left, lambda values: math.sqrt(float(np.mean(np.square(values)))))
         text = f"{name}: rms distance of φ_m(α) from the nearer packing model"
         yield Statement(text, "L5.4b", *distance, high=0.015, essential=False)
-    for row, name in ((SMOOTH, "μ = 0, no noise"), (ROUGH, "no noise"), (100, "Pe_cg = 100"), (10, "Pe_cg = 10")):
+    for row in (*NAMES, 10):
         shares = jams.shares(row)
-        best = place_of_largest(shares, [jams.jammed(row, a) for a in shares])
-        yield Statement(
-            f"{name}: share α of grains, of those measured, at which φ_m is largest", "L5.3", *best, 0.6, 0.8
-        )
+        text = f"{names[row]}: share α of grains, of those measured, at which φ_m is largest"
+        yield Statement(text, "L5.3", *place_of_largest(shares, [jams.jammed(row, a) for a in shares]), 0.6, 0.8)
 
 
 def interpolated(jams, alpha):
@@ -283,15 +240,15 @@ def interpolated(jams, alpha):
 
 def rows_of_fixed_number(jams):
     """Fig. 5.5: Pe_c = 1."""
-    start = difference(jams.jammed(1, 0), jams.jammed(SMOOTH, 0))
+    start = jams.shift(1, SMOOTH, 0)
     yield Statement("Pe_c = 1, α = 0: φ_m less that without friction", "L5.5", *start, -0.01, 0.01)
-    below = {a: difference(jams.jammed(SMOOTH, a), jams.jammed(FIXED, a)) for a in FIXED_SHARES}
+    below = {alpha: jams.shift(SMOOTH, FIXED, alpha) for alpha in FIXED_SHARES}
     low, high = FIXED_SHARES
     yield Statement(f"Pe_c = 1, α = {low:g}: how far φ_m is below that without friction", "L5.5", *below[low], 0)
     further = difference(below[high], below[low])
     yield Statement(f"Pe_c = 1: how much further below at α = {high:g} than at {low:g}", "L5.5", *further, 0)
     for alpha in (0.9, 1):
-        value, error = difference(jams.jammed(100, alpha), jams.jammed(ROUGH, alpha))
+        value, error = jams.shift(100, ROUGH, alpha)
         end = round(value, 6), error  # as the table is: on a bound it must not hang on the last bit
         text = f"Pe_c = 1 (Pe_cg = 100), α = {alpha:g}: φ_m less that with friction without noise"
         yield Statement(text, "L5.5", *end, -0.01, 0.01)
@@ -309,18 +266,12 @@ def rows_of_addition(jams):
         for row in (1, 0.1):
             room = over(jams.jammed(row, 0), fraction)
             yield Statement(f"colloids alone, Pe_c = {row:g}: φ_m/{fraction:g} (above 1: flows)", "L5.6", *room, 1)
-    text = "grains alone, Pe_cg = 1: φ_m"
-    yield Statement(text, "L5.6", *jams.jammed(1, 1), 0.6, 0.625)
+    yield Statement("grains alone, Pe_cg = 1: φ_m", "L5.6", *jams.jammed(1, 1), 0.6, 0.625)
     for fraction in (0.55, 0.6):
-        ratio = quotient(jams.viscosity(1, 0, fraction), jams.viscosity(0.1, 0, fraction))
         text = f"colloids alone, φ = {fraction:g}: η_r at Pe_c = 1 over that at 0.1"
-        yield Statement(text, "L5.6", *ratio, high=1, degrees=DEGREES)
-
-
-def rows_of_slow_flow(jams):
-    """Fig. 5.6 a: grains alone at the smallest Peclet number of the colloids."""
-    name = f"Pe_c = {SLOWEST:g}"
-    dense = jams.viscosity(SLOW, 1, 0.6)
+        yield Statement(text, "L5.6", *jams.ratio(1, 0.1, 0, fraction), high=1, degrees=DEGREES)
+    # Grains alone at the smallest Peclet number of the colloids.
+    name, dense = f"Pe_c = {SLOWEST:g}", jams.viscosity(SLOW, 1, 0.6)
     yield Statement(f"{name}: η_r of grains alone, φ = 0.6 (flows)", "L5.6", *dense, 100, degrees=DEGREES)
     jammed = float(0.62 not in jams.flowing(SLOW, 1))
     yield Statement(f"{name}: grains alone, φ = 0.62, 1 for jammed", "L5.6", jammed, 0, 1, 1)
@@ -328,11 +279,8 @@ def rows_of_slow_flow(jams):
 
 def judge():
     jams, numbers = Map(), read_numbers(HERE / "numbers.csv")
-    yield from rows_of_curves(jams)
-    yield from rows_of_branches(jams)
-    yield from rows_of_fixed_number(jams)
-    yield from rows_of_addition(jams)
-    yield from rows_of_slow_flow(jams)
+    for some in (rows_of_curves, rows_of_branches, rows_of_fixed_number, rows_of_addition):
+        yield from some(jams)
     widest = max(abs(e["stuck"] - e["flowing"]) for e in read_rows(HERE / "map.csv"))
     yield Check("widest bracket of a φ_m", "bisection", widest, 0, high=0.0101)
     ratio = numbers["planned"][0] / numbers["taken"][0]
@@ -345,8 +293,7 @@ def draw():
     ends = {"x_range": (-0.02, 1.02), "y_range": (0.53, 0.82)}
     panel = figure.panel("share of grains α", "φ_m", "the map", key="top left", **ends)
     for alone, colour in ((0.64, BLUE), (0.57, RED)):
-        for dash, model in zip((1, 2), packing_models(alone).values()):
-            panel.curve(model, None, colour, span=(0, 1), samples=81, dash=dash)
+        draw_models(panel, alone, colour, titled=False)
     styles = {
         SMOOTH: ("μ = 0, no noise", BLUE, 7),
         0.1: ("Pe_{cg} = 0.1", PURPLE, 13),
@@ -363,19 +310,16 @@ def draw():
     for alpha, marks in ((0.4, 7), (0, 6)):
         for row in (0.1, 1, 10, 100, ROUGH):
             title, colour, _ = styles[row]
-            if alpha in jams.shares(row):
-                places = [(r["fraction"], *number(r, "viscosity")) for r in jams.curve(row, alpha) if r["seeds"]]
-                named = title if alpha == 0 else None
-                panel.points(places, named, colour, marks, joined=True)
+            curve = [r for r in jams.curve(row, alpha) if r["seeds"]]
+            panel.rows(curve, "fraction", "viscosity", None if alpha else title, colour, marks, joined=True)
     figure.draw()
 
 
 def quick_measure(program):
     """Colloids alone at a volume fraction at which friction jams them, with noise that keeps them apart and without."""
     for name, scene, row, jammed in (("without noise", SCENE, ROUGH, 1), ("Pe_c = 1", NOISY, FIXED, 0)):
-        rough = merged(scene, {"contact": {"friction": 1}})
-        settings = [{**setting(0, 0.605, row), "/particles/count": 200}]
-        program.run(f"quick-{row}", rough, settings, 4)
+        rough = merged(scene, contact={"friction": 1})
+        program.run(f"quick-{row}", rough, [{**setting(0, 0.605, row), "/particles/count": 200}], 4)
         (point,) = curves_of(program, f"quick-{row}", 0)[0]["points"]
         text = f"colloids alone, φ = 0.605, {name}: 1 for jammed"
         yield Statement(text, "L5.4b", float(point["state"] != "flowing"), 0, jammed, jammed)

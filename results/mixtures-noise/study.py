@@ -1,30 +1,22 @@
 #!/usr/bin/python3
 """Colloids and grains with noise: flow curves while grains are added to colloids and colloids to grains, with friction
-(Li 2023, Figs 5.2, 5.3 a, b and 5.6).
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+(Li 2023, Figs 5.2, 5.3 a, b and 5.6)."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.compositions import ALIKE, ALIKE_NOISE, MIXTURE_SCENE, NOISE, STIFFNESS, THERMAL_ENERGY
-from studies.compositions import colloids_added, composition_row, grains_added, mean_peclet, setting_of, windows
-from studies.estimates import estimate, logarithm, over, place_of_largest, propagated, quotient
-from studies.figure import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, Figure
-from studies.fits import log_minimum, log_of_rise, log_of_share, thickening_decades
-from studies.scenes import merged
-from studies.tables import columns_of, number, read_numbers, read_rows, write_numbers, write_table
-from studies.verdicts import Check, Finding, Statement
-from studies.viscosities import viscosity_row
-
+from studies.compositions import ALIKE, ALIKE_NOISE, MIXTURE_SCENE, NOISE, STIFFNESS, THERMAL_ENERGY, colloids_added
+from studies.compositions import composition_row, grains_added, mean_peclet, setting_of, windows
+from studies.driver import BLUE, Check, Figure, Finding, GREEN, GREY, ORANGE, PURPLE, RED, Statement, difference
+from studies.driver import estimate, in_brownian_times, log_minimum, log_of_rise, log_of_share, logarithm, main, merged
+from studies.driver import number, over, place_of_largest, propagated, propagated_lists, quotient, read_numbers
+from studies.driver import read_rows, row_ratio, thickening_decades, viscosity_row, where, write_numbers, write_table
 import numpy as np
 
 TITLE = "Colloids and grains with noise"
-SCENE = merged(MIXTURE_SCENE, {"contact": {"friction": 1}})
+SCENE = merged(MIXTURE_SCENE, contact={"friction": 1})
 NOISY = merged(SCENE, NOISE)
 SOFTER = STIFFNESS / 4
 # Share of the grains in the volume of all spheres, and how many spheres that takes for some thirty grains, where they
@@ -66,28 +58,26 @@ def line(base, numbers, shares=COLLOIDS_ADDED, fraction=colloids_added):
 
 def parts(program):
     fast = NUMBERS[1:]
+    middle = (0.7, colloids_added(0.7, BASE))
     yield from rows_of(program, "colloids-added", line(BASE, fast))
     yield from rows_of(program, "colloids-added-soft", line(BASE, (1,)), SOFTER)
     for stiffness, name in ((STIFFNESS, "dense"), (SOFTER, "dense-soft")):
         yield from rows_of(program, name, line(DENSE, (1, 100)), stiffness)
     yield from rows_of(program, "no-noise", line(BASE, (math.inf,)))
     # Grains alone, which are colloids in other units: as hard, with as little inertia.
-    alike = ALIKE | ALIKE_NOISE
-    alone = [(1, BASE, peclet / 125) for peclet in (*NUMBERS, 1e4)]
-    yield from rows_of(program, "grains-alone", alone, 5 * STIFFNESS, besides=alike)
-    alone = [(1, FRACTION, peclet / 125) for peclet in (*SLOW_MEANS, *MEANS, 125)]
-    yield from rows_of(program, "fraction-grains", alone, 5 * STIFFNESS, besides=alike)
+    grains = {"grains-alone": (BASE, (*NUMBERS, 1e4)), "fraction-grains": (FRACTION, (*SLOW_MEANS, *MEANS, 125))}
+    for name, (fraction, peclets) in grains.items():
+        alone = [(1, fraction, peclet / 125) for peclet in peclets]
+        yield from rows_of(program, name, alone, 5 * STIFFNESS, besides=ALIKE | ALIKE_NOISE)
     yield from rows_of(program, "grains-added", line(BASE, (*fast, 1e4), GRAINS_ADDED[:-1], grains_added))
     mixed = [(alpha, FRACTION, mean / mean_peclet(alpha, 1)) for alpha in SHARES[1:-1] for mean in MEANS]
     yield from rows_of(program, "fraction", [(0, FRACTION, mean) for mean in (*SLOW_MEANS, *MEANS)] + mixed)
-    yield from rows_of(program, "size", [(0.7, colloids_added(0.7, BASE), 1)], count_times=2)
-    yield from rows_of(program, "stiff", [(0.7, colloids_added(0.7, BASE), p) for p in (1, 1e3)], 4 * STIFFNESS)
+    yield from rows_of(program, "size", [(*middle, 1)], count_times=2)
+    yield from rows_of(program, "stiff", [(*middle, p) for p in (1, 1e3)], 4 * STIFFNESS)
     for stiffness, name in ((STIFFNESS, "smooth"), (SOFTER, "smooth-soft")):
-        case = [(0.7, colloids_added(0.7, BASE), 1)]
-        yield from rows_of(program, name, case, stiffness, besides={"/contact/friction": 0})
-    slow = NUMBERS[:1]
-    yield from rows_of(program, "colloids-added-slow", line(BASE, slow, SLOW_ADDED))
-    yield from rows_of(program, "grains-added-slow", line(BASE, slow, (0, 0.4), grains_added))
+        yield from rows_of(program, name, [(*middle, 1)], stiffness, besides={"/contact/friction": 0})
+    yield from rows_of(program, "colloids-added-slow", line(BASE, NUMBERS[:1], SLOW_ADDED))
+    yield from rows_of(program, "grains-added-slow", line(BASE, NUMBERS[:1], (0, 0.4), grains_added))
 
 
 LAG = 20  # Brownian times: inertia of the grains is worth 0.2 of them, a hundredth
@@ -101,8 +91,8 @@ def composition_numbers(program):
     for added in ("grains", "colloids"):
         for tenths, printed in enumerate(PRINTED):
             alpha = tenths / 10 if added == "grains" else 1 - tenths / 10
-            scene = merged(SCENE, {"particles": {"count": 10000, "mixture": {"alpha": alpha}}})
-            scene = merged(scene, {"volume_fraction": None, "addition": {"added": added, "base_volume_fraction": BASE}})
+            addition = {"volume_fraction": None, "addition": {"added": added, "base_volume_fraction": BASE}}
+            scene = merged(SCENE, addition, particles={"count": 10000, "mixture": {"alpha": alpha}})
             made = program.derived(scene)["derived"]
             off_fraction.append(abs(made["volume_fraction"] - printed))
             off_share.append(abs(made["alpha"] - alpha))
@@ -111,22 +101,16 @@ def composition_numbers(program):
 
 
 def diffusion_numbers(program):
-    """a^2/D of dilute spheres of radius 5 over that of radius 1."""
+    """Yields a^2/D of dilute spheres of radius 5 over that of radius 1."""
     ones, fives = ([{"radius": radius, "number_share": 1}] for radius in (1, 5))
     equal_numbers = {"colloids": ones, "grains": fives, "alpha": 125 / 126}
     scene = merged(
         SCENE,
-        {
-            "particles": {"count": 1000, "mixture": equal_numbers},
-            "volume_fraction": 0.002,
-            "fluid": {"thermal_energy": THERMAL_ENERGY},
-            "flow": {"shear_rate": 0},
-            "observables": ["mean_squared_displacement"],
-            "duration": {
-                "equilibration": {"strain": None, "brownian_times": 2},
-                "production": {"strain": None, "brownian_times": 200},
-            },
-        },
+        {"duration": None, "volume_fraction": 0.002, "observables": ["mean_squared_displacement"]},
+        in_brownian_times(2, 200),
+        particles={"count": 1000, "mixture": equal_numbers},
+        fluid={"thermal_energy": THERMAL_ENERGY},
+        flow={"shear_rate": 0},
     )
     program.run("dilute", scene, [{"/particles/count": 1000}], 4 * SEEDS, observable="self_diffusion")
     ratios = []
@@ -139,9 +123,9 @@ def diffusion_numbers(program):
 
 
 def measure(program):
-    names = ["part", "alpha", "fraction", "peclet", "mean peclet", "count", "grains", "stiffness", "seeds", "lost"]
-    names += ["transient", "overlap", *columns_of("viscosity", "pairs", "lubrication", "contact")]
-    write_table(HERE / "table.csv", [*names, *columns_of("contacts_per_particle")], list(parts(program)), 5)
+    names = "part, alpha, fraction, peclet, mean peclet, count, grains, stiffness, seeds, lost, transient, overlap, "
+    names += "viscosity±, pairs±, lubrication±, contact±, contacts_per_particle±"
+    write_table(HERE / "table.csv", names, list(parts(program)), 5)
     write_numbers(HERE / "numbers.csv", dict([*composition_numbers(program), *diffusion_numbers(program)]))
 
 
@@ -149,20 +133,15 @@ class Table:
     """The rows by part, share of grains and Peclet number; a viscosity that no seed has is infinite."""
 
     def __init__(self, rows):
-        self._rows = {self.key(r["part"], r["alpha"], r["peclet"]): r for r in rows}
-
-    @staticmethod
-    def key(part, alpha, peclet):
-        return part, alpha, f"{peclet:.4g}"
-
-    def row(self, part, alpha, peclet):
-        """Of the part, or of its slow ones."""
-        keys = (self.key(part + more, alpha, peclet) for more in ("", "-slow"))
-        return next(self._rows[key] for key in keys if key in self._rows)
+        # A part and its slow one have different Peclet numbers.
+        self._rows = {(r["part"].removesuffix("-slow"), r["alpha"], f"{r['peclet']:.4g}"): r for r in rows}
 
     def viscosity(self, part, alpha, peclet):
-        row = self.row(part, alpha, peclet)
+        row = self._rows[part, alpha, f"{peclet:.4g}"]
         return number(row, "viscosity") if row["seeds"] else (math.inf, 0.0)
+
+    def ratio(self, part, alphas, peclet):
+        return quotient(*(self.viscosity(part, alpha, peclet) for alpha in alphas))
 
     def curve(self, part, alpha, numbers):
         """Logarithms of viscosities."""
@@ -173,12 +152,10 @@ class Table:
         return self.viscosity(part, alpha, peclet)
 
     def of_means(self, alpha):
-        """(Peclet number of the mean radius, ln eta with its error) at FRACTION."""
-        name = "fraction-grains" if alpha == 1 else "fraction"
-        rows = sorted(
-            (r for (part, a, _), r in self._rows.items() if part == name and a == alpha), key=lambda r: r["mean peclet"]
-        )
-        return [(r["mean peclet"], *logarithm(number(r, "viscosity"))) for r in rows]
+        """Returns ln eta with its error at FRACTION, by the Peclet number of the mean radius."""
+        rows = where(self._rows.values(), part="fraction-grains" if alpha == 1 else "fraction", alpha=alpha)
+        rows.sort(key=lambda r: r["mean peclet"])
+        return {r["mean peclet"]: logarithm(number(r, "viscosity")) for r in rows}
 
     def stiffening(self, part, alpha, peclet):
         """d ln eta / d ln k_n; 1, which is what jams, where no seed ended well with either k_n."""
@@ -192,13 +169,10 @@ DEGREES = SEEDS - 1
 
 
 def drops(table, peclet, part="colloids-added"):
-    """ln of eta of grains alone over that with colloids added, by share of grains."""
-    alone = logarithm(table.viscosity(part, 1, peclet))
+    """Returns ln of eta of grains alone over that with colloids added, by share of grains."""
     shares = SLOW_ADDED if peclet == NUMBERS[0] else COLLOIDS_ADDED
-    return [
-        (alone[0] - mixed[0], math.hypot(alone[1], mixed[1]))
-        for mixed in (logarithm(table.viscosity(part, alpha, peclet)) for alpha in shares[1:])
-    ]
+    alone, *mixed = (logarithm(table.viscosity(part, alpha, peclet)) for alpha in shares)
+    return [difference(alone, one) for one in mixed]
 
 
 def factor(numbers):
@@ -207,11 +181,10 @@ def factor(numbers):
 
 
 def minimum_of(curve):
-    """As of log_minimum(). Without an error where the lowest point is an end."""
-    places, numbers = [p for p, _, _ in curve], [(value, error) for _, value, error in curve]
-    lowest = int(np.argmin([value for value, _ in numbers]))
+    """Returns that of log_minimum(), without an error where the lowest point is an end."""
+    places, numbers = list(curve), list(curve.values())
     value, error = propagated(numbers, lambda values: log_minimum(places, np.exp(values)))
-    return value, math.inf if lowest in (0, len(curve) - 1) else error
+    return value, math.inf if min(numbers) in (numbers[0], numbers[-1]) else error
 
 
 def smallest_step(viscosities):
@@ -225,40 +198,31 @@ def smallest_step(viscosities):
 
 def rows_of_grains_added(table):
     """Fig. 5.2 a, c: grains added to colloids."""
-    alone = table.curve("grains-added", 0, NUMBERS)
-    thinning = propagated(alone, lambda v: math.exp(v[0] - min(v)))
-    yield Statement(
-        "colloids alone, φ = 0.55: η_r at Pe_c = 0.1 over its minimum", "L5.2a", *thinning, 1, math.inf, DEGREES
-    )
-    plateau = table.curve("grains-added", 0, (1e4, 1e5))
-    slope = propagated(plateau, lambda v: (v[1] - v[0]) / math.log(10))
-    text = "colloids alone: d ln η_r/d ln Pe_c from 10⁴ to 10⁵"
-    yield Statement(text, "L5.2a", *slope, high=0.05, degrees=DEGREES)
+    thinning = propagated(table.curve("grains-added", 0, NUMBERS), lambda v: math.exp(v[0] - min(v)))
+    text = "colloids alone, φ = 0.55: η_r at Pe_c = 0.1 over its minimum"
+    yield Statement(text, "L5.2a", *thinning, 1, math.inf, DEGREES)
+    slope = propagated(table.curve("grains-added", 0, (1e4, 1e5)), lambda v: (v[1] - v[0]) / math.log(10))
+    yield Statement("colloids alone: d ln η_r/d ln Pe_c from 10⁴ to 10⁵", "L5.2a", *slope, high=0.05, degrees=DEGREES)
     for peclet in NUMBERS:
         shares = (0, 0.4) if peclet == NUMBERS[0] else GRAINS_ADDED
         found = [table.grains_added(alpha, peclet) for alpha in shares]
         text = f"Pe_c = {peclet:g}: smallest step of η_r as grains are added, α = 0 to {shares[-1]:g}"
         yield Statement(text, "L5.2a", *smallest_step(found), 1, math.inf, DEGREES)
     curves = [table.curve("grains-added", alpha, NUMBERS[1:]) for alpha in GRAINS_ADDED[:-1]]
-    count = len(NUMBERS) - 1
-    together = [value for curve in curves for value in curve]
 
-    def onsets(values):
-        return [log_of_rise(NUMBERS[1:], np.exp(values[k : k + count]), 0.2) for k in range(0, len(values), count)]
+    def onsets(curves):
+        return [log_of_rise(NUMBERS[1:], np.exp(values), 0.2) for values in curves]
 
-    shift = propagated(together, lambda v: onsets(v)[-1] - onsets(v)[0])
+    shift = propagated_lists(curves, lambda v: onsets(v)[-1] - onsets(v)[0])
     text = "decades by which thickening begins earlier at α = 0.4 than at 0"
     yield Statement(text, "L5.2a", *over(shift, -1), 0.87, math.inf)
-    later = propagated(together, lambda v: float(np.max(np.diff(onsets(v)))))
+    later = propagated_lists(curves, lambda v: float(np.max(np.diff(onsets(v)))))
     yield Statement("largest step of the onset in decades as grains are added", "L5.2a", *later, high=0)
-    steeper = propagated(curves[1] + curves[0], lambda v: steepness(v[:count]) / steepness(v[count:]))
+    steeper = propagated_lists([curves[1], curves[0]], lambda v: steepness(v[0]) / steepness(v[1]))
     yield Statement("steepest d ln η_r/d ln Pe_c at α = 0.3 over that at 0", "L5.2a", *steeper, 1)
-    rises = [
-        propagated([logarithm(table.grains_added(a, p)) for a in (0, 0.3)], lambda v: v[1] - v[0]) for p in NUMBERS[1:]
-    ]
-    place = place_of_largest(np.log10(NUMBERS[1:]), rises)
-    text = "lg Pe_c at which η_r rises most from α = 0 to 0.3"
-    yield Statement(text, "L5.2c", *place, 0, 3)
+    both = [[logarithm(table.grains_added(a, p)) for a in (0, 0.3)] for p in NUMBERS[1:]]
+    place = place_of_largest(np.log10(NUMBERS[1:]), [propagated(ends, lambda v: v[1] - v[0]) for ends in both])
+    yield Statement("lg Pe_c at which η_r rises most from α = 0 to 0.3", "L5.2c", *place, 0, 3)
 
 
 def steepness(logarithms):
@@ -268,57 +232,45 @@ def steepness(logarithms):
 def rows_of_colloids_added(table):
     """Figs 5.2 b, c and 5.6: colloids added to grains of 0.55."""
     of = {peclet: drops(table, peclet) for peclet in NUMBERS}
-    of[math.inf] = drops(table, math.inf, "no-noise")
-    shares = COLLOIDS_ADDED[1:]
-    best = factor(of[1])
+    best, fast = factor(of[1]), factor(of[1000])
     text = "grains at φ₀ = 0.55, Pe_c = 1: η_r at α = 1 over the smallest with colloids added"
     yield Statement(text, "L5.2b", *best, 4, 12, DEGREES)
-    yield Statement("α of that smallest", "L5.2b", *place_of_largest(shares, of[1]), 0.6, 0.8)
+    yield Statement("α of that smallest", "L5.2b", *place_of_largest(COLLOIDS_ADDED[1:], of[1]), 0.6, 0.8)
     decades = NUMBERS[:-1]
-    everything = [value for peclet in decades for value in of[peclet]]
-    ends = np.cumsum([len(of[peclet]) for peclet in decades])[:-1]
-
-    def strongest(values):
-        return float(np.log10(decades[int(np.argmax([max(v) for v in np.split(np.array(values), ends)]))]))
-
-    text = "lg Pe_c at which that factor is largest, of 0.1, 1, 10, 100, 1000"
-    yield Statement(text, "L5.2b", *propagated(everything, strongest), -1, 1)
-    then = quotient(*(table.viscosity("colloids-added", alpha, 1) for alpha in (0.6, 0.7)))
+    strongest = propagated_lists(
+        [of[peclet] for peclet in decades], lambda v: float(np.log10(decades[int(np.argmax([max(d) for d in v]))]))
+    )
+    yield Statement("lg Pe_c at which that factor is largest, of 0.1, 1, 10, 100, 1000", "L5.2b", *strongest, -1, 1)
+    then = table.ratio("colloids-added", (0.6, 0.7), 1)
     yield Statement("Pe_c = 1: η_r at α = 0.6 over that at 0.7", "L5.2b", *then, 1, math.inf, DEGREES)
     text = "Pe_c = 1, α = 0.5: d ln η_r/d ln k_n (jams: 1)"
     yield Statement(text, "L5.2b", *table.stiffening("colloids-added", 0.5, 1), JAMMED, math.inf, DEGREES)
     alone = quotient(*(table.viscosity("colloids-added", 1, peclet) for peclet in (1, 1e5)))
     yield Statement("grains alone: η_r at Pe_c = 1 over that at 10⁵", "L5.2b", *alone, 0.5, math.inf, DEGREES)
-    curve = table.curve("grains-added", 0, NUMBERS)
-    near = propagated(curve, lambda v: math.exp(v[1] - min(v)))
+    near = propagated(table.curve("grains-added", 0, NUMBERS), lambda v: math.exp(v[1] - min(v)))
     yield Statement("colloids alone: η_r at Pe_c = 1 over its minimum", "L5.2b", *near, high=1.3, degrees=DEGREES)
-    fast = factor(of[1000])
     yield Statement("Pe_c = 1000: the factor", "L5.2b", *fast, 1.2, math.inf, DEGREES)
-    yield Statement(
-        "the factor at Pe_c = 1000 over that at 1", "L5.2c", *quotient(fast, best), high=0.5, degrees=DEGREES
-    )
+    less = quotient(fast, best)
+    yield Statement("the factor at Pe_c = 1000 over that at 1", "L5.2c", *less, high=0.5, degrees=DEGREES)
     for peclet in NUMBERS[1:-1]:
-        step = quotient(*(table.viscosity("colloids-added", alpha, peclet) for alpha in (0.9, 1)))
         text = f"Pe_c = {peclet:g}: η_r at α = 0.9 over that of grains alone"
-        yield Statement(text, "L5.2c", *step, high=1, degrees=DEGREES)
-    none = factor(of[math.inf])
+        yield Statement(text, "L5.2c", *table.ratio("colloids-added", (0.9, 1), peclet), high=1, degrees=DEGREES)
+    none = factor(drops(table, math.inf, "no-noise"))
     yield Statement("without noise: the factor", "L5.2c", *none, 1.2, math.inf, DEGREES)
-    alone = table.curve("grains-alone", 1, [peclet / 125 for peclet in NUMBERS])
-    mixed = [table.curve("colloids-added", alpha, NUMBERS) for alpha in SLOW_ADDED[1:]]
-    count = len(NUMBERS)
+    curves = [table.curve("grains-alone", 1, [peclet / 125 for peclet in NUMBERS])]
+    curves += [table.curve("colloids-added", alpha, NUMBERS) for alpha in SLOW_ADDED[1:]]
 
-    def wider(values):
-        decades = [thickening_decades(NUMBERS, np.exp(values[k : k + count])) for k in range(0, len(values), count)]
-        return max(decades[1:]) - decades[0]
+    def wider(curves):
+        alone, *mixed = (thickening_decades(NUMBERS, np.exp(values)) for values in curves)
+        return max(mixed) - alone
 
-    more = propagated([*alone, *(value for curve in mixed for value in curve)], wider)
+    more = propagated_lists(curves, wider)
     yield Statement("decades of thickening, the most of α = 0.9, 0.8, 0.7 less those of α = 1", "L5.2b", *more, 0)
-    text = "the factor without noise over that at Pe_c = 1"
-    yield Statement(text, "L5.2c", *quotient(none, best), high=1, degrees=DEGREES)
-    for first, then in ((1, 0.9), (0.9, 0.8)):
-        step = quotient(*(table.viscosity("no-noise", alpha, math.inf) for alpha in (then, first)))
-        text = f"without noise: η_r at α = {then:g} over that at {first:g}"
-        yield Statement(text, "L5.2", *step, high=1, degrees=DEGREES)
+    less = quotient(none, best)
+    yield Statement("the factor without noise over that at Pe_c = 1", "L5.2c", *less, high=1, degrees=DEGREES)
+    for before, then in ((1, 0.9), (0.9, 0.8)):
+        text = f"without noise: η_r at α = {then:g} over that at {before:g}"
+        yield Statement(text, "L5.2", *table.ratio("no-noise", (then, before), math.inf), high=1, degrees=DEGREES)
     for peclet in (1, 100):
         name = f"grains at φ₀ = 0.60, Pe_c = {peclet:g}: d ln η_r/d ln k_n at α"
         for alpha, low, high in ((1, JAMMED, math.inf), (0.8, -math.inf, FLOWING), (0.5, JAMMED, math.inf)):
@@ -329,48 +281,37 @@ def rows_of_colloids_added(table):
 
 def rows_of_one_fraction(table):
     """Fig. 5.3 a, b."""
-    minima = {alpha: minimum_of(table.of_means(alpha)) for alpha in SHARES}
-    shift = {alpha: math.log10(mean_peclet(alpha, 1)) for alpha in SHARES}
-    numbers = [minima[alpha] for alpha in SHARES]
-
-    def span(values):
-        at_colloids = [v - shift[alpha] for v, alpha in zip(values, SHARES)]
-        return max(at_colloids) - min(at_colloids)
-
-    text = "φ = 0.565: decades of Pe_c over which the minima of η_r lie, α = 0 to 1"
-    yield Statement(text, "L5.3a", *propagated(numbers, span), 2)
-    for alpha in SHARES:
+    curves = {alpha: table.of_means(alpha) for alpha in SHARES}
+    minima = [minimum_of(curve) for curve in curves.values()]
+    shifts = [math.log10(mean_peclet(alpha, 1)) for alpha in SHARES]
+    span = propagated(minima, lambda values: float(np.ptp(np.subtract(values, shifts))))
+    yield Statement("φ = 0.565: decades of Pe_c over which the minima of η_r lie, α = 0 to 1", "L5.3a", *span, 2)
+    for alpha, found in zip(SHARES, minima):
         text = f"φ = 0.565, α = {alpha:g}: lg of the Pe_cg of the minimum"
-        yield Statement(text, "L5.3b", *minima[alpha], math.log10(3), math.log10(30))
-    spread = propagated(numbers, lambda values: max(values) - min(values))
+        yield Statement(text, "L5.3b", *found, math.log10(3), math.log10(30))
+    spread = propagated(minima, lambda values: max(values) - min(values))
     yield Statement("φ = 0.565: decades of Pe_cg over which these lie", "L5.3b", *spread, high=0.6)
-    ends = {alpha: {p: (v, e) for p, v, e in table.of_means(alpha)} for alpha in SHARES}
 
     def above(alpha, mean):
-        return propagated([ends[alpha][mean], ends[0.5][mean]], lambda v: math.exp(v[0] - v[1]))
+        return propagated([curves[alpha][mean], curves[0.5][mean]], lambda v: math.exp(v[0] - v[1]))
 
     for alpha, name in ((0, "colloids"), (1, "grains")):
         text = f"φ = 0.565, Pe_cg = 10⁵: η_r of {name} alone over that at α = 0.5"
         yield Statement(text, "L5.3b", *above(alpha, 1e5), 3, math.inf, DEGREES)
     for alpha, name in ((0, "colloids"), (1, "grains")):
-        curves = [table.of_means(a) for a in (alpha, 0.5)]
-        count = len(curves[0])
+        both = curves[alpha], curves[0.5]
 
         def later(values):
-            one, mixed = np.exp(values[:count]), np.exp(values[count:])
-            places = [[p for p, _, _ in curve] for curve in curves]
-            return log_of_share(places[1], mixed, 0.95) - log_of_share(places[0], one, 0.95)
+            one, mixed = (log_of_share([*curve], np.exp(v), 0.95) for curve, v in zip(both, values))
+            return mixed - one
 
-        shift = propagated([(v, e) for curve in curves for _, v, e in curve], later)
         text = f"φ = 0.565: lg of the Pe_cg of 95 % of the thickening, α = 0.5 less {name} alone"
-        yield Statement(text, "L5.3b", *shift, 0.5)
-    more = quotient(above(0, 1e5), above(0, 3))
+        yield Statement(text, "L5.3b", *propagated_lists([[*curve.values()] for curve in both], later), 0.5)
     text = "φ = 0.565: η_r of colloids alone over that at α = 0.5, at Pe_cg = 10⁵ over at 3"
-    yield Statement(text, "L5.3", *more, 1, math.inf, DEGREES)
+    yield Statement(text, "L5.3", *quotient(above(0, 1e5), above(0, 3)), 1, math.inf, DEGREES)
     grains = quotient(table.viscosity("fraction-grains", 1, 1), table.viscosity("fraction", 0, 1))
-    yield Statement(
-        "φ = 0.565, Pe_c = 1: η_r of grains alone over colloids alone", "L5.3", *grains, 2, math.inf, DEGREES
-    )
+    text = "φ = 0.565, Pe_c = 1: η_r of grains alone over colloids alone"
+    yield Statement(text, "L5.3", *grains, 2, math.inf, DEGREES)
 
 
 def checks(table):
@@ -388,22 +329,21 @@ def checks(table):
         stiff = quotient(table.viscosity("stiff", 0.7, peclet), table.viscosity("colloids-added", 0.7, peclet))
         text = f"α = 0.7, Pe_c = {peclet:g}: η_r with contacts 4 times as stiff over η_r"
         yield Check(text, "stiffness", *stiff, 0.95, 1.05, DEGREES)
-    name = "α = 0.7, Pe_c = 1: d ln η_r/d ln k_n"
-    softer = table.stiffening("colloids-added", 0.7, 1)
-    yield Finding(f"{name} from 2.5·10⁴ to 10⁵", "stiffness", *softer, DEGREES)
     stiffer = over(logarithm(quotient(table.viscosity("stiff", 0.7, 1), base)), math.log(4))
-    yield Finding(f"{name} from 10⁵ to 4·10⁵", "stiffness", *stiffer, DEGREES)
-    smooth = table.stiffening("smooth", 0.7, 1)
-    yield Finding(f"{name} from 2.5·10⁴ to 10⁵, μ = 0", "stiffness", *smooth, DEGREES)
+    for steps, slope in (
+        ("2.5·10⁴ to 10⁵", table.stiffening("colloids-added", 0.7, 1)),
+        ("10⁵ to 4·10⁵", stiffer),
+        ("2.5·10⁴ to 10⁵, μ = 0", table.stiffening("smooth", 0.7, 1)),
+    ):
+        yield Finding(f"α = 0.7, Pe_c = 1: d ln η_r/d ln k_n from {steps}", "stiffness", *slope, DEGREES)
 
 
 def rows_of_compositions(numbers):
     text = "largest distance of the volume fractions of 11 compositions from those in print"
     yield Statement(text, "L5.2", *numbers["fraction off"][:2], high=1e-3)
     yield Finding("the same of α, of 10 000 whole spheres", "L5.2", *numbers["share off"][:2])
-    times = numbers["times of diffusion"]
-    text = "dilute: a²/D of radius 5 over that of radius 1"
-    yield Statement(text, "L 5.1", *times[:2], 0.97 * 125, 1.03 * 125, times[2])
+    *times, degrees = numbers["times of diffusion"]
+    yield Statement("dilute: a²/D of radius 5 over that of radius 1", "L 5.1", *times, 0.97 * 125, 1.03 * 125, degrees)
 
 
 def judge():
@@ -427,11 +367,8 @@ def draw():
 
     def curve(one, part, x, title, colour, **equal):
         """The rows of a part, with its slow ones, that have these values, over their x."""
-        here = [r for r in rows if r["part"] in (part, f"{part}-slow") and r["seeds"]]
-        here = [r for r in here if all(r[name] == value for name, value in equal.items())]
-        places = sorted((r[x], *number(r, "viscosity")) for r in here)
-        if places:
-            one.points(places, title, colour, joined=True)
+        here = [r for r in where(rows, **equal) if r["part"] in (part, f"{part}-slow") and r["seeds"]]
+        one.rows(sorted(here, key=lambda r: r[x]), x, "viscosity", title, colour, joined=True)
 
     powers = {"powers": "x", "x_range": (0.05, 2e5), "key": "top left"}
     one = panel("Pe_c", "grains added to colloids of φ₀ = 0.55", **{**powers, "key": "center right"})
@@ -449,9 +386,8 @@ def draw():
     curve(one, "no-noise", "alpha", "without noise", PURPLE)
     one = panel("Pe of the mean radius", "one volume fraction, 0.565", **powers)
     for alpha, colour in zip(SHARES, (BLUE, RED, GREEN, GREY)):
-        curve(
-            one, "fraction-grains" if alpha == 1 else "fraction", "mean peclet", f"α = {alpha:g}", colour, alpha=alpha
-        )
+        part = "fraction-grains" if alpha == 1 else "fraction"
+        curve(one, part, "mean peclet", f"α = {alpha:g}", colour, alpha=alpha)
     figure.draw()
 
 
@@ -459,7 +395,7 @@ def quick_measure(program):
     """Grains that friction holds flow many times better with colloids among them, at Pe_c = 1."""
     cases = [(alpha, colloids_added(alpha, BASE), 1) for alpha in (1, 0.7)]
     of = {r["alpha"]: r for r in rows_of(program, "quick", cases, count_times=0.5)}
-    ratio = quotient(number(of[0.7], "viscosity"), number(of[1], "viscosity"))
+    ratio = row_ratio(of[0.7], of[1], "viscosity")
     yield Statement("Pe_c = 1: η_r at α = 0.7 over that of grains alone", "L5.2c", *ratio, 0, 0.5, DEGREES)
 
 

@@ -1,29 +1,21 @@
 #!/usr/bin/python3
 """Colloids and grains without noise: where mixtures of radii 1, 1.4, 5 and 7 jam, with and without friction, beside two
-models of packings; and whether dense grains flow better when colloids are added to them.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+models of packings; and whether dense grains flow better when colloids are added to them."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.compositions import COLLOIDS, GRAINS, MIXTURE_SCENE, colloids_added, packing_models
-from studies.compositions import composition_row, setting_of
-from studies.estimates import difference, estimate, over, place_of_largest, propagated, quotient
-from studies.figure import BLUE, GREEN, ORANGE, RED, Figure
-from studies.scenes import during, merged
-from studies.tables import columns_of, entries, number, read_rows, write_table
-from studies.verdicts import Check, Finding, Statement
-from studies.viscosities import viscosity_row
-
+from studies.compositions import COLLOIDS, GRAINS, MIXTURE_SCENE, colloids_added, composition_row, draw_models
+from studies.compositions import from_nearer_model, packing_models, setting_of
+from studies.driver import BLUE, Check, Figure, Finding, GREEN, ORANGE, RED, Statement, difference, entries, estimate
+from studies.driver import first, in_strains, main, merged, number, over, place_of_largest, propagated, quotient
+from studies.driver import read_final, read_rows, row_ratio, viscosity_row, where, write_rows, write_table
 import numpy as np
 
 TITLE = "Colloids and grains without noise"
-SCENE = merged(MIXTURE_SCENE, during({"strain": 1}, {"strain": 2}))
+SCENE = merged(MIXTURE_SCENE, in_strains(1, 2))
 # Share of the grains in the volume of all spheres, and how many spheres that takes for some thirty grains.
 COUNTS = {0: 1000, 0.4: 5000, 0.5: 4000, 0.6: 3000, 0.7: 2000, 0.75: 2000, 0.8: 1500, 0.85: 1500, 0.9: 1000, 1: 1000}
 ALONE = {0: 0.64, 1: 0.57}  # in print: where one group alone jams, by friction
@@ -57,7 +49,7 @@ def below(friction, alpha, distance):
 
 def rows_of(program, part, friction, cases, seeds=SEEDS, stiffer=1, density=SCENE["particles"]["density"]):
     """Rows of (share of grains, number of spheres, volume fraction)."""
-    scene = merged(SCENE, {"contact": {"friction": friction}, "particles": {"density": density}})
+    scene = merged(SCENE, contact={"friction": friction}, particles={"density": density})
     settings = [setting_of(*case, stiffer * stiffness_of(friction, case[0])) for case in cases]
     for setting, point in zip(settings, program.run(f"{part}-{friction}", scene, settings, seeds)):
         yield {
@@ -70,34 +62,24 @@ def rows_of(program, part, friction, cases, seeds=SEEDS, stiffer=1, density=SCEN
 
 
 def layer_peaks(path, radii):
-    """Of a final configuration: the largest |sum of exp(i k r)|^2 / N of the spheres of these radii, along the gradient
-    and along the vorticity, among the waves that are 0.75 to 1.3 mean diameters long. Where nothing is ordered it is
-    the peak of a liquid's structure factor, the same for both; of perfect layers it is N."""
-    with open(path) as f:
-        f.readline()
-        lattice = [float(x) for x in f.readline().split('Lattice="')[1].split('"')[0].split()]
-        *place, radius = np.loadtxt(f, usecols=(1, 2, 3, 4)).T
+    """Yields, of a final configuration, the largest |sum of exp(i k r)|^2 / N of the spheres of these radii, along the
+    gradient and along the vorticity, among the waves that are 0.75 to 1.3 mean diameters long. Where nothing is ordered
+    it is the peak of a liquid's structure factor, the same for both; of perfect layers it is N."""
+    edges, places, radius = read_final(path)
     chosen = np.isin(radius, radii)
     diameter = 2 * radius[chosen].mean()
-    for height, length in ((place[1][chosen], lattice[4]), (place[2][chosen], lattice[8])):
+    for length, place in zip(edges[1:], places[1:]):
         waves = np.arange(math.ceil(length / (1.3 * diameter)), math.floor(length / (0.75 * diameter)) + 1)
-        sums = np.exp(2j * math.pi * np.outer(waves, height) / length).sum(axis=1)
-        yield float(np.max(np.abs(sums) ** 2) / len(height))
+        sums = np.exp(2j * math.pi * np.outer(waves, place[chosen]) / length).sum(axis=1)
+        yield float(np.max(np.abs(sums) ** 2) / chosen.sum())
 
 
 def order_rows(program):
-    scene = merged(SCENE, {"contact": {"friction": 0}, "files": {"final_configuration": True}})
-    settings = [
-        {
-            "/particles/mixture/alpha": alpha,
-            "/particles/count": 2 * COUNTS[alpha],
-            "/volume_fraction": below(0, alpha, LAYERED),
-        }
-        for alpha in ORDERED
-    ]
-    folder = Path(program.folder) / "order-0.peclet"
+    scene = merged(SCENE, contact={"friction": 0}, files={"final_configuration": True})
+    pointers = "/particles/mixture/alpha", "/particles/count", "/volume_fraction"
+    settings = [dict(zip(pointers, (a, 2 * COUNTS[a], below(0, a, LAYERED)))) for a in ORDERED]
     for alpha, point in zip(ORDERED, program.run("order-0", scene, settings, 2 * SEEDS)):
-        paths = [folder / f["path"] for r in point["realisations"] for f in r.get("files") or []]
+        paths = program.final_configurations("order-0", point)
         for group, radii in (("colloids", COLLOIDS), ("grains", GRAINS)):
             gradient, vorticity = zip(*(layer_peaks(path, radii) for path in paths))
             row = {"alpha": alpha, "group": group, "seeds": len(paths)}
@@ -117,16 +99,14 @@ def measure(program):
         rows += rows_of(program, f"stiff-{STIFFER}", friction, sizes[:1], stiffer=STIFFER)
         light = SCENE["particles"]["density"] / LIGHTER
         rows += rows_of(program, f"light-{LIGHTER}", friction, sizes[:1], density=light)
-    names = ["part", "friction", "alpha", "count", "grains", "fraction", "stiffness", "seeds", "lost", "transient"]
-    names += ["overlap", *columns_of("viscosity", "pairs", "lubrication", "contact", "mean_overlap")]
-    write_table(HERE / "table.csv", names, rows, 5)
-    write_table(HERE / "jamming.csv", JAMMING, jams, 5)
-    names = ["alpha", "group", "seeds", *columns_of("gradient", "vorticity")]
-    write_table(HERE / "order.csv", names, list(order_rows(program)), 4)
+    names = "part, friction, alpha, count, grains, fraction, stiffness, seeds, lost, transient, overlap, viscosity±, "
+    write_table(HERE / "table.csv", names + "pairs±, lubrication±, contact±, mean_overlap±", rows, 5)
+    names = "friction, alpha, points, jammed±, prefactor±, exponent±, rms, chi squared, degrees, flowing, stuck"
+    write_table(HERE / "jamming.csv", names, jams, 5)
+    write_rows(HERE / "order.csv", list(order_rows(program)), 4)
 
 
 LAW = "jammed", "prefactor", "exponent"
-JAMMING = ["friction", "alpha", "points", *columns_of(*LAW), "rms", "chi squared", "degrees", "flowing", "stuck"]
 
 
 def jamming_rows(program, friction):
@@ -136,73 +116,58 @@ def jamming_rows(program, friction):
     exponent = found["common"]["exponent"]
     for curve in sorted(found["curves"], key=lambda c: c["settings"]["/particles/mixture/alpha"]):
         law, stuck = curve["law"], curve["smallest_stuck"]
-        row = {
-            "friction": friction,
-            "alpha": curve["settings"]["/particles/mixture/alpha"],
-            "flowing": curve["largest_flowing"] or math.nan,
-            "stuck": stuck["fraction"] if stuck else math.nan,
-        }
-        row |= {"points": 0, "rms": math.nan, "chi squared": math.nan, "degrees": 0}
-        row |= {k: v for name in LAW for k, v in entries(name, (math.nan, math.inf)).items()}
+        row = {"friction": friction, "alpha": curve["settings"]["/particles/mixture/alpha"], "points": 0, "degrees": 0}
+        row |= {"rms": math.nan, "chi squared": math.nan, "flowing": curve["largest_flowing"] or math.nan}
+        row["stuck"] = stuck["fraction"] if stuck else math.nan
+        numbers = [(math.nan, math.inf)] * 3
         if law["phi_m"]:
-            fitted = [p for p in curve["points"] if p["fitted"]]
-            numbers = [(law["phi_m"]["value"], law["phi_m"]["standard_error"])]
-            numbers.append((law["prefactor"]["value"], law["prefactor"]["standard_error"]))
-            numbers.append((exponent["value"], exponent["standard_error"]))
+            fitted = where(curve["points"], fitted=True)
+            numbers = [(n["value"], n["standard_error"]) for n in (law["phi_m"], law["prefactor"], exponent)]
             (jammed, _), (prefactor, _), (power, _) = numbers
             left = [math.log(p["mean"] / prefactor) + power * math.log(1 - p["fraction"] / jammed) for p in fitted]
             row |= {"points": len(fitted), "rms": math.sqrt(sum(x * x for x in left) / len(left))}
             row |= {"chi squared": law["chi_squared"], "degrees": law["degrees"]}
-            row |= {k: v for name, value in zip(LAW, numbers) for k, v in entries(name, value).items()}
-        yield row
+        yield row | {k: v for name, value in zip(LAW, numbers) for k, v in entries(name, value).items()}
 
 
 def jammed_at(points, friction):
     return {p["alpha"]: p for p in points if p["friction"] == friction and p["points"]}
 
 
-def optimum(of_alpha):
-    """The share of grains at which phi_m is largest, among those that were measured."""
-    alphas = list(of_alpha)
-    return place_of_largest(alphas, [number(of_alpha[alpha], "jammed") for alpha in alphas])
-
-
 def modelled(alpha, friction):
-    """What the two models say."""
-    of = packing_models(ALONE[friction])
-    return of["linear mixture"](alpha), of["rods"](alpha)
+    """Returns what the two models say."""
+    return [model(alpha) for model in packing_models(ALONE[friction]).values()]
 
 
-def from_nearer_model(of_alpha, friction):
-    """Root of the mean square distance of phi_m from the nearer of the two models."""
-    said = [modelled(alpha, friction) for alpha in of_alpha]
+def distance_from_models(of_alpha, friction):
+    """Returns the root of the mean square distance of phi_m from the nearer of the two models."""
+    said = np.array([modelled(alpha, friction) for alpha in of_alpha])
 
     def found(values):
-        left = [min(abs(v - model) for model in pair) for v, pair in zip(values, said)]
+        left = np.abs(np.array(values)[:, None] - said).min(axis=1)
         return math.sqrt(sum(d * d for d in left) / len(left))
 
     return propagated([number(row, "jammed") for row in of_alpha.values()], found)
 
 
 def slopes(of_alpha):
-    """How fast phi_m rises from grains alone over how fast from colloids alone."""
-    first = min(alpha for alpha in of_alpha if alpha > 0)
-    ends = [number(of_alpha[alpha], "jammed") for alpha in (1, 0.9, first, 0)]
-    return propagated(ends, lambda v: (v[1] - v[0]) / 0.1 / ((v[2] - v[3]) / first))
+    """Returns how fast phi_m rises from grains alone over how fast from colloids alone."""
+    least = min(alpha for alpha in of_alpha if alpha > 0)
+    ends = [number(of_alpha[alpha], "jammed") for alpha in (1, 0.9, least, 0)]
+    return propagated(ends, lambda v: (v[1] - v[0]) / 0.1 / ((v[2] - v[3]) / least))
 
 
 def map_rows(points):
     for friction in ALONE:
         of = jammed_at(points, friction)
         name = f"μ = {friction}"
-        text = f"{name}: share α of grains at which φ_m is largest"
-        yield Statement(text, "L5.3c", *optimum(of), 0.6, 0.8, essential=False)
-        text = f"{name}: how fast φ_m rises from α = 1 over how fast from 0"
-        yield Statement(text, "L5.3c", *slopes(of), 1.5)
+        best = place_of_largest([*of], [number(row, "jammed") for row in of.values()])
+        yield Statement(f"{name}: share α of grains at which φ_m is largest", "L5.3c", *best, 0.6, 0.8, essential=False)
+        yield Statement(f"{name}: how fast φ_m rises from α = 1 over how fast from 0", "L5.3c", *slopes(of), 1.5)
         ends = difference(number(of[0], "jammed"), number(of[1], "jammed"))
         yield Statement(f"{name}: φ_m of colloids alone less that of grains alone", "L5.4b", *ends, -0.004, 0.004)
         text = f"{name}: rms distance of φ_m(α) from the nearer packing model"
-        yield Statement(text, "L5.4b", *from_nearer_model(of, friction), high=0.015, essential=False)
+        yield Statement(text, "L5.4b", *distance_from_models(of, friction), high=0.015, essential=False)
         for alpha in (0.8, 0.85, 0.9):
             linear, rod = modelled(alpha, friction)
             share = over(difference(number(of[alpha], "jammed"), (linear, 0)), rod - linear)
@@ -211,7 +176,7 @@ def map_rows(points):
         yield Finding(f"{name}: exponent β of (1 - φ/φ_m)^-β", "L5.4a", *number(of[0], "exponent"))
     row = jammed_at(points, 1)[0.4]
     yield Statement("μ = 1, α = 0.4: rms of ln η_r about a power", "L5.4a", row["rms"], 0, high=0.1)
-    off = min((difference(number(row, "jammed"), (model, 0)) for model in modelled(0.4, 1)), key=lambda d: abs(d[0]))
+    off = from_nearer_model(number(row, "jammed"), 0.4, ALONE[1])
     text = "μ = 1, α = 0.4: φ_m less that of the nearer packing model"
     yield Statement(text, "L5.4a", *off, -0.015, 0.015, essential=False)
 
@@ -232,33 +197,19 @@ def dense_rows(points):
 
 def consistency_rows(rows):
     for friction in ALONE:
-        of_part = {}
-        for row in rows:
-            if row["friction"] == friction:
-                of_part.setdefault(row["part"], []).append(row)
-        name = f"μ = {friction}, α = {TESTED:g}"
-        sizes = sorted(of_part["size"], key=lambda r: r["count"])
+        name, of = f"μ = {friction}, α = {TESTED:g}", where(rows, friction=friction)
+        sizes = sorted(where(of, part="size"), key=lambda r: r["count"])
         for one, other in zip(sizes, sizes[1:]):
-            ratio = quotient(number(other, "viscosity"), number(one, "viscosity"))
             text = f"{name}: η_r of {other['count']:.0f} spheres over that of {one['count']:.0f}"
-            yield Check(text, "size", *ratio, 0.9, 1.1, SEEDS - 1)
-        for part, what in (
-            ("stiff", f"contacts {STIFFER} times as stiff"),
-            ("light", f"a density {LIGHTER} times less"),
-        ):
-            (changed,) = of_part[f"{part}-{STIFFER if part == 'stiff' else LIGHTER}"]
-            ratio = quotient(number(changed, "viscosity"), number(sizes[0], "viscosity"))
+            yield Check(text, "size", *row_ratio(other, one, "viscosity"), 0.9, 1.1, SEEDS - 1)
+        parts = {f"stiff-{STIFFER}": f"contacts {STIFFER} times as stiff"}
+        parts |= {f"light-{LIGHTER}": f"a density {LIGHTER} times less"}
+        for part, what in parts.items():
+            ratio = row_ratio(first(of, part=part), sizes[0], "viscosity")
             yield Check(f"{name}: η_r with {what} over η_r", "Table 5.1", *ratio, 0.95, 1.05, SEEDS - 1)
-    curves = [r for r in rows if r["part"] == "curve" and r["seeds"]]
+    curves = [r for r in where(rows, part="curve") if r["seeds"]]
     flowing = [number(r, "mean_overlap") for r in curves if r["viscosity"] < 1000]
     yield Check("largest mean overlap where η_r < 1000", "Table 5.1", *max(flowing), high=0.01)
-
-
-def order_statements(order):
-    for row in order:
-        ratio = quotient(number(row, "gradient"), number(row, "vorticity"))
-        text = f"μ = 0, α = {row['alpha']:g}, {row['group']}: peak of S(k), gradient over vorticity"
-        yield Finding(text, "layers", *ratio, row["seeds"] - 1)
 
 
 def judge():
@@ -266,7 +217,9 @@ def judge():
     yield from map_rows(points)
     yield from dense_rows(points)
     yield from consistency_rows(rows)
-    yield from order_statements(read_rows(HERE / "order.csv"))
+    for row in read_rows(HERE / "order.csv"):
+        text = f"μ = 0, α = {row['alpha']:g}, {row['group']}: peak of S(k), gradient over vorticity"
+        yield Finding(text, "layers", *quotient(number(row, "gradient"), number(row, "vorticity")), row["seeds"] - 1)
 
 
 def draw():
@@ -275,11 +228,8 @@ def draw():
     ends = {"x_range": (-0.02, 1.02), "y_range": (0.46, 0.82)}
     panel = figure.panel("share of grains α", "φ_m", "where they jam", key="bottom center", **ends)
     for friction, colour in zip(ALONE, (BLUE, RED)):
-        of = jammed_at(points, friction)
-        panel.points([(a, *number(r, "jammed")) for a, r in of.items()], f"μ = {friction}", colour)
-        for dash, (name, model) in zip((1, 2), packing_models(ALONE[friction]).items()):
-            title = name if friction == 0 else None
-            panel.curve(model, title, colour, span=(0, 1), samples=81, dash=dash)
+        panel.rows(jammed_at(points, friction).values(), "alpha", "jammed", f"μ = {friction}", colour)
+        draw_models(panel, ALONE[friction], colour, titled=friction == 0)
     for base, colour in zip((0.55, DENSE), (GREEN, ORANGE)):
         title = f"colloids added to φ₀ = {base:g}"
         panel.curve(lambda a, b=base: colloids_added(a, b), title, colour, span=(0.4, 1), dash=3)
@@ -289,7 +239,7 @@ def draw():
         for alpha, colour in ((0, BLUE), (0.5, GREEN), (0.8, ORANGE), (1, RED)):
             if alpha not in of:
                 continue
-            curve = [r for r in rows if (r["part"], r["friction"], r["alpha"]) == ("curve", friction, alpha)]
+            curve = where(rows, part="curve", friction=friction, alpha=alpha)
             jammed = of[alpha]["jammed"]
             places = [(1 - r["fraction"] / jammed, *number(r, "viscosity")) for r in curve if r["seeds"]]
             panel.points(places, f"α = {alpha:g}, μ = {friction}", colour, mark)
@@ -298,13 +248,10 @@ def draw():
 
 def quick_measure(program):
     """Grains at which friction jams colloids or grains alone, mixed."""
-    smooth, rough = (
-        {r["alpha"]: r for r in rows_of(program, "quick", friction, cases, 4)}
-        for friction, cases in ((0, [(0, 300, 0.6), (0.7, 1000, 0.6)]), (1, [(0, 300, 0.54), (0.7, 1000, 0.54)]))
-    )
-    for name, of in (("μ = 0, φ = 0.6", smooth), ("μ = 1, φ = 0.54", rough)):
-        ratio = quotient(number(of[0.7], "viscosity"), number(of[0], "viscosity"))
-        yield Statement(f"{name}: η_r at α = 0.7 over that of colloids alone", "L5.3b", *ratio, 0, 0.8)
+    for friction, fraction in ((0, 0.6), (1, 0.54)):
+        alone, mixed = rows_of(program, "quick", friction, [(0, 300, fraction), (0.7, 1000, fraction)], 4)
+        text = f"μ = {friction}, φ = {fraction:g}: η_r at α = 0.7 over that of colloids alone"
+        yield Statement(text, "L5.3b", *row_ratio(mixed, alone, "viscosity"), 0, 0.8)
 
 
 main(HERE, TITLE, measure, quick_measure, judge, draw)

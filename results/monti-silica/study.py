@@ -1,43 +1,23 @@
 #!/usr/bin/python3
 """Flow curves of silica spheres that repel and attract each other, with two concentrations of salt, of Monti et al.
-(2021), Fig. 8.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+(2021), Fig. 8."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import logarithm, over, propagated, quotient, relative_difference
-from studies.figure import BLUE, GREEN, GREY, ORANGE, PURPLE, RED, Figure
-from studies.monti import (
-    DRAG,
-    PROGRAM_RATIO,
-    PUBLISHED_RANGE,
-    SCENE,
-    TABLE_RATIO,
-    contact,
-    electrochemistry,
-    lubrication,
-    spheres,
-)
-from studies.published import mari_fit
-from studies.scenes import during, merged
-from studies.tables import columns_of, number, read_numbers, read_table, write_numbers, write_table
-from studies.verdicts import Check, Finding, Statement
-from studies.viscosities import flags, viscosity_row
+from studies.driver import BLUE, Check, Figure, Finding, GREEN, GREY, ORANGE, PURPLE, RED, Statement, flags, in_strains
+from studies.driver import logarithm, main, mari_fit, merged, number, over, propagated, read_numbers, read_rows
+from studies.driver import relative_difference, row_ratio, viscosity_row, where, write_numbers, write_table
+from studies.monti import DRAG, PROGRAM_RATIO, PUBLISHED_RANGE, SCENE, TABLE_RATIO, contact, electrochemistry
+from studies.monti import lubrication, spheres
 
 TITLE = "Silica with two concentrations of salt"
 FRACTION, FRICTION = 0.46, 0.5
 SALTS = {0.0214: "salt-free", 0.0048: "0.4 M"}  # by the Debye length: 9 and 2 nm of 420
 FREE, SALTED = SALTS
-SCENE = merged(
-    merged(SCENE, spheres(512, FRACTION, 1.1, 0.5)),
-    {"lubrication": lubrication(0.15), **during({"strain": 2}, {"strain": 8})},
-)
+SCENE = merged(SCENE, spheres(512, FRACTION, 1.1, 0.5), in_strains(2, 8), lubrication=lubrication(0.15))
 # rate / rate_0 with rate_0 = (F_R + F_A) / (eta a^2).
 RATES = [10 ** (k / 2) for k in (-10, -8, *range(-6, 3))]
 SEEDS = 6
@@ -46,7 +26,7 @@ SCANNED = {SALTED: (PROGRAM_RATIO, 3, 1, 0.5), FREE: (PROGRAM_RATIO, 1)}
 SCAN_RATES, SCAN_SEEDS = [1e-4, 1e-3, 1e-2, 0.1, 1, 10], 3
 OTHER_LENGTH = 0.005  # of 0.4 M, another rounding
 CHECKED, CHECK_SEEDS = [(FREE, 1e-5), (SALTED, 1e-5), (FREE, 0.1)], 8
-SHORT = {"particles": {"count": 200}, **during({"strain": 1}, {"strain": 3})}
+SHORT = {"particles": {"count": 200}, **in_strains(1, 3)}
 # Where attraction wins at contact, contacts are so stiff that it presses them by a hundredth of a radius.
 STIFFNESS, STIFFNESS_OVER_ATTRACTION = 4e5, 100
 
@@ -62,37 +42,26 @@ def rows_of(program, name, cases, seeds, patch=None, **others):
     """Rows of (Debye length, F_R / F_A, rate / rate_0)."""
     patches = [patch_of(rate, length, ratio, **others) for length, ratio, rate in cases]
     settings = [{f"/{key}": block for key, block in p.items()} for p in patches]
-    scene = merged(merged(SCENE, patches[0]), patch or {})
-    points = program.run(name, scene, settings, seeds)
+    points = program.run(name, merged(SCENE, patches[0], patch or {}), settings, seeds)
     return [row_of(case, point) for case, point in zip(cases, points)]
 
 
 def row_of(case, point):
     length, ratio, rate = case
-    row = {"length": length, "ratio": ratio, "rate": rate}
+    row = {"length": length, "ratio": ratio, "rate": rate, "rate_of_drag": rate * DRAG}
     row["rate_of_difference"] = rate * (ratio + 1) / (ratio - 1) if ratio > 1 else math.nan
-    row["rate_of_drag"] = rate * DRAG
-    row |= viscosity_row(point, "contacts_per_particle")
     attraction = [m["stress"]["attraction"][3] for m in point.means]
     row["attraction"] = sum(attraction) / len(attraction) if attraction else math.nan
-    row["soft"] = flags(point)["overlap"]
-    return row
+    return row | viscosity_row(point, "contacts_per_particle") | {"soft": flags(point)["overlap"]}
 
 
 def curve_of(rows, length, ratio):
-    chosen = [r for r in rows if (r["length"], r["ratio"]) == (length, ratio)]
-    return sorted(chosen, key=lambda r: r["rate"])
+    return sorted(where(rows, length=length, ratio=ratio), key=lambda r: r["rate"])
 
 
 def slope(low, high):
     """d ln eta / d ln rate between two rows."""
-    rise = logarithm(quotient(number(high, "viscosity"), number(low, "viscosity")))
-    return over(rise, math.log(high["rate"] / low["rate"]))
-
-
-def over_least(curve, end):
-    """The viscosity at one end over the least of the curve."""
-    return propagated([number(r, "viscosity") for r in curve], lambda values: values[end] / min(values))
+    return over(logarithm(row_ratio(high, low, "viscosity")), math.log(high["rate"] / low["rate"]))
 
 
 def shape_rows(rows):
@@ -102,7 +71,8 @@ def shape_rows(rows):
         curve = curve_of(rows, length, ratio)
         what = "lowest rate over the least: thinning" if end == 0 else "highest rate over the least: thickening"
         text = f"{SALTS[length]}, F_R/F_A = {ratio}: η_r at the {what}"
-        yield Finding(text, "M fig 8", *over_least(curve, end), curve[0]["seeds"] - 1)
+        found = propagated([number(r, "viscosity") for r in curve], lambda values, end=end: values[end] / min(values))
+        yield Finding(text, "M fig 8", *found, curve[0]["seeds"] - 1)
 
 
 def slope_rows(rows, ends):
@@ -121,7 +91,7 @@ def change(program, name, case, patch=None, **others):
     points = []
     for kind, block, more in (("", {}, {}), ("-changed", patch or {}, others)):
         length, rate = case
-        scene = merged(merged(SCENE, patch_of(rate, length, TABLE_RATIO, **more)), merged(SHORT, block))
+        scene = merged(SCENE, patch_of(rate, length, TABLE_RATIO, **more), merged(SHORT, block))
         points += program.run(name + kind, scene, [{"/volume_fraction": FRACTION}], CHECK_SEEDS)
     reference, changed = (point.by_seed() for point in points)
     return relative_difference(changed, reference, paired=True)
@@ -140,16 +110,16 @@ def method_numbers(program):
 
 
 def judge():
-    table = read_table(HERE / "table.csv")
+    table = read_rows(HERE / "table.csv")
     # The slope at 1 has campaigns of its own, with more seeds.
     most = max(r["seeds"] for r in table)
     ends = sorted((r for r in table if r["seeds"] == most), key=lambda r: r["rate"])
     rows = [r for r in table if r["seeds"] < most]
     yield from slope_rows(rows, ends)
     yield from shape_rows(rows)
-    for text, (value, error, degrees) in read_numbers(HERE / "numbers.csv").items():
+    for text, (*found, degrees) in read_numbers(HERE / "numbers.csv").items():
         of, width = ("step", 0.05) if "half of the automatic step" in text else ("range of attraction", 0.1)
-        yield Check(text, of, value, error, -width, width, degrees)
+        yield Check(text, of, *found, -width, width, degrees)
 
 
 def measure(program):
@@ -157,9 +127,8 @@ def measure(program):
     scans = [(d, ratio, x) for d, ratios in SCANNED.items() for ratio in ratios for x in SCAN_RATES]
     rows += rows_of(program, "scan", [*scans, *((OTHER_LENGTH, TABLE_RATIO, x) for x in SCAN_RATES)], SCAN_SEEDS)
     ends = rows_of(program, "slope", [(FREE, TABLE_RATIO, x) for x in SLOPE_RATES], SLOPE_SEEDS)
-    names = ["length", "ratio", "rate", "rate_of_difference", "rate_of_drag", "seeds", "lost", "transient", "soft"]
-    names += columns_of("viscosity", "lubrication", "contact", "repulsion")
-    names += ["attraction", *columns_of("contacts_per_particle")]
+    names = "length, ratio, rate, rate_of_difference, rate_of_drag, seeds, lost, transient, soft, viscosity±, "
+    names += "lubrication±, contact±, repulsion±, attraction, contacts_per_particle±"
     write_table(HERE / "table.csv", names, rows + ends, 4)
     draw(rows)
     write_numbers(HERE / "numbers.csv", dict(method_numbers(program)))
@@ -169,33 +138,29 @@ def draw(rows):
     figure = Figure(HERE / "chart.png", columns=2)
     ends = {"x_range": (5e-6, 20), "y_range": (5, 1000), "log": "xy", "powers": "x", "key": "top right"}
     panel = figure.panel("γ̇/γ̇_0, F(0) = F_R + F_A", "η_r", f"φ = {FRACTION}, μ = {FRICTION}, F_R/F_A = 19", **ends)
-    both = (5e-6, 20)
-    panel.level(mari_fit(FRACTION, 1), "Mari fit (published), μ = 1", GREY, span=both, dash=2)
-    panel.level(mari_fit(FRACTION, 0), "Mari fit (published), μ = 0", GREY, span=both, dash=3)
+    for friction, dash in ((1, 2), (0, 3)):
+        panel.level(mari_fit(FRACTION, friction), f"Mari fit (published), μ = {friction}", GREY, dash=dash)
     for x, text in ((1, "γ̇_0, in the published thickening"), (1 / DRAG, "γ̇_0 with 6π")):
         panel.upright(x)
         panel.text(text, x * 0.8, 90, "right", rotation=90, fontsize=9)
     for length, colour in ((FREE, BLUE), (SALTED, RED)):
-        points = [(r["rate"], *number(r, "viscosity")) for r in curve_of(rows, length, TABLE_RATIO)]
-        panel.points(points, f"{SALTS[length]}, λ = {length} a", colour, 7, 0.8, joined=True)
+        curve, title = curve_of(rows, length, TABLE_RATIO), f"{SALTS[length]}, λ = {length} a"
+        panel.rows(curve, "rate", "viscosity", title, colour, 7, 0.8, joined=True)
     panel = figure.panel("γ̇/γ̇_0, F(0) = F_R + F_A", "η_r", f"λ = {SALTED} a (0.4 M)", **ends)
     for ratio, colour in zip((TABLE_RATIO, *SCANNED[SALTED]), (RED, ORANGE, GREEN, BLUE, PURPLE)):
-        points = [(r["rate"], *number(r, "viscosity")) for r in curve_of(rows, SALTED, ratio)]
-        panel.points(points, f"F_R/F_A = {ratio}", colour, 7, 0.8, joined=True)
+        curve = curve_of(rows, SALTED, ratio)
+        panel.rows(curve, "rate", "viscosity", f"F_R/F_A = {ratio}", colour, 7, 0.8, joined=True)
     figure.draw()
 
 
 def quick_measure(program):
     cases = [(FREE, TABLE_RATIO, x) for x in (1e-5, 1e-3, 0.1)] + [(SALTED, 0.5, x) for x in (1e-3, 1)]
-    small = {"particles": {"count": 200}, **during({"strain": 1}, {"strain": 3})}
-    slow, least, fast, sticky, torn = rows_of(program, "quick", cases, 6, small)
-    name = f"salt-free, F_R/F_A = {TABLE_RATIO}"
+    slow, least, fast, sticky, torn = rows_of(program, "quick", cases, 6, SHORT)
     for text, row, low, high in (("10⁻⁵", slow, 1.05, 1.6), ("0.1", fast, 1.7, 4)):
-        ratio = quotient(number(row, "viscosity"), number(least, "viscosity"))
-        yield Check(f"{name}: η_r at rate {text} over that at 10⁻³", "expected", *ratio, low, high, 5)
+        text = f"salt-free, F_R/F_A = {TABLE_RATIO}: η_r at rate {text} over that at 10⁻³"
+        yield Check(text, "expected", *row_ratio(row, least, "viscosity"), low, high, 5)
     text = "0.4 M, F_R/F_A = 0.5: η_r at rate 10⁻³ over that at 1"
-    ratio = quotient(number(sticky, "viscosity"), number(torn, "viscosity"))
-    yield Check(text, "expected", *ratio, 1.3, 6, 5)
+    yield Check(text, "expected", *row_ratio(sticky, torn, "viscosity"), 1.3, 6, 5)
 
 
 main(HERE, TITLE, measure, quick_measure, judge)

@@ -1,9 +1,6 @@
 #!/usr/bin/python3
 """Viscosities without noise of the suspensions of Monti et al. (2021), without and with friction, beside the fits of
-their Fig. 7.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+their Fig. 7."""
 import itertools
 import math
 import sys
@@ -11,17 +8,11 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import over, propagated, quotient, relative_difference
-from studies.figure import BLUE, GREY, RED, Figure
-from studies.fits import divergence
+from studies.driver import BLUE, Check, Figure, Finding, GREY, MARI_FITS, RED, Statement, column, divergence, diverging
+from studies.driver import entries, first, flags, groups, in_strains, main, mari_fit, merged, number, over, propagated
+from studies.driver import quotient, read_numbers, read_rows, read_texts, relative_difference, row_ratio, viscosity_row
+from studies.driver import where, with_pairs, write_numbers, write_rows, write_table
 from studies.monti import PAIRS, contact, in_units, kim_karrila, lubrication
-from studies.published import MARI_FITS, diverging, mari_fit
-from studies.scenes import during, merged
-from studies.tables import columns_of, entries, number, read_numbers, read_rows, write_numbers, write_table
-from studies.verdicts import Check, Finding, Statement
-from studies.viscosities import flags, viscosity_row
-
 import numpy as np
 
 TITLE = "Viscosities of Monti et al. with and without friction"
@@ -34,7 +25,7 @@ COMPARED = {0: (0.40, 0.55, 0.1), 1: (0.30, 0.50, 0.15)}  # from, to, and how fa
 # Of free fits: all points, and those of one power of 1 - phi / phi_J (chosen after looking): not the dilute ones, nor
 # the densest with friction, where the contacts are too soft.
 FITTED = {"all": {0: (0.30, 0.57), 1: (0.30, 0.55)}, "one power": {0: (0.45, 0.57), 1: (0.40, 0.53)}}
-SCENE = merged(PAIRS, during({"strain": 2}, {"strain": 8}))
+SCENE = merged(PAIRS, in_strains(2, 8))
 SEEDS = {0: 48, 1: 8}
 
 # What might move a viscosity away from the fit: of FL and FR at these fractions, at the gap of 0.05.
@@ -47,7 +38,7 @@ VARIANT_SEEDS = 6
 
 ROLLING = {"contact": {"rolling_stiffness": 4e5 / 7, "rolling_friction": 0.1}}  # of their program
 ROLLED = (0.45, 0.50)
-LONG = during({"strain": 20}, {"strain": 8})
+LONG = in_strains(20, 8)
 
 
 def rows_of(program, name, cases, seeds, patch=None, block=lubrication):
@@ -55,7 +46,7 @@ def rows_of(program, name, cases, seeds, patch=None, block=lubrication):
     friction = cases[0][0]
     fixed = {"particles": {"count": COUNTS[friction]}, "contact": {"friction": friction}}
     settings = [{"/volume_fraction": f, "/lubrication": block(g)} for _, f, g in cases]
-    points = program.run(name, merged(merged(SCENE, fixed), patch or {}), settings, seeds)
+    points = program.run(name, merged(SCENE, fixed, patch or {}), settings, seeds)
     return [row_of(case, point) for case, point in zip(cases, points)]
 
 
@@ -75,37 +66,26 @@ def chosen(rows, friction, gap):
     return [r for r in rows if (r["system"], r["gap"]) == (NAMES[friction], gap) and math.isfinite(r["viscosity"])]
 
 
+def between(rows, friction, gap, low, high):
+    return [r for r in chosen(rows, friction, gap) if low <= r["fraction"] <= high]
+
+
 def compared(rows, friction, gap):
-    low, high, _ = COMPARED[friction]
-    return [r for r in chosen(rows, friction, gap) if low <= r["fraction"] <= high]
-
-
-def fitted(rows, friction, gap, part):
-    low, high = FITTED[part][friction]
-    return [r for r in chosen(rows, friction, gap) if low <= r["fraction"] <= high]
-
-
-def free_fit(rows, friction, gap, part):
-    """c, phi_J and lambda through these points of a curve, each with its error."""
-    curve = fitted(rows, friction, gap, part)
-    return divergence([r["fraction"] for r in curve], [number(r, "viscosity") for r in curve], MARI_FITS[friction])
+    return between(rows, friction, gap, *COMPARED[friction][:2])
 
 
 def distance_from(rows):
-    """Root of the mean square of ln(eta / fit) with pairs counted twice, less that with pairs counted once."""
+    """Returns the root of the mean square of ln(eta / fit) with pairs counted twice, less that with pairs counted
+    once."""
+    fractions, fits = column(rows, "fraction"), column(rows, "fit")
 
-    def found(ratios):
-        logs = np.log(np.maximum(np.reshape(ratios, (2, -1)), 1e-9))
-        double, single = np.sqrt(np.square(logs).mean(axis=1))
+    def found(pairs):
+        # Both are of the same pairs: drawn together, twice the pairs has twice the deviation.
+        ratios = (1 + 2.5 * fractions + np.outer((2, 1), pairs)) / fits
+        double, single = np.sqrt(np.square(np.log(np.maximum(ratios, 1e-9))).mean(axis=1))
         return float(double - single)
 
-    # Both are of the same pairs: drawn together, twice the pairs has twice the deviation.
-    numbers = [number(r, "pairs") for r in rows]
-    base = [1 + 2.5 * r["fraction"] for r in rows]
-    fits = [r["fit"] for r in rows]
-    return propagated(
-        numbers, lambda pairs: found([(b + k * p) / f for k in (2, 1) for b, p, f in zip(base, pairs, fits)])
-    )
+    return propagated([number(r, "pairs") for r in rows], found)
 
 
 def fit_rows(rows, fits):
@@ -114,50 +94,44 @@ def fit_rows(rows, fits):
     for friction, name in NAMES.items():
         low, high, share = COMPARED[friction]
         for gap in GAPS:
-            here = compared(rows, friction, gap)
-            worst = max(here, key=lambda r: abs(math.log(r["viscosity_over_fit"])))
+            worst = max(compared(rows, friction, gap), key=lambda r: abs(math.log(r["viscosity_over_fit"])))
             text = f"{name}, gap {gap}: η_r over the fit where it is farthest from 1 of φ = {low:g} to {high:g}"
-            place = f"{text} (at {worst['fraction']:g})"
-            ratio = number(worst, "viscosity_over_fit")
+            place, ratio = f"{text} (at {worst['fraction']:g})", number(worst, "viscosity_over_fit")
             yield Statement(place, "M fig 7", *ratio, 1 - share, 1 + share, worst["seeds"] - 1, essential=False)
-        for row in fits:
-            if row["system"] == name:
-                ends = f"φ = {row['from']:g} to {row['to']:g} (published: {row['jammed_published']:g})"
-                text = f"{name}, gap {row['gap']:g}: φ_J of a free fit from {ends}"
-                degrees = chosen(rows, friction, row["gap"])[0]["seeds"] - 1
-                yield Finding(text, "M fig 7", *number(row, "jammed"), degrees)
-        both = [r for gap in GAPS for r in compared(rows, friction, gap)]
+        for row in where(fits, system=name):
+            ends = f"φ = {row['from']:g} to {row['to']:g} (published: {row['jammed_published']:g})"
+            text = f"{name}, gap {row['gap']:g}: φ_J of a free fit from {ends}"
+            degrees = chosen(rows, friction, row["gap"])[0]["seeds"] - 1
+            yield Finding(text, "M fig 7", *number(row, "jammed"), degrees)
         text = f"{name}: rms of ln(η_r/fit) with the pairs' stress counted twice, less that counted once"
-        yield Finding(text, "M eq 8", *distance_from(both))
+        yield Finding(text, "M eq 8", *distance_from([r for gap in GAPS for r in compared(rows, friction, gap)]))
 
 
 def unit_numbers(program):
     """The same point in two other systems of units; numbers that are powers of two round alike."""
     name = "FL, φ = 0.5, gap 0.05, 8 seeds"
-    base = merged(SCENE, {"particles": {"count": 200}, **during({"strain": 1}, {"strain": 2})})
-    points = {}
+    base = merged(SCENE, in_strains(1, 2), particles={"count": 200})
+    found = []
     for key, units in (("first", (1, 1, 1)), ("binary", (0.25, 0.5, 2)), ("other", (0.1, 0.045, 1.7))):
-        scene = in_units(base, *units)
-        (points[key],) = program.run(f"units-{key}", scene, [{"/volume_fraction": 0.5}], 8)
-    first, binary = (points[k].by_seed() for k in ("first", "binary"))
-    largest = max(abs(binary[s] / first[s] - 1) for s in first)
-    yield f"{name}: largest relative difference of η_r in units of η/4, rate/2, 2 a", (largest, 0.0, len(first) - 1)
-    other = points["other"].by_seed()
+        (point,) = program.run(f"units-{key}", in_units(base, *units), [{"/volume_fraction": 0.5}], 8)
+        found.append(point.by_seed())
+    one, binary, other = found
+    largest = max(abs(binary[s] / one[s] - 1) for s in one)
+    yield f"{name}: largest relative difference of η_r in units of η/4, rate/2, 2 a", (largest, 0.0, len(one) - 1)
     text = f"{name}: relative difference of η_r in units of 0.1 η, 0.045 rate, 1.7 a, paired by seeds"
-    yield text, relative_difference(other, first, paired=True)
+    yield text, relative_difference(other, one, paired=True)
 
 
 def unit_rows(numbers):
     """Three groups are all that the equations have."""
-    for text, (value, error, degrees) in numbers.items():
-        ends = (0, 1e-4) if "largest" in text else (-0.03, 0.03)
-        yield Statement(text, "M eq 11", value, error, *ends, degrees)
+    for text, (*found, degrees) in numbers.items():
+        yield Statement(text, "M eq 11", *found, *((0, 1e-4) if "largest" in text else (-0.03, 0.03)), degrees)
 
 
 def rolling_rows(rows, rolled):
     plain = {r["fraction"]: r for r in chosen(rows, 1, 0.05)}
     rolled = [r for r in rolled if r["seeds"] > 1]
-    ratios = [quotient(number(r, "viscosity"), number(plain[r["fraction"]], "viscosity")) for r in rolled]
+    ratios = [row_ratio(r, plain[r["fraction"]], "viscosity") for r in rolled]
     degrees = min(r["seeds"] for r in rolled) - 1
     for row, ratio in zip(rolled, ratios):
         text = f"FR, φ = {row['fraction']:g}: η_r with rolling resistance over that without"
@@ -182,48 +156,32 @@ def regularisation_that_fits(scan):
 
 def regularisation_rows(of_variant):
     """What a publication that does not print its regularisation would have had; none where the scan does not reach."""
+    prefix = "regularisation "
+    values = {float(k.removeprefix(prefix)): rows for k, rows in of_variant.items() if k.startswith(prefix)}
+    values = {1e-3: of_variant[""]} | values
     for friction, name in NAMES.items():
         for fraction, gap in itertools.product(VARIED[friction], GAPS):
-            values = {1e-3: of_variant[""]} | {v: rows for v, rows in scans_of(of_variant)}
-            scan = [
-                (value, *number(row, "viscosity_over_fit"))
-                for value, rows in values.items()
-                for row in rows
-                if (row["system"], row["fraction"], row["gap"]) == (name, fraction, gap)
-            ]
+            case = {"system": name, "fraction": fraction, "gap": gap}
+            scan = [(v, *number(r, "viscosity_over_fit")) for v, rows in values.items() for r in where(rows, **case)]
             ratios = [ratio for _, ratio, _ in scan]
             if min(ratios) < 1 < max(ratios):
                 text = f"{name}, φ = {fraction:g}, gap {gap}: log10 of the regularisation at which η_r is the fit's"
                 yield Finding(text, "M fig 7", *regularisation_that_fits(scan), VARIANT_SEEDS - 1)
 
 
-def scans_of(of_variant):
-    prefix = "regularisation "
-    return [(float(k.removeprefix(prefix)), rows) for k, rows in of_variant.items() if k.startswith(prefix)]
-
-
-def start_rows(rows, later):
-    """Of another start than the published one, a dense packing."""
-    for row in later:
-        friction = {v: k for k, v in NAMES.items()}[row["system"]]
-        (early,) = (r for r in chosen(rows, friction, row["gap"]) if r["fraction"] == row["fraction"])
-        ratio = quotient(number(row, "viscosity"), number(early, "viscosity"))
-        text = f"{row['system']}, φ = {row['fraction']:g}: η_r after a strain of 20 over that after 2"
-        yield Check(text, "start", *ratio, 0.95, 1.05, row["seeds"] - 1)
-
-
 def judge():
-    table, of_variant = read_rows(HERE / "table.csv"), {}
-    for row in table:
-        value, error = number(row, "viscosity")
-        row |= entries("pairs", (value - 1 - 2.5 * row["fraction"], error))
-        of_variant.setdefault("" if row["variant"] != row["variant"] else row["variant"], []).append(row)
+    texts = [r["variant"] for r in read_texts(HERE / "table.csv")]
+    table = [with_pairs(row) | {"variant": text} for row, text in zip(read_rows(HERE / "table.csv"), texts)]
+    of_variant = groups(table, "variant")
     rows = of_variant[""]
     yield from fit_rows(rows, read_rows(HERE / "fits.csv"))
     yield from regularisation_rows(of_variant)
     yield from unit_rows(read_numbers(HERE / "numbers.csv"))
     yield from rolling_rows(rows, of_variant["rolling"])
-    yield from start_rows(rows, of_variant["strain of 20 before"])
+    for row in of_variant["strain of 20 before"]:  # another start than the published one, a dense packing
+        early = first(rows, **{name: row[name] for name in ("system", "gap", "fraction")})
+        text = f"{row['system']}, φ = {row['fraction']:g}: η_r after a strain of 20 over that after 2"
+        yield Check(text, "start", *row_ratio(row, early, "viscosity"), 0.95, 1.05, row["seeds"] - 1)
 
 
 def regularised(value):
@@ -244,70 +202,61 @@ def variants_of(friction):
     yield f"N = {count}", {"particles": {"count": count}}, lubrication, GAPS[0], None
 
 
-def measure_variants(program):
-    """Rows with the name of what was varied."""
+def rows_of_variants(program):
     for friction, fractions in VARIED.items():
         for k, (name, patch, block, gap, alone) in enumerate(variants_of(friction)):
             cases = [(friction, f, gap) for f in alone or fractions]
             for row in rows_of(program, f"variant-{friction}-{k}", cases, VARIANT_SEEDS, patch, block):
                 yield {"variant": name, **row}
+    for row in rows_of(program, "rolling", [(1, f, 0.05) for f in ROLLED], SEEDS[1], ROLLING):
+        yield {"variant": "rolling", **row}
+    for friction, name in NAMES.items():
+        for row in rows_of(program, f"later-{name}", [(friction, 0.5, 0.05)], SEEDS[friction], LONG):
+            yield {"variant": "strain of 20 before", **row}
 
 
 def measure(program):
     rows = []
-    for friction in (0, 1):
-        cases = [(friction, f, g) for g in GAPS for f in FRACTIONS[friction]]
-        rows += rows_of(program, NAMES[friction], cases, SEEDS[friction])
-    fits = {key: free_fit(rows, *key) for key in itertools.product((0, 1), GAPS, FITTED)}
-    variants = list(measure_variants(program))
-    rolled = rows_of(program, "rolling", [(1, f, 0.05) for f in ROLLED], SEEDS[1], ROLLING)
-    later = [
-        *rows_of(program, "later-FL", [(0, 0.5, 0.05)], SEEDS[0], LONG),
-        *rows_of(program, "later-FR", [(1, 0.5, 0.05)], SEEDS[1], LONG),
-    ]
-    write_tables(rows, [*variants, *({"variant": "rolling", **r} for r in rolled)], later, fits)
+    for friction, name in NAMES.items():
+        rows += rows_of(program, name, [(friction, f, g) for g in GAPS for f in FRACTIONS[friction]], SEEDS[friction])
+    names = "variant, system, fraction, gap, seeds, lost, transient, soft, fit, viscosity±, viscosity_over_fit±, "
+    names += "double_over_fit±, lubrication±, contact±, first_normal_difference±, second_normal_difference±, pressure±"
+    table = [{"variant": "", **row} for row in rows] + list(rows_of_variants(program))
+    write_table(HERE / "table.csv", names, table, 4)
+    fits = {key: fit_row(rows, *key) for key in itertools.product(NAMES, GAPS, FITTED)}
+    write_rows(HERE / "fits.csv", list(fits.values()), 4)
     draw(rows, fits)
     write_numbers(HERE / "numbers.csv", dict(unit_numbers(program)))
 
 
-def write_tables(rows, variants, later, fits):
-    names = ["variant", "system", "fraction", "gap", "seeds", "lost", "transient", "soft", "fit"]
-    names += columns_of("viscosity", "viscosity_over_fit", "double_over_fit", "lubrication", "contact")
-    names += columns_of("first_normal_difference", "second_normal_difference", "pressure")
-    table = [{"variant": "", **r} for r in rows] + variants + [{"variant": "strain of 20 before", **r} for r in later]
-    write_table(HERE / "table.csv", names, table, 4)
-    found = []
-    for (friction, gap, part), numbers in fits.items():
-        low, high = (end(r["fraction"] for r in fitted(rows, friction, gap, part)) for end in (min, max))
-        row = {"system": NAMES[friction], "gap": gap, "from": low, "to": high}
-        for name, pair, published in zip(("factor", "jammed", "exponent"), numbers, MARI_FITS[friction]):
-            row |= entries(name, pair) | {f"{name}_published": published}
-        found.append(row)
-    columns = [c for n in ("factor", "jammed", "exponent") for c in (n, f"{n}_error", f"{n}_published")]
-    write_table(HERE / "fits.csv", ["system", "gap", "from", "to", *columns], found, 4)
+def fit_row(rows, friction, gap, part):
+    """c, phi_J and lambda through these points of a curve, each with its error."""
+    curve = between(rows, friction, gap, *FITTED[part][friction])
+    fractions = [r["fraction"] for r in curve]
+    row = {"system": NAMES[friction], "gap": gap, "from": min(fractions), "to": max(fractions)}
+    found = divergence(fractions, [number(r, "viscosity") for r in curve], MARI_FITS[friction])
+    for name, pair, published in zip(("factor", "jammed", "exponent"), found, MARI_FITS[friction]):
+        row |= entries(name, pair) | {f"{name}_published": published}
+    return row
 
 
 def draw(rows, fits):
     figure = Figure(HERE / "chart.png", columns=2)
     for friction, name in NAMES.items():
-        top = (2, 100) if friction == 0 else (2, 2000)
         title = f"{name}: μ = {friction}, N = {COUNTS[friction]}"
-        ends = {"x_range": (0.28, 0.58), "y_range": top}
+        ends = {"x_range": (0.28, 0.58), "y_range": (2, 2000 if friction else 100)}
         panel = figure.panel("φ", "η_r", title, log="y", key="top left", **ends)
         span = (0.28, min(0.58, MARI_FITS[friction][1] - 0.004))
         panel.curve(lambda phi, m=friction: mari_fit(phi, m), "Mari fit (published)", span=span, width=2)
         for gap, colour in zip(GAPS, (BLUE, RED)):
-            points = chosen(rows, friction, gap)
-            panel.points([(r["fraction"], *number(r, "viscosity")) for r in points], f"gap {gap} a", colour, 7, 0.9)
-            factor, jammed, exponent = (n[0] for n in fits[friction, gap, "one power"])
-            ends = (0.28, min(0.58, jammed - 0.002))
-            panel.curve(
-                lambda phi, c=factor, j=jammed, e=exponent: c * diverging(phi, j, e),
-                f"fit to them: φ_J = {jammed:.3f}",
-                colour,
-                span=ends,
-                dash=2,
-            )
+            panel.rows(chosen(rows, friction, gap), "fraction", "viscosity", f"gap {gap} a", colour, 7, 0.9)
+            fit = fits[friction, gap, "one power"]
+
+            def of_fit(phi, fit=fit):
+                return fit["factor"] * diverging(phi, fit["jammed"], fit["exponent"])
+
+            ends = (0.28, min(0.58, fit["jammed"] - 0.002))
+            panel.curve(of_fit, f"fit to them: φ_J = {fit['jammed']:.3f}", colour, span=ends, dash=2)
         points = chosen(rows, friction, GAPS[0])
         twice = [(r["fraction"], *number(r, "double")) for r in points]
         panel.points(twice, f"gap {GAPS[0]} a, pairs counted twice", GREY, 6, 0.9)
@@ -315,7 +264,7 @@ def draw(rows, fits):
 
 
 def quick_measure(program):
-    small = during({"strain": 1}, {"strain": 4})
+    small = in_strains(1, 4)
     (smooth,) = rows_of(program, "quick-FL", [(0, 0.45, 0.05)], 8, small)
     rough, rolled = (
         rows_of(program, name, [(1, 0.45, 0.05)], 8, merged({"particles": {"count": 250}, **small}, patch))[0]
@@ -327,7 +276,7 @@ def quick_measure(program):
     text = "FL, φ = 0.45: rms of ln(η_r/fit) with the pairs' stress counted twice, less that counted once"
     yield Check(text, "M eq 8", *distance_from([smooth]), low=0.1)
     text = "FR, φ = 0.45: η_r with rolling resistance over that without"
-    yield Statement(text, "M app B", *quotient(number(rolled, "viscosity"), number(rough, "viscosity")), 1.1, 2, 7)
+    yield Statement(text, "M app B", *row_ratio(rolled, rough, "viscosity"), 1.1, 2, 7)
     yield from unit_rows(dict(unit_numbers(program)))
 
 

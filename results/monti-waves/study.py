@@ -1,9 +1,6 @@
 #!/usr/bin/python3
 """Shear with and without a wave of the rate, large and small spheres with friction, repulsion and attraction: Monti et
-al. (2021), Table 3 and Fig. 10.
-
-study.py BIN [FOLDER] [--quick | --long | --from-table]
-"""
+al. (2021), Table 3 and Fig. 10."""
 import math
 import os
 import sys
@@ -11,14 +8,10 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import difference, estimate, quotient, relative_difference
-from studies.figure import BLACK, BLUE, GREEN, ORANGE, RED, Figure
+from studies.driver import BLACK, BLUE, Check, Figure, Finding, GREEN, ORANGE, RED, Statement, column, difference
+from studies.driver import entries, estimate, first, groups, in_strains, main, merged, number, read_final, read_numbers
+from studies.driver import read_rows, relative_difference, row_ratio, where, write_numbers, write_table
 from studies.monti import DRAG, PROGRAM_RATIO, SCENE, TABLE_RATIO, contact, electrochemistry, lubrication, spheres
-from studies.scenes import during, merged
-from studies.tables import columns_of, entries, number, read_numbers, read_rows, write_numbers, write_table
-from studies.verdicts import Check, Finding, Statement
-
 import numpy as np
 
 TITLE = "A wave in the shear of Monti et al."
@@ -31,24 +24,17 @@ PROFILES = "fraction", "velocity", "small", "large"  # profiles_of()
 # Touching forces F_R + F_A of the small spheres and F_R/F_A, at rate = rate_0.
 FORCES = {"table": (1.0, TABLE_RATIO), "program": (DRAG, PROGRAM_RATIO)}
 # Spheres, forces, whether there is a wave, and whether the spheres feel its curvature; seeds.
-RUNS = {
-    (SMALL_COUNT, "table", False, True): 6,
-    (SMALL_COUNT, "table", True, True): 6,
-    (SMALL_COUNT, "table", True, False): 6,
-    (SMALLEST_COUNT, "table", False, True): 8,
-    (SMALLEST_COUNT, "table", True, True): 8,
-    (SMALLEST_COUNT, "program", False, True): 8,
-    (SMALLEST_COUNT, "program", True, True): 8,
-}
+WAVES = (False, True), (True, True)
+RUNS = {(SMALL_COUNT, "table", *wave): 6 for wave in (*WAVES, (True, False))}
+RUNS |= {(SMALLEST_COUNT, forces, *wave): 8 for forces in FORCES for wave in WAVES}
 LARGE_RUNS = {(COUNT, "table", False, True): 1, (COUNT, "table", True, True): 1}  # with --long
 SCENE = merged(
-    merged(SCENE, spheres(SMALL_COUNT, FRACTION, LARGE, SHARE)),
-    {
-        "contact": contact(4e5, 1),
-        "lubrication": lubrication(0.25),
-        "observables": ["profiles"],
-        "files": {"final_configuration": True},
-    },
+    SCENE,
+    spheres(SMALL_COUNT, FRACTION, LARGE, SHARE),
+    contact=contact(4e5, 1),
+    lubrication=lubrication(0.25),
+    observables=["profiles"],
+    files={"final_configuration": True},
 )
 
 
@@ -72,13 +58,8 @@ def patch_of(count, forces, wave, faxen=True):
     flow = {"shear_rate": 1.0}
     if wave:
         flow |= {"waves": [{"periods": 1, "sine": amplitude(count)}], "faxen": faxen}
-    return {
-        **during({"strain": 0}, {"strain": strain_of(count)}),
-        "particles": {"count": count},
-        "flow": flow,
-        "profiles": {"bins": round(edge(count) / 2)},
-        **electrochemistry(FORCES[forces][0], FORCES[forces][1], 0.02),
-    }
+    patch = {"particles": {"count": count}, "flow": flow, "profiles": {"bins": round(edge(count) / 2)}}
+    return {**in_strains(0, strain_of(count)), **patch, **electrochemistry(*FORCES[forces], 0.02)}
 
 
 def results_of(program, name, patch, seeds):
@@ -87,10 +68,7 @@ def results_of(program, name, patch, seeds):
         result = program.run_alone(name, merged(SCENE, patch), threads=1)
         return [result], [os.path.join(program.folder, f"{name}.final.xyz")]
     (point,) = program.run(name, merged(SCENE, patch), [{"/volume_fraction": FRACTION}], seeds)
-    (results,) = program.stored_results(name)
-    folder = os.path.join(program.folder, name + ".peclet")
-    paths = [os.path.join(folder, f["path"]) for r in point["realisations"] for f in r.get("files") or []]
-    return results, paths
+    return program.stored_results(name)[0], program.final_configurations(name, point)
 
 
 def later_mean(result):
@@ -124,32 +102,29 @@ def profiles_of(result):
     return np.array([volume, flux / volume, *late(parts["volume_fraction_by_radius"])])
 
 
-def wave_of(values):
-    """Factors of sin(k y) and cos(k y) in values of equal bins."""
-    phase = 2 * math.pi * (np.arange(len(values)) + 0.5) / len(values)
-    return 2 * np.mean(values * np.sin(phase)), 2 * np.mean(values * np.cos(phase))
+def middles(values):
+    """Returns the heights y / L of equal bins."""
+    return (np.arange(len(values)) + 0.5) / len(values)
 
 
 def followed(result, count):
-    """The wave of the spheres' velocity over that of the fluid."""
-    return wave_of(profiles_of(result)[1])[0] / amplitude(count)
+    """Returns the wave of the spheres' velocity over that of the fluid."""
+    velocity = profiles_of(result)[1]
+    return 2 * np.mean(velocity * np.sin(2 * math.pi * middles(velocity))) / amplitude(count)
 
 
 def gathered(volume):
-    """Volume fraction of the half of the cell where the wave lowers the rate less that of the other half, over the
-    mean."""
-    slow = slowed((np.arange(len(volume)) + 0.5) / len(volume))
+    """Returns the volume fraction of the half of the cell where the wave lowers the rate less that of the other half,
+    over the mean."""
+    slow = slowed(middles(volume))
     return (volume[slow].mean() - volume[~slow].mean()) / volume.mean()
 
 
 def shares_where_slow(path):
-    """Of a final configuration: the shares of the small and of the large spheres in the half of the cell where the wave
-    lowers the rate."""
-    with open(path) as f:
-        f.readline()
-        length = float(f.readline().split('Lattice="')[1].split('"')[0].split()[4])
-        height, radius = np.loadtxt(f, usecols=(2, 4)).T
-    slow = slowed(height / length)
+    """Returns, of a final configuration, the shares of the small and of the large spheres in the half of the cell where
+    the wave lowers the rate."""
+    edges, places, radius = read_final(path)
+    slow = slowed(places[1] / edges[1])
     return [slow[chosen].mean() for chosen in (radius < 2, radius > 2)]
 
 
@@ -169,16 +144,10 @@ def row_of(run, results, paths):
     return row
 
 
-def faxen_change(by_seed):
-    """Of eta_r, over it, by the terms of the curvature; paired by seeds."""
-    curved, plain = (by_seed[SMALL_COUNT, "table", True, faxen] for faxen in (True, False))
-    return relative_difference(curved, plain, paired=True)
-
-
 def step_change(program, seeds):
     """Of eta_r with half of the automatic step: nothing in a result tells the step's error in a wave. Over a strain of
     1 packings have not forgotten their seeds."""
-    patch = merged(patch_of(1000, "program", True), during({"strain": 0}, {"strain": 1}))
+    patch = merged(patch_of(1000, "program", True), in_strains(0, 1))
     automatic = program.derived(merged(SCENE, patch))["timestep"]
     whole, half = (
         {r["seed"]: r["mean"]["relative_viscosity"] for r in results_of(program, name, merged(patch, step), seeds)[0]}
@@ -187,25 +156,17 @@ def step_change(program, seeds):
     return relative_difference(half, whole, paired=True)
 
 
-def pair_rows(with_wave, without, degrees):
-    count, forces = round(with_wave["count"]), with_wave["forces"]
-    label = f"N = {count}, forces of the {forces}"
-    above, below = (number(r, "viscosity") for r in (with_wave, without))
-    value, error = difference(above, below)
-    text = f"{label}: change of η_r by the wave, in standard errors (it modifies the viscosity)"
-    yield Statement(text, "M fig 10", abs(value) / error, 0, low=3)
-    yield Finding(f"{label}: η_r with the wave over that without", "M fig 10", *quotient(above, below), degrees)
-
-
 def judge():
     table = read_rows(HERE / "table.csv")
-    for row in table:
-        if not (row["wave"] and row["faxen"]):
-            continue
-        (without,) = (r for r in table if (r["count"], r["forces"], r["wave"]) == (row["count"], row["forces"], 0))
+    for row in where(table, wave=1, faxen=1):
+        without = first(table, count=row["count"], forces=row["forces"], wave=0)
         degrees = min(r["seeds"] if r["seeds"] > 1 else PARTS for r in (row, without)) - 1
-        yield from pair_rows(row, without, degrees)
         label = f"N = {round(row['count'])}, forces of the {row['forces']}"
+        value, error = difference(number(row, "viscosity"), number(without, "viscosity"))
+        text = f"{label}: change of η_r by the wave, in standard errors (it modifies the viscosity)"
+        yield Statement(text, "M fig 10", abs(value) / error, 0, low=3)
+        ratio = row_ratio(row, without, "viscosity")
+        yield Finding(f"{label}: η_r with the wave over that without", "M fig 10", *ratio, degrees)
         if row["seeds"] > 1:
             text = f"{label}: volume fraction where the wave lowers the rate less that elsewhere, over the mean"
             yield Finding(text, "M fig 10", *number(row, "gathered"), row["seeds"] - 1)
@@ -214,9 +175,9 @@ def judge():
     numbers = read_numbers(HERE / "numbers.csv")
     text = f"N = {SMALL_COUNT}, wave: relative change of η_r by the terms of the curvature"
     yield Finding(text, "M eq 9", *numbers["faxen"])
-    value, error, degrees = numbers["step"]
+    *found, degrees = numbers["step"]
     text = "N = 1000, wave, to a strain of 1: relative change of η_r with half of the automatic step"
-    yield Check(text, "step", value, error, -0.03, 0.03, degrees)
+    yield Check(text, "step", *found, -0.03, 0.03, degrees)
 
 
 def name_of(run):
@@ -233,13 +194,9 @@ def measure(program):
         series[run] = np.mean([r["blocks"]["relative_viscosity"] for r in results], axis=0)
         profiles[run] = np.mean([profiles_of(r) for r in results], axis=0)
     write_tables(rows, series, profiles)
-    write_numbers(HERE / "numbers.csv", {"faxen": faxen_change(by_seed), "step": step_change(program, 12)})
-
-
-def rates_of(velocity, count):
-    """Rates between the bins, over the mean rate: heights y / L and 1 + du/dy."""
-    bins = len(velocity)
-    return np.arange(1, bins + 1) / bins, 1 + (np.roll(velocity, -1) - velocity) * bins / edge(count)
+    # Of eta_r, by the terms of the curvature.
+    faxen = relative_difference(*(by_seed[SMALL_COUNT, "table", True, faxen] for faxen in (True, False)), paired=True)
+    write_numbers(HERE / "numbers.csv", {"faxen": faxen, "step": step_change(program, 12)})
 
 
 def strains_of(run):
@@ -248,33 +205,27 @@ def strains_of(run):
 
 
 def write_tables(rows, series, profiles):
-    names = ["count", "forces", "wave", "faxen", "seeds", "soft", *columns_of("viscosity", "followed", "gathered")]
-    names += columns_of("gathered_small", "gathered_large", "segregated", "small_slow", "large_slow")
-    names.append("processor_seconds")
+    names = "count, forces, wave, faxen, seeds, soft, viscosity±, followed±, gathered±, gathered_small±, "
+    names += "gathered_large±, segregated±, small_slow±, large_slow±, processor_seconds"
     write_table(HERE / "table.csv", names, rows.values(), 4)
-    lines = [
-        {"run": name_of(run), "strain": strain, "viscosity": float(viscosity)}
-        for run, values in series.items()
-        for strain, viscosity in zip(strains_of(run), values)
-    ]
-    write_table(HERE / "series.csv", ["run", "strain", "viscosity"], lines, 5)
-    lines = []
+    names, lines = ("run", "strain", "viscosity"), []
+    for run, values in series.items():
+        lines += [dict(zip(names, (name_of(run), *of))) for of in zip(strains_of(run), values.tolist())]
+    write_table(HERE / "series.csv", names, lines, 5)
+    names, lines = ("run", "height", *PROFILES), []
     for run, columns in profiles.items():
-        for k, values in enumerate(columns.T):
-            line = {"run": name_of(run), "height": (k + 0.5) / len(columns.T)}
-            lines.append(line | {name: float(value) for name, value in zip(PROFILES, values)})
-    write_table(HERE / "profiles.csv", ["run", "height", *PROFILES], lines, 5)
+        heights = middles(columns[0]).tolist()
+        lines += [dict(zip(names, (name_of(run), *of))) for of in zip(heights, *columns.tolist())]
+    write_table(HERE / "profiles.csv", names, lines, 5)
 
 
 def read_series():
-    """By run: the viscosity of the blocks, and profiles as profiles_of() has them."""
+    """Returns, by run, the viscosity of the blocks, and profiles as profiles_of() has them."""
     names = {name_of(run): run for run in RUNS | LARGE_RUNS}
-    series, profiles = {}, {}
-    for r in read_rows(HERE / "series.csv"):
-        series.setdefault(names[r["run"]], []).append(r["viscosity"])
-    for r in read_rows(HERE / "profiles.csv"):
-        profiles.setdefault(names[r["run"]], []).append([r[name] for name in PROFILES])
-    return series, {run: np.array(values).T for run, values in profiles.items()}
+    series, profiles = (groups(read_rows(HERE / f"{name}.csv"), "run") for name in ("series", "profiles"))
+    return {names[name]: column(rows, "viscosity") for name, rows in series.items()}, {
+        names[name]: np.array([column(rows, of) for of in PROFILES]) for name, rows in profiles.items()
+    }
 
 
 def colour_of(run):
@@ -286,32 +237,33 @@ def draw():
     series, profiles = read_series()
     figure = Figure(HERE / "chart.png", columns=2, rows=2, size=(1200, 1000))
     shown = [run for run in series if run[3]]
+
+    def line(panel, run, x, y):
+        title = f"N = {run[0]}, {run[1]}, {'with' if run[2] else 'no'} wave"
+        panel.line(zip(x, y), title, colour_of(run), dash=1 if run[2] else 2, width=2)
+
     ends = {"x_range": (0, STRAIN), "y_range": (0, None)}
     panel = figure.panel("strain", "η_r", "φ = 0.5, μ = 1", key="bottom right", **ends)
     for run in shown:
-        count, forces, wave, _ = run
-        title = f"N = {count}, {forces}, {'with' if wave else 'no'} wave"
-        panel.line(zip(strains_of(run), series[run]), title, colour_of(run), dash=1 if wave else 2, width=2)
+        line(panel, run, strains_of(run), series[run])
     panel = figure.panel("y / L", "local rate / mean rate", key="top center", x_range=(0, 1), y_range=(-1, 4))
     published = AMPLITUDE * 2 * math.pi / edge(COUNT)
     panel.curve(lambda y: 1 + published * math.cos(2 * math.pi * y), "of the fluid (published)", BLACK)
     waved = [run for run in shown if run[2]]
     for run in waved:
-        panel.line(
-            zip(*rates_of(profiles[run][1], run[0])), f"of the spheres, N = {run[0]}, {run[1]}", colour_of(run), width=2
-        )
+        velocity = profiles[run][1]
+        bins = len(velocity)
+        rates = 1 + (np.roll(velocity, -1) - velocity) * bins / edge(run[0])  # between the bins
+        title = f"of the spheres, N = {run[0]}, {run[1]}"
+        panel.line(zip(np.arange(1, bins + 1) / bins, rates), title, colour_of(run), width=2)
     panel = figure.panel("y / L", "volume fraction", key="bottom right", x_range=(0, 1), y_range=(0.4, 0.6))
     for run in [r for r in shown if r[0] == SMALL_COUNT and not r[2]] + waved:
-        volume = profiles[run][0]
-        heights = (np.arange(len(volume)) + 0.5) / len(volume)
-        title = f"N = {run[0]}, {run[1]}, {'with' if run[2] else 'no'} wave"
-        panel.line(zip(heights, volume), title, colour_of(run), dash=1 if run[2] else 2, width=2)
+        line(panel, run, middles(profiles[run][0]), profiles[run][0])
     panel = figure.panel("y / L", "volume fraction of a size / its mean", x_range=(0, 1), y_range=(0.6, 1.7))
     for run in [r for r in waved if r[0] > SMALLEST_COUNT]:
         for values, size, dash in ((profiles[run][2], "small", 2), (profiles[run][3], "large", 1)):
             if np.isfinite(values).all():
-                title = f"{size}, N = {run[0]}, {run[1]}"
-                points = zip((np.arange(len(values)) + 0.5) / len(values), values / values.mean())
+                title, points = f"{size}, N = {run[0]}, {run[1]}", zip(middles(values), values / values.mean())
                 panel.line(points, title, colour_of(run), dash=dash, width=2)
     figure.draw()
 

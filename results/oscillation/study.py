@@ -1,21 +1,14 @@
 #!/usr/bin/python3
 """Storage and loss of a Brownian suspension by shear to and fro, beside those of linear response, and from which
-amplitude on they are no longer those.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+amplitude on they are no longer those."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import difference, estimate, over, quotient
-from studies.figure import BLUE, GREEN, ORANGE, RED, Figure
-from studies.scenes import REFERENCE_SCENE, merged
-from studies.tables import columns_of, entries, number, read_rows, write_table
-from studies.verdicts import Check, Finding
+from studies.driver import BLUE, Check, Figure, Finding, GREEN, ORANGE, RED, REFERENCE_SCENE, difference, entries
+from studies.driver import estimate, groups, main, merged, number, over, quotient, read_rows, where, write_rows
 
 TITLE = "Shear to and fro beside linear response"
 AT_REST = HERE.parent / "at-rest" / "curves.csv"
@@ -23,14 +16,12 @@ VISCOSITY, THERMAL_ENERGY, FRACTION = 0.1, 0.017, 0.45
 BROWNIAN_TIME = VISCOSITY / THERMAL_ENERGY
 SCENE = merged(
     REFERENCE_SCENE,
-    {
-        "particles": {"count": 100},
-        "volume_fraction": FRACTION,
-        "fluid": {"thermal_energy": THERMAL_ENERGY},
-        "flow": {"shear_rate": None, "oscillation": {"amplitude": 0.1, "frequency": 1}},
-        "observables": ["stress", "oscillation"],
-        "duration": {"equilibration": None, "production": None},
-    },
+    particles={"count": 100},
+    volume_fraction=FRACTION,
+    fluid={"thermal_energy": THERMAL_ENERGY},
+    flow={"shear_rate": None, "oscillation": {"amplitude": 0.1, "frequency": 1}},
+    observables=["stress", "oscillation"],
+    duration={"equilibration": None, "production": None},
 )
 # Over the Brownian frequency, of those that the table at rest has; cycles of the window, and seeds.
 FREQUENCIES = {0.86806: (32, 96), 3.4722: (64, 24), 6.9444: (128, 24)}
@@ -63,7 +54,7 @@ def row_of(program, frequency, amplitude, seeds):
 def measure(program):
     rows = [row_of(program, MIDDLE, amplitude, seeds) for amplitude, seeds in AMPLITUDES.items()]
     rows += [row_of(program, f, SMALL, seeds) for f, (_, seeds) in FREQUENCIES.items() if f != MIDDLE]
-    write_table(HERE / "table.csv", ["frequency", "amplitude", "seeds", *columns_of(*NAMES)], rows, 5)
+    write_rows(HERE / "table.csv", rows, 5)
 
 
 def read():
@@ -71,12 +62,9 @@ def read():
 
 
 def at_rest():
-    """Of linear response: storage and loss by frequency."""
-    curves = {"storage": {}, "loss": {}}
-    for row in read_rows(AT_REST):
-        if row["fraction"] == FRACTION and row["curve"] in curves:
-            curves[row["curve"]][row["at"]] = number(row, "value")
-    return curves
+    """Returns storage and loss of linear response, by frequency."""
+    curves = groups(where(read_rows(AT_REST), fraction=FRACTION), "curve")
+    return {name: {row["at"]: number(row, "value") for row in curves[name]} for name in ("storage", "loss")}
 
 
 def size_of_third(row):
@@ -99,15 +87,13 @@ def judge():
         less = over(difference(number(row, "storage"), rest["storage"][frequency]), size)
         text = f"{name}: G′ less that of linear response, over the size of G*"
         yield Check(text, "linear response", *less, -0.03, 0.03, row["seeds"] - 1)
-    for amplitude in AMPLITUDES:
-        row = rows[MIDDLE, amplitude]
-        text = f"ωτ_B = {MIDDLE:.2g}, amplitude {amplitude:g}: third harmonic over the first"
-        yield Finding(text, "onset", *size_of_third(row), row["seeds"] - 1)
-    for amplitude in AMPLITUDES:
-        row = rows[MIDDLE, amplitude]
-        ratio = quotient(number(row, "loss"), rest["loss"][MIDDLE])
-        text = f"ωτ_B = {MIDDLE:.2g}, amplitude {amplitude:g}: G″ over that of linear response"
-        yield Finding(text, "onset", *ratio, row["seeds"] - 1)
+    for what, found in (
+        ("third harmonic over the first", size_of_third),
+        ("G″ over that of linear response", lambda row: quotient(number(row, "loss"), rest["loss"][MIDDLE])),
+    ):
+        for amplitude in AMPLITUDES:
+            row, text = rows[MIDDLE, amplitude], f"ωτ_B = {MIDDLE:.2g}, amplitude {amplitude:g}: {what}"
+            yield Finding(text, "onset", *found(row), row["seeds"] - 1)
 
 
 def draw():
@@ -122,16 +108,15 @@ def draw():
     scale = rest["loss"][MIDDLE][0]
     loss = [(a, *over(number(rows[MIDDLE, a], "loss"), scale)) for a in AMPLITUDES]
     one.points(loss, "G″ over that of linear response", BLUE, joined=True)
-    one.points(
-        [(a, *size_of_third(rows[MIDDLE, a])) for a in AMPLITUDES], "third harmonic over the first", RED, joined=True
-    )
+    third = [(a, *size_of_third(rows[MIDDLE, a])) for a in AMPLITUDES]
+    one.points(third, "third harmonic over the first", RED, joined=True)
     figure.draw()
 
 
 def quick_measure(program):
     """Of a dilute fluid without noise the loss is that of Einstein and the storage that of inertia, none."""
     scene = merged(
-        SCENE, {"particles": {"count": 50, "density": 1e-3}, "volume_fraction": 0.05, "fluid": {"thermal_energy": None}}
+        SCENE, particles={"count": 50, "density": 1e-3}, volume_fraction=0.05, fluid={"thermal_energy": None}
     )
     settings = settings_of(MIDDLE, 0.01) | {
         "/duration/equilibration": {"cycles": 0},

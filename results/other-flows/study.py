@@ -1,39 +1,25 @@
 #!/usr/bin/python3
-"""Shear that is reversed, stopped or shaken across, and planar extension beside shear.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+"""Shear that is reversed, stopped or shaken across, and planar extension beside shear."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import estimate, over, quotient
-from studies.figure import BLUE, GREEN, ORANGE, RED, Figure
-from studies.scenes import REFERENCE_SCENE, during, merged
-from studies.tables import columns_of, entries, number, read_numbers, read_rows, write_numbers, write_table
-from studies.verdicts import Check, Finding
+from studies.driver import BLUE, Check, Figure, Finding, GREEN, ORANGE, RED, REFERENCE_SCENE, during, entries, estimate
+from studies.driver import in_strains, main, merged, number, over, quotient, read_numbers, read_rows, row_ratio, where
+from studies.driver import write_numbers, write_rows
 
 TITLE = "Reversal, extension and shear across"
-SCENE = merged(
-    REFERENCE_SCENE,
-    {"particles": {"count": 200, "density": 1e-3}, "fluid": {"viscosity": 1}, "flow": None, "duration": None},
-)
+NONE = {"flow": None, "duration": None}
+SCENE = merged(REFERENCE_SCENE, NONE, particles={"count": 200, "density": 1e-3}, fluid={"viscosity": 1})
 FRICTION = {"contact": {"normal_stiffness": 2e5, "friction": 0.5}}
 REVERSED, REVERSAL_SEEDS, BEFORE, AFTER, BINS = 0.50, 48, 4, 5, 100
 EXTENSION = {0.02: 8, 0.30: 12, 0.40: 12, 0.50: 16}  # volume fraction and seeds
 RATE = 1.0  # sqrt(2 E:E) of both flows
 SHAKEN, SHAKEN_SEEDS = 0.54, 8
-SHAKES = (
-    (0.01, 30),
-    (0.01, 100),
-    (0.01, 300),
-    (0.03, 30),
-    (0.03, 100),
-    (0.1, 30),
-)  # amplitude, frequency over the rate
+# Amplitude, frequency over the rate.
+SHAKES = (0.01, 30), (0.01, 100), (0.01, 300), (0.03, 30), (0.03, 100), (0.1, 30)
 
 
 def point_of(program, name, patch, seeds, settings, observable="relative_viscosity"):
@@ -47,7 +33,7 @@ def reversal_rows(program, levels):
     turned = [{"shear_rate": RATE, "strain": BEFORE}, {"shear_rate": -RATE}]
     for name, contact in (("friction", FRICTION), ("none", {"contact": {"normal_stiffness": 2e5}})):
         for flow, segments in (("reversed", turned), ("steady", [{"shear_rate": RATE}])):
-            patch = merged(contact, {"volume_fraction": REVERSED, **during({"strain": BEFORE}, {"strain": AFTER})})
+            patch = merged(contact, in_strains(BEFORE, AFTER), volume_fraction=REVERSED)
             patch |= {"observables": ["stress", "transient"], "transient": {"bins": BINS}}
             point = point_of(program, f"{flow}-{name}", patch, REVERSAL_SEEDS, {"/flow/segments": segments})
             means = point.means
@@ -63,11 +49,10 @@ def reversal_rows(program, levels):
 
 def extension_rows(program):
     for fraction, seeds in EXTENSION.items():
-        window = during({"strain": 1}, {"strain": 6})
-        patch = {"volume_fraction": fraction, "contact": {"normal_stiffness": 2e5}, **window}
+        patch = {"volume_fraction": fraction, "contact": {"normal_stiffness": 2e5}, **in_strains(1, 6)}
         shear = point_of(program, f"shear-{fraction:g}", patch, seeds, {"/flow/shear_rate": RATE})
         # Hencky strains, so that the invariants of both strains are the same.
-        patch |= during({"strain": 0.5}, {"strain": 3})
+        patch |= in_strains(0.5, 3)
         extension = point_of(program, f"extension-{fraction:g}", patch, seeds, {"/flow/extension_rate": RATE / 2})
         row = {"fraction": fraction, "seeds": min(len(shear.results), len(extension.results))}
         for name, point in (("shear", shear), ("extension", extension)):
@@ -77,8 +62,8 @@ def extension_rows(program):
 
 def shaken_rows(program):
     """The dissipation is that of both shears, over that of the steady one alone without shaking."""
-    patch = merged(FRICTION, {"contact": {"normal_stiffness": 1e6}, "volume_fraction": SHAKEN})
-    patch |= during({"strain": 2}, {"strain": 8})
+    patch = merged(FRICTION, contact={"normal_stiffness": 1e6}, volume_fraction=SHAKEN)
+    patch |= in_strains(2, 8)
     still = point_of(program, "still", patch, SHAKEN_SEEDS, {"/flow/shear_rate": RATE})
     alone = {"amplitude": 0, "frequency": 0, "seeds": len(still.results)}
     viscosity = still.measured("relative_viscosity")
@@ -90,37 +75,25 @@ def shaken_rows(program):
         cross = {"amplitude": amplitude, "frequency": frequency * RATE}
         settings = {"/flow/shear_rate": RATE, "/flow/cross_shear": cross}
         point = point_of(program, f"shaken-{amplitude:g}-{frequency:g}", patch, SHAKEN_SEEDS, settings)
-        means = point.means
-        row = {"amplitude": amplitude, "frequency": frequency, "seeds": len(means)}
+        row = {"amplitude": amplitude, "frequency": frequency, "seeds": len(point.means)}
         row |= entries("viscosity", point.measured("relative_viscosity"))
         # <sigma_yz rate across> = g^2 w G'' / 2.
-        across = [amplitude**2 * frequency * RATE * m["loss_modulus"] / 2 for m in means]
-        total = [m["relative_viscosity"] + a / RATE**2 for m, a in zip(means, across)]
+        factor = amplitude**2 * frequency * RATE / 2 / RATE**2
+        total = [m["relative_viscosity"] + factor * m["loss_modulus"] for m in point.means]
         yield row | entries("dissipation", estimate(total))
 
 
 def measure(program):
-    write_table(
-        HERE / "extension.csv",
-        ["fraction", "seeds", *columns_of("shear", "extension", "second")],
-        list(extension_rows(program)),
-        5,
-    )
-    write_table(
-        HERE / "shaken.csv",
-        ["amplitude", "frequency", "seeds", *columns_of("viscosity", "dissipation")],
-        list(shaken_rows(program)),
-        5,
-    )
-    columns = ["contacts", "flow", "strain", "seeds", *columns_of("viscosity", "normal")]
+    write_rows(HERE / "extension.csv", list(extension_rows(program)), 5)
+    write_rows(HERE / "shaken.csv", list(shaken_rows(program)), 5)
     levels = {}
-    write_table(HERE / "reversal.csv", columns, list(reversal_rows(program, levels)), 5)
+    write_rows(HERE / "reversal.csv", list(reversal_rows(program, levels)), 5)
     write_numbers(HERE / "levels.csv", levels)
 
 
-def curve(contacts, flow, name="viscosity"):
-    rows = [r for r in read_rows(HERE / "reversal.csv") if (r["contacts"], r["flow"]) == (contacts, flow)]
-    return [(r["strain"], *number(r, name)) for r in rows]
+def reversed_curve(contacts):
+    rows = where(read_rows(HERE / "reversal.csv"), contacts=contacts, flow="reversed")
+    return [(r["strain"], *number(r, "viscosity")) for r in rows]
 
 
 def judge():
@@ -128,32 +101,25 @@ def judge():
         ratio = quotient(number(row, "extension"), number(row, "shear"))
         fraction, degrees = row["fraction"], row["seeds"] - 1
         if fraction < 0.1:
-            text = f"φ = {fraction:g}: η_E of planar extension over 1 + 2.5 φ"
-            yield Check(
-                text, "Newtonian limit", *over(number(row, "extension"), 1 + 2.5 * fraction), 0.99, 1.02, degrees
-            )
+            text, found = f"φ = {fraction:g}: η_E of planar extension over 1 + 2.5 φ", number(row, "extension")
+            yield Check(text, "Newtonian limit", *over(found, 1 + 2.5 * fraction), 0.99, 1.02, degrees)
         text = f"φ = {fraction:g}: η_E of planar extension over that of shear at the same invariants"
         yield Finding(text, "extension", *ratio, degrees)
     for contacts, name in (("friction", "friction 0.5"), ("none", "no friction")):
-        turned, levels, degrees = curve(contacts, "reversed"), read_numbers(HERE / "levels.csv"), REVERSAL_SEEDS - 1
+        turned, levels, degrees = reversed_curve(contacts), read_numbers(HERE / "levels.csv"), REVERSAL_SEEDS - 1
         level, last = levels[f"steady-{contacts}-whole"][:2], levels[f"reversed-{contacts}-end"][:2]
         text = f"{name}: viscosity a strain of {0.9 * AFTER:g} after the reversal over that of steady shear"
         yield Check(text, "steady shear", *quotient(last, level), 0.92, 1.08, degrees)
         lowest = min(turned, key=lambda point: point[1])
-        yield Finding(
-            f"{name}: lowest viscosity after the reversal over that of steady shear",
-            "reversal",
-            *quotient(lowest[1:], level),
-            degrees,
-        )
+        text = f"{name}: lowest viscosity after the reversal over that of steady shear"
+        yield Finding(text, "reversal", *quotient(lowest[1:], level), degrees)
         yield Finding(f"{name}: strain at which it is lowest", "reversal", lowest[0], 0.5 * AFTER / BINS, degrees)
         again = next((p[0] for p in turned if p[0] > lowest[0] and p[1] > 0.9 * level[0]), math.nan)
         yield Finding(f"{name}: strain at which nine tenths of it are back", "reversal", again, AFTER / BINS, degrees)
     still, *shaken = read_rows(HERE / "shaken.csv")
     best = min(shaken, key=lambda row: row["viscosity"])
-    ratio = quotient(number(best, "viscosity"), number(still, "viscosity"))
     text = f"shaken across by {best['amplitude']:g} at {best['frequency']:g} γ̇: viscosity over that without"
-    yield Check(text, "Lin et al. 2016: it falls", *ratio, 0, 0.8, best["seeds"] - 1)
+    yield Check(text, "Lin et al. 2016: it falls", *row_ratio(best, still, "viscosity"), 0, 0.8, best["seeds"] - 1)
     for row in shaken:
         text = f"amplitude {row['amplitude']:g}, frequency {row['frequency']:g} γ̇: "
         for name, what in (("viscosity", "viscosity"), ("dissipation", "dissipation of both")):
@@ -166,28 +132,26 @@ def draw():
     place = {"key": "bottom right", "y_range": (0, None)}
     one = figure.panel("strain after the reversal", "η_r", f"φ = {REVERSED:.2f}", **place)
     for contacts, name, colour in (("friction", "friction 0.5", RED), ("none", "no friction", BLUE)):
-        one.points(curve(contacts, "reversed"), name, colour, 7, 0.6, joined=True)
+        one.points(reversed_curve(contacts), name, colour, 7, 0.6, joined=True)
         one.level(read_numbers(HERE / "levels.csv")[f"steady-{contacts}-whole"][0], None, colour, span=(0, AFTER))
     two = figure.panel("φ", "η_r", "planar extension and shear", log="y", key="top left")
     rows = read_rows(HERE / "extension.csv")
     for name, colour, mark in (("shear", BLUE, 7), ("extension", RED, 6)):
-        two.points([(r["fraction"], *number(r, name)) for r in rows], name, colour, mark, 1.2)
+        two.rows(rows, "fraction", name, name, colour, mark, 1.2)
     still, *shaken = read_rows(HERE / "shaken.csv")
     place = {"log": "x", "key": "top right", "x_range": (0.2, 5), "y_range": (0, 1.4)}
     title = f"shaken across, φ = {SHAKEN:.2f}"
     three = figure.panel("largest rate across / γ̇", "viscosity over that of shear alone", title, **place)
     for amplitude, colour in ((0.01, BLUE), (0.03, GREEN), (0.1, ORANGE)):
-        mine = [r for r in shaken if r["amplitude"] == amplitude]
-        points = [
-            (amplitude * r["frequency"], *quotient(number(r, "viscosity"), number(still, "viscosity"))) for r in mine
-        ]
+        mine = where(shaken, amplitude=amplitude)
+        points = [(amplitude * r["frequency"], *row_ratio(r, still, "viscosity")) for r in mine]
         three.points(points, f"amplitude {amplitude:g}", colour, joined=True)
     figure.draw()
 
 
 def quick_measure(program):
     """Extension of a dilute suspension has the viscosity of shear; both are of one invariant."""
-    patch = {"volume_fraction": 0.05, "particles": {"count": 50}, **during({"strain": 0.1}, {"strain": 1})}
+    patch = {"volume_fraction": 0.05, "particles": {"count": 50}, **in_strains(0.1, 1)}
     for name, settings in (("shear", {"/flow/shear_rate": 1}), ("extension", {"/flow/extension_rate": 0.5})):
         value = point_of(program, name, patch, 4, settings).measured("relative_viscosity")
         yield Check(f"φ = 0.05: η of {name}", "1 + 2.5 φ and pairs", *value, 1.124, 1.2, 3)

@@ -1,21 +1,13 @@
 #!/usr/bin/python3
-"""Two spheres in a cube of edge 4 a: their distances, and the potential of mean force that follows.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+"""Two spheres in a cube of edge 4 a: their distances, and the potential of mean force that follows."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import difference, estimate, logarithm, over
-from studies.figure import BLUE, RED, Figure
-from studies.scenes import during
-from studies.tables import read_numbers, write_numbers, write_table
-from studies.verdicts import Check, Statement
-
+from studies.driver import BLUE, Check, Figure, RED, Statement, difference, estimate, in_brownian_times, logarithm, main
+from studies.driver import over, read_numbers, write_numbers, write_rows
 import numpy as np
 
 TITLE = "Potential of mean force of two spheres"
@@ -75,10 +67,8 @@ def contact_ratio(distance, rows):
 
 
 INSIDE, BEYOND = "U / kT = 0 between contact and the outer gap", "U / kT = 0 beyond the outer gap, to 2.155 a"
-AT_OUTER, AT_INNER = (
-    "no step of U / kT at the outer gap, means over 0.04 and 0.1 a",
-    "no step of U / kT at the inner gap",
-)
+AT_OUTER = "no step of U / kT at the outer gap, means over 0.04 and 0.1 a"
+AT_INNER = "no step of U / kT at the inner gap"
 OVERLAPS = "density of overlaps over that of U = k_n δ² / 2"
 SHELLS = "no step of U / kT from the shell of 0.005 a within the outer gap to the next one"
 # What the automatic step of a method is known to get wrong: its row is a check of the method, and the other method
@@ -104,11 +94,11 @@ def numbers_of(method, distance, rows):
 
 def judged(numbers, tolerance):
     """A tenth of kT, or of the density, is what the published pictures show."""
-    for name, (value, error, degrees) in numbers.items():
+    for name, (*found, degrees) in numbers.items():
         method, what = name.split(" steps: ")
         kind, source = (Check, "step") if (method, what) in KNOWN else (Statement, "L4.1")
         middle = 1 if what == OVERLAPS else 0
-        yield kind(name, source, value, error, middle - tolerance, middle + tolerance, degrees)
+        yield kind(name, source, *found, middle - tolerance, middle + tolerance, degrees)
 
 
 def judge():
@@ -116,22 +106,19 @@ def judge():
 
 
 def point_of(program, method, seeds, brownian_times):
-    parts = during({"brownian_times": 20}, {"brownian_times": brownian_times})
-    scene = {**SCENE, "integrator": {"method": method}, **parts}
+    scene = {**SCENE, "integrator": {"method": method}, **in_brownian_times(20, brownian_times)}
     return program.run(f"pair-potential-{method}", scene, [{"/particles/count": 2}], seeds, "kinetic_temperature")[0]
 
 
 def measure(program):
     numbers, table = {}, []
-    for run in RUNS:
-        method = run[0]
-        distance, rows = densities(point_of(program, *run))
+    names = "method", "distance", "density", "standard_error"
+    for method, *how in RUNS:
+        distance, rows = densities(point_of(program, method, *how))
         numbers |= numbers_of(method, distance, rows)
-        for r, values in zip(distance.tolist(), rows.T):
-            if r > 1.95:
-                density, error = estimate(values)
-                table.append({"method": method, "distance": r, "density": density, "standard_error": error})
-    write_table(HERE / "table.csv", ["method", "distance", "density", "standard_error"], table, 5)
+        shells = ((r, values) for r, values in zip(distance.tolist(), rows.T) if r > 1.95)
+        table += [dict(zip(names, (method, r, *estimate(values)))) for r, values in shells]
+    write_rows(HERE / "table.csv", table, 5)
     write_numbers(HERE / "numbers.csv", numbers)
     draw(table)
 

@@ -1,26 +1,17 @@
 #!/usr/bin/python3
-"""Time of a run against the number of particles.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+"""Time of a run against the number of particles."""
 import statistics
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import estimate
-from studies.figure import BLUE, RED, Figure
-from studies.fits import line_through
-from studies.scenes import REFERENCE_SCENE, at_peclet, merged
-from studies.tables import read_numbers, write_numbers, write_table
-from studies.verdicts import Finding, Statement
-
+from studies.driver import BLUE, Figure, Finding, RED, REFERENCE_SCENE, Statement, at_peclet, estimate, line_through
+from studies.driver import main, merged, read_numbers, where, write_numbers, write_rows
 import numpy as np
 
 TITLE = "Time against the number of particles"
-SCENE = merged(REFERENCE_SCENE, {**at_peclet(1), "duration": {"equilibration": {"time": 0}}})
+SCENE = merged(REFERENCE_SCENE, at_peclet(1), duration={"equilibration": {"time": 0}})
 PUBLISHED = 10000  # the largest number in print
 COUNTS = (10, 30, 100, 300, 1000, 3000, PUBLISHED, 30000, 100000)
 QUICK_COUNTS = (100, 1000, 4000)  # with fewer spheres the price of a step itself counts
@@ -32,8 +23,8 @@ CLOCKS = {"processor": "cpu_seconds", "wall": "wall_seconds"}
 def times(program, counts, rounds, particle_steps, method="implicit"):
     """By number of particles: of every round, ns of processor and of wall time for a step of a particle, from what a
     longer run takes more than a shorter one: packing, start and end drop out."""
-    scene = merged(SCENE, {"integrator": {"method": method}})
-    step = program.derived(merged(scene, {"duration": {"production": {"time": 1}}}))["timestep"]
+    scene = merged(SCENE, integrator={"method": method})
+    step = program.derived(merged(scene, duration={"production": {"time": 1}}))["timestep"]
     settings, more = [], [max(SHORT, round(particle_steps / count)) for count in counts]
     for count, steps in zip(counts, more):
         # Half a step less than whole ones, so that rounding makes none more.
@@ -73,11 +64,11 @@ def number_of(method, table, largest, time="processor"):
 
 def judge():
     """Up to the published number of spheres, by processor time; other rows go beyond print."""
-    for name, (value, error, degrees) in read_numbers(HERE / "numbers.csv").items():
+    for name, (*found, degrees) in read_numbers(HERE / "numbers.csv").items():
         if name.endswith(f"processor time, N = 10 to {PUBLISHED}"):
-            yield Statement(f"{name} (published: 1)", "L4.4", value, error, 0.9, 1.1, degrees)
+            yield Statement(f"{name} (published: 1)", "L4.4", *found, 0.9, 1.1, degrees)
         else:
-            yield Finding(name, "L4.4", value, error, degrees)
+            yield Finding(name, "L4.4", *found, degrees)
 
 
 def table_row(method, row):
@@ -93,14 +84,10 @@ def measure(program):
     # Their steps cost little: more of them, or the difference of two packings is what is measured.
     explicit = times(program, [n for n in COUNTS[::2] if n <= PUBLISHED], 10, 2e7, "explicit")
     rows = [table_row(m, row) for m, table in (("implicit", implicit), ("explicit", explicit)) for row in table]
-    write_table(HERE / "table.csv", list(rows[0]), rows, 4)
+    write_rows(HERE / "table.csv", rows, 4)
     draw(rows)
-    numbers = [
-        number_of("implicit", implicit, PUBLISHED),
-        number_of("explicit", explicit, PUBLISHED),
-        number_of("implicit", implicit, COUNTS[-1]),
-        number_of("implicit", implicit, PUBLISHED, "wall"),
-    ]
+    numbers = [number_of("implicit", implicit, PUBLISHED), number_of("explicit", explicit, PUBLISHED)]
+    numbers += [number_of("implicit", implicit, COUNTS[-1]), number_of("implicit", implicit, PUBLISHED, "wall")]
     write_numbers(HERE / "numbers.csv", dict(numbers))
 
 
@@ -109,13 +96,12 @@ def draw(rows):
     figure = Figure(HERE / "chart.png", columns=2)
     axes = {"log": "xy", "key": "top left", "x_range": (5, 200000)}
     of_step = figure.panel("N", "processor time of a step, s", powers="xy", **axes)
-    of_particle = figure.panel(
-        "N", "processor time of a step of a particle, ns", powers="x", y_range=(30, 5000), **axes
-    )
+    title = "processor time of a step of a particle, ns"
+    of_particle = figure.panel("N", title, powers="x", y_range=(30, 5000), **axes)
     middle = next(r["processor_ns"] for r in rows if r["method"] == "implicit" and r["particles"] == 1000)
     of_step.curve(lambda n: middle * 1e-9 * n, "proportional to N")
     for method, colour, mark in (("implicit", BLUE, 7), ("explicit", RED, 5)):
-        chosen = [r for r in rows if r["method"] == method]
+        chosen = where(rows, method=method)
         counts = np.array([r["particles"] for r in chosen])
         bars = np.array([[r[f"processor_{name}"] for name in ("ns", "lowest", "highest")] for r in chosen])
         in_all = np.column_stack((counts, bars * counts[:, None] * 1e-9))

@@ -19,7 +19,7 @@ sys.path.insert(0, str(HERE.parent.parent / "tests/bench"))
 from peer import Lammps
 from studies.campaigns import Program
 from studies.estimates import estimate, relative_difference, student_quantile
-from studies.scenes import REFERENCE_SCENE, during, merged
+from studies.scenes import REFERENCE_SCENE, in_strains, merged
 from studies.tables import write_table
 from studies.speed_accuracy import COLUMNS
 
@@ -34,11 +34,11 @@ def main():
     parser.add_argument("--packings", type=int, default=6)
     parser.add_argument("--lammps", default="lmp")
     arguments = parser.parse_args()
-    scene = merged(REFERENCE_SCENE, during({"strain": STRAIN / 2}, {"strain": STRAIN / 2}))
+    scene = merged(REFERENCE_SCENE, in_strains(STRAIN / 2, STRAIN / 2))
     rate = scene["flow"]["shear_rate"]
     with tempfile.TemporaryDirectory() as folder:
         program = Program(arguments.binaries, folder)
-        step = program.derived(merged(scene, {"integrator": {"method": "explicit"}}))["timestep"]
+        step = program.derived(merged(scene, integrator={"method": "explicit"}))["timestep"]
         ours = program.run("ours", scene, [{"/integrator": {"method": "implicit"}}], SEEDS)[0].by_seed()
 
         def sheared(packing):

@@ -1,30 +1,22 @@
 #!/usr/bin/python3
 """What a step costs, and what it does to the viscosity: relative difference from the reference over the processor time
-to a standard error of 2 %, and the same of the pressure where it is known. lammps.csv has points of LAMMPS.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+to a standard error of 2 %, and the same of the pressure where it is known. lammps.csv has points of LAMMPS."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import estimate, relative_difference, student_quantile
-from studies.figure import BLUE, GREEN, RED, Figure
-from studies.scenes import REFERENCE_SCENE, during, merged
+from studies.driver import BLUE, Check, Figure, GREEN, RED, REFERENCE_SCENE, counts_text, entries, estimate, flags
+from studies.driver import in_strains, main, markdown_head, markdown_row, merged, number, number_text, read_texts
+from studies.driver import relative_difference, student_quantile, where, write_table
 from studies.speed_accuracy import COLUMNS, PANELS
-from studies.tables import markdown_head, markdown_row, read_texts, write_table
-from studies.verdicts import Check
-from studies.viscosities import counts_text, flags
-
 import numpy as np
 
 TITLE = "Speed and accuracy of steps"
 OVERVIEW = ["reference", "friction 1, phi 0.45", "Pe 1"]
 QUICK_PANELS = ("reference", "Pe 100")
-QUICK = {"particles": {"count": 100}, **during({"strain": 0.5}, {"strain": 1.5})}
+QUICK = {"particles": {"count": 100}, **in_strains(0.5, 1.5)}
 QUICK_SEEDS = 8
 SUMMARY = (
     "case",
@@ -62,30 +54,19 @@ def variants(case, automatic, largest):
 
 def made_of(name, case, scene, program, quick):
     """A row for each variant, with `values` by seed and the `cost` of a realisation."""
-    automatic = program.derived(merged(scene, {"integrator": {"method": "implicit"}}))["timestep"]
-    largest = 2 * program.derived(merged(scene, {"integrator": {"method": "explicit"}}))["timestep"]
+    automatic = program.derived(merged(scene, integrator={"method": "implicit"}))["timestep"]
+    largest = 2 * program.derived(merged(scene, integrator={"method": "explicit"}))["timestep"]
     for method, factor, tolerance, seeds, step, integrator in variants(case, automatic, largest):
         label = f"{method} {factor:g}" + (f" {tolerance:g}" if tolerance not in (None, NORMAL_TOLERANCE) else "")
         identifier = ("quick-" if quick else "") + f"{name} {label}".replace(" ", "-").replace(",", "")
-        settings = [{"/integrator": integrator}]
-        (point,) = program.run(identifier, scene, settings, QUICK_SEEDS if quick else seeds)
+        (point,) = program.run(identifier, scene, [{"/integrator": integrator}], QUICK_SEEDS if quick else seeds)
         living = point.results
-        yield {
-            "panel": name,
-            "method": method,
-            "step": factor,
-            "tolerance": tolerance,
-            "timestep": step,
-            "values": point.by_seed(),
-            "pressures": point.by_seed("pressure"),
-            "flags": counts_text(flags(point)),
-            "lost": point.lost,
-            "seeds": len(point["realisations"]),
-            "seconds_per_strain": median([r["cost"]["cpu_seconds"] / sum(r["strain"].values()) for r in living]),
-            "cost": median([r["cost"]["cpu_seconds"] for r in living]),
-            "particles": scene["particles"]["count"],
-            "commit": " ".join(sorted(program.commits)),
-        }
+        row = {"panel": name, "method": method, "step": factor, "tolerance": tolerance, "timestep": step}
+        row |= {"values": point.by_seed(), "pressures": point.by_seed("pressure"), "flags": counts_text(flags(point))}
+        row |= {"lost": point.lost, "seeds": len(point["realisations"]), "particles": scene["particles"]["count"]}
+        row["seconds_per_strain"] = median([r["cost"]["cpu_seconds"] / sum(r["strain"].values()) for r in living])
+        row["cost"] = median([r["cost"]["cpu_seconds"] for r in living])
+        yield row | {"commit": " ".join(sorted(program.commits))}
 
 
 def relative_variance(made):
@@ -115,17 +96,15 @@ def rows_of(name, case, program, quick):
     for m in made:
         row = {key: m[key] for key in COLUMNS if key in m}
         row["seconds_to_2_percent"] = m["cost"] * variance / 0.02**2
-        if m["values"]:
-            row["viscosity"], row["viscosity_error"] = estimate([*m["values"].values()])
-            row["pressure"], row["pressure_error"] = estimate([*m["pressures"].values()])
-            if m is not reference:
-                bias, error, degrees = relative_difference(m["values"], reference["values"], not noise)
-                row["bias_percent"] = 100 * bias
-                row["bias_half_width_percent"] = 100 * error * student_quantile(degrees, 0.975)
-                of_pressure = relative_difference(m["pressures"], reference["pressures"], not noise)
-                row["pressure_bias_percent"] = 100 * of_pressure[0]
-                row["pressure_bias_half_width_percent"] = 100 * of_pressure[1] * student_quantile(of_pressure[2], 0.975)
-                row["surely_wrong"] = abs(bias) > max(0.01, error * student_quantile(degrees, 1 - 0.5e-4))
+        for quantity, prefix, name in (("values", "", "viscosity"), ("pressures", "pressure_", "pressure")):
+            if m["values"]:
+                row |= entries(name, estimate([*m[quantity].values()]))
+            if m["values"] and m is not reference:
+                bias, error, degrees = relative_difference(m[quantity], reference[quantity], not noise)
+                row[f"{prefix}bias_percent"] = 100 * bias
+                row[f"{prefix}bias_half_width_percent"] = 100 * error * student_quantile(degrees, 0.975)
+                # Of the viscosity, which comes first.
+                row.setdefault("surely_wrong", abs(bias) > max(0.01, error * student_quantile(degrees, 1 - 0.5e-4)))
         yield row
 
 
@@ -136,16 +115,9 @@ def print_summary(rows):
     for name in dict.fromkeys(row["panel"] for row in rows):
         implicit = by_variant[name, "implicit", 1, NORMAL_TOLERANCE]
         cost, before = (r["seconds_per_strain"] for r in (implicit, by_variant[name, "explicit", 0.5, None]))
-        cells = [
-            name,
-            f"{implicit['viscosity']:.2f} ± {implicit['viscosity_error']:.2f}",
-            f"{implicit['bias_percent']:.2f} ± {implicit['bias_half_width_percent']:.2f}",
-            f"{cost:.3g}",
-            f"{before:.3g}",
-            f"{before / cost:.3g}",
-            f"{implicit['seconds_to_2_percent']:.2g}",
-        ]
-        print(markdown_row(cells))
+        bias = number_text((implicit["bias_percent"], implicit["bias_half_width_percent"]), 2)
+        cells = [name, number_text(number(implicit, "viscosity"), 2), bias, f"{cost:.3g}", f"{before:.3g}"]
+        print(markdown_row([*cells, f"{before / cost:.3g}", f"{implicit['seconds_to_2_percent']:.2g}"]))
 
 
 def all_rows(program, panels, quick=False):
@@ -229,22 +201,14 @@ def rows_of_texts(bars, span):
 
 def add_panel(figure, name, rows, of=""):
     """`of`: nothing for the viscosity, or "pressure_"."""
-    chosen = [r for r in rows if r["viscosity"] and float(r["seconds_to_2_percent"]) > 0]
-    if of:
-        chosen = [r for r in chosen if r.get("pressure")]
+    known = [r for r in rows if r["viscosity"] and float(r["seconds_to_2_percent"]) > 0]
+    chosen = [r for r in known if r.get("pressure") or not of]
     dropped = [f"{r['method']} {float(r['step']):.2g}" for r in rows if not r["viscosity"]]
     title = f"{name} (no seed left: {', '.join(dropped)})" if dropped else name
     times = [float(r["seconds_to_2_percent"]) for r in chosen]
-    panel = figure.panel(
-        "s of processor to a standard error of 2 %",
-        "difference of P / %" if of else "difference of η_r / %",
-        title,
-        log="x",
-        key=None,
-        x_range=(min(times) / 3, max(times) * 3),
-        y_range=(-RANGE, RANGE),
-        y_step=2,
-    )
+    titles = "s of processor to a standard error of 2 %", f"difference of {'P' if of else 'η_r'} / %", title
+    ends = {"x_range": (min(times) / 3, max(times) * 3), "y_range": (-RANGE, RANGE), "y_step": 2}
+    panel = figure.panel(*titles, log="x", key=None, **ends)
     panel.box(None, None, -2, 2, "#eef4e8")
     bars = sorted((*bar_of(r, of), style_of(r)) for r in chosen)
     for (x, y, half, text, style), row in zip(bars, rows_of_texts(bars, 9 * max(times) / min(times))):
@@ -268,9 +232,9 @@ def draw_chart(rows, picture):
     lines = -(-(len(names) + len(with_pressure) + 1) // ACROSS)
     figure = Figure(picture, ACROSS, lines, (ACROSS * 380, lines * 310))
     for name in names:
-        add_panel(figure, name, [r for r in rows if r["panel"] == name])
+        add_panel(figure, name, where(rows, panel=name))
     for name in with_pressure:
-        add_panel(figure, name, [r for r in rows if r["panel"] == name], "pressure_")
+        add_panel(figure, name, where(rows, panel=name), "pressure_")
     add_legend(figure)
     figure.draw()
 

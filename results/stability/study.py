@@ -1,25 +1,16 @@
 #!/usr/bin/python3
-"""Where each method fails, and how: a row for each case, a column for each step of each method.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+"""Where each method fails, and how: a row for each case, a column for each step of each method."""
 import collections
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.campaigns import Point
-from studies.command_line import main
-from studies.estimates import relative_difference, student_quantile
-from studies.figure import Figure
-from studies.scenes import REFERENCE_SCENE, at_peclet, during, merged
-from studies.tables import read_texts, write_table
-from studies.verdicts import Check
-from studies.viscosities import counts_text, flags
+from studies.driver import Check, Figure, Point, REFERENCE_SCENE, at_peclet, counts_text, during, flags, in_strains
+from studies.driver import main, merged, read_texts, relative_difference, student_quantile, write_table
 
 TITLE = "Where each method fails, and how"
-BASE = merged(REFERENCE_SCENE, {"particles": {"count": 100}, **during({"strain": 0.5}, {"strain": 0.75})})
+BASE = merged(REFERENCE_SCENE, in_strains(0.5, 0.75), particles={"count": 100})
 # Steps of each column: explicit ones over the largest stable step of the scene, implicit ones over the automatic one.
 EXPLICIT, IMPLICIT = (0.5, 0.999, 2), (0.25, 1, 2, 3.99, 8)
 
@@ -33,8 +24,7 @@ def friction(mu):
 
 
 def brownian(number):
-    parts = during({"strain": 0.5, "brownian_times": 10}, {"strain": 2, "brownian_times": 20})
-    return {**at_peclet(number), **parts}
+    return {**at_peclet(number), **during({"strain": 0.5, "brownian_times": 10}, {"strain": 2, "brownian_times": 20})}
 
 
 def large_spheres(ratio):
@@ -52,7 +42,7 @@ def repulsion(strength, length):
     return {"repulsion": {"form": "exponential", "strength": strength, "relative_length": length}}
 
 
-STARTUP = during({"strain": 0}, {"strain": 0.75})
+STARTUP = in_strains(0, 0.75)
 PANELS = {
     "stiffness and volume fraction": [
         (f"k {k:g}, phi {phi:g}", {**stiffness(k), "volume_fraction": phi}, 4 if phi < 0.5 else 16)
@@ -73,7 +63,7 @@ PANELS = {
     "start-up": [
         ("mu 0", STARTUP, 8),
         ("mu 1", merged(STARTUP, friction(1)), 8),
-        ("phi 0.62", merged(STARTUP, {"volume_fraction": 0.62}), 16),
+        ("phi 0.62", merged(STARTUP, volume_fraction=0.62), 16),
         ("A 1, kappa 0.01", merged(STARTUP, repulsion(1, 0.01)), 8),
         ("A 100, kappa 0.01", merged(STARTUP, repulsion(100, 0.01)), 32),
         ("A 1, kappa 0.05", merged(STARTUP, repulsion(1, 0.05)), 8),
@@ -90,30 +80,18 @@ PANELS = {
     "Peclet number and friction": [(f"Pe {pe:g}, mu 1", merged(brownian(pe), friction(1)), 32) for pe in (1, 100)],
 }
 QUICK = {"stiffness and volume fraction": 4, "start-up": 2}
-COLUMNS = [
-    "panel",
-    "case",
-    "method",
-    "step",
-    "timestep",
-    "verdict",
-    "bias_percent",
-    "bias_half_width_percent",
-    "flags",
-    "causes",
-    "seeds",
-    "commit",
-]
+COLUMNS = "panel", "case", "method", "step", "timestep", "verdict", "bias_percent", "bias_half_width_percent"
+COLUMNS += "flags", "causes", "seeds", "commit"
 CAUSES_OF_JAMS = {"overlap", "packing"}
 
 
 def integrators(program, scene):
     """Every column: method, factor and integrator block, or None with what was answered where the step is refused."""
     for method, factors, factor_of_auto in (("explicit", EXPLICIT, 0.5), ("implicit", IMPLICIT, 1)):
-        answer = program.derived(merged(scene, {"integrator": {"method": method}}))
+        answer = program.derived(merged(scene, integrator={"method": method}))
         for factor in factors:
             block = {"method": method, "timestep": factor * (answer["timestep"] / factor_of_auto)}
-            refused = program.derived(merged(scene, {"integrator": block})).get("refused")
+            refused = program.derived(merged(scene, integrator=block)).get("refused")
             yield method, factor, block, refused
 
 
@@ -150,19 +128,10 @@ def cells_of(name, case, scene, program):
         of_block[block["method"], block["timestep"]] = point
     for method, factor, block, refused in columns:
         point = Point(realisations=[]) if refused else of_block[method, block["timestep"]]
-        yield {
-            "panel": name,
-            "case": label,
-            "method": method,
-            "step": factor,
-            "timestep": block["timestep"],
-            "seeds": len(point["realisations"]),
-            "values": point.by_seed(),
-            "commit": " ".join(sorted(program.commits)),
-            "lost": collections.Counter(r["ending"]["cause"] for r in point["realisations"] if not r.get("mean")),
-            "flags": counts_text(flags(point)),
-            "refused": refused,
-        }
+        lost = collections.Counter(r["ending"]["cause"] for r in point["realisations"] if not r.get("mean"))
+        cell = {"panel": name, "case": label, "method": method, "step": factor, "timestep": block["timestep"]}
+        cell |= {"seeds": len(point["realisations"]), "commit": " ".join(sorted(program.commits))}
+        yield cell | {"values": point.by_seed(), "lost": lost, "flags": counts_text(flags(point)), "refused": refused}
 
 
 def rows_of(name, case, program):
@@ -186,26 +155,20 @@ def rows_of(name, case, program):
         yield row
 
 
-def rows_of_panels(program, cases_of):
-    for name, cases in cases_of.items():
+def measure(program, panels=PANELS, path=HERE / "table.csv"):
+    rows = []
+    for name, cases in panels.items():
         for case in cases:
-            yield from rows_of(name, case, program)
+            rows += rows_of(name, case, program)
             print(f"{name}: {case[0]}", file=sys.stderr, flush=True)
+    write_table(path, COLUMNS, rows, digits=4)
 
 
-def checks(rows):
-    silent = [r for r in rows if r["verdict"] == "biased" and not r["flags"]]
+def judge(path=HERE / "table.csv"):
+    silent = [r for r in read_texts(path) if r["verdict"] == "biased" and not r["flags"]]
     for row in silent:
         print(f"wrong without a flag: {row['panel']}, {row['case']}, {row['method']} {row['step']}", file=sys.stderr)
     yield Check("cells that are biased, and none of whose results says so", "warnings", len(silent), 0, high=0)
-
-
-def measure(program):
-    write_table(HERE / "table.csv", COLUMNS, list(rows_of_panels(program, PANELS)), digits=4)
-
-
-def judge():
-    return checks(read_texts(HERE / "table.csv"))
 
 
 COLOURS = {
@@ -251,11 +214,9 @@ def lines_of(rows):
 
 
 def halves(lines):
-    """Two parts that stand side by side, the second one beginning with a panel; one part if there is little."""
-    if len(lines) <= 30:
-        return [lines]
-    half = next(k for k in range(len(lines) // 2, len(lines)) if lines[k][1] is None)
-    return [lines[:half], lines[half:]]
+    """Returns two parts that stand side by side, the second one beginning with a panel; one part if there is little."""
+    half = next((k for k in range(len(lines) // 2, len(lines)) if lines[k][1] is None), 0)
+    return [lines[:half], lines[half:]] if len(lines) > 30 else [lines]
 
 
 def draw_part(panel, left, columns, lines):
@@ -284,11 +245,8 @@ def draw_legend(panel, top):
     panel.text(LEGEND, 10, top + HEIGHT * 1.5)
 
 
-def draw():
-    draw_map(read_texts(HERE / "table.csv"), HERE / "map.png")
-
-
-def draw_map(rows, picture):
+def draw(path=HERE / "table.csv"):
+    rows, picture = read_texts(path), path.with_name("map.png")
     columns = list(dict.fromkeys((r["method"], r["step"]) for r in rows))
     parts = halves(lines_of(rows))
     width = LABEL + WIDTH * len(columns) + 20
@@ -304,10 +262,9 @@ def draw_map(rows, picture):
 def quick_measure(program):
     """Six cases, whose map is drawn as well."""
     path = Path(program.folder) / "table.csv"
-    cases = {name: PANELS[name][:count] for name, count in QUICK.items()}
-    write_table(path, COLUMNS, list(rows_of_panels(program, cases)), digits=4)
-    draw_map(read_texts(path), path.with_name("map.png"))
-    return checks(read_texts(path))
+    measure(program, {name: PANELS[name][:count] for name, count in QUICK.items()}, path)
+    draw(path)
+    return judge(path)
 
 
 main(HERE, TITLE, measure, quick_measure, judge, draw)

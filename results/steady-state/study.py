@@ -1,23 +1,14 @@
 #!/usr/bin/python3
-"""How long the viscosity takes to become steady, from a random packing, in weak and in strong flow.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+"""How long the viscosity takes to become steady, from a random packing, in weak and in strong flow."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import difference, estimate, jackknife, logarithm, over, quotient, scaled
-from studies.figure import BLUE, GREEN, RED, Figure
-from studies.fits import lines
-from studies.green_kubo import table_at_rest
-from studies.scenes import TABLE_SCENE, merged
-from studies.tables import entries, number, read_numbers, read_rows, write_numbers, write_table
-from studies.verdicts import Finding, Statement
-
+from studies.driver import BLUE, Figure, Finding, GREEN, RED, Statement, TABLE_SCENE, difference, entries, estimate
+from studies.driver import jackknife, lines, logarithm, main, merged, number, over, read_numbers, read_rows, row_ratio
+from studies.driver import scaled, table_at_rest, where, write_numbers, write_rows
 import numpy as np
 
 TITLE = "Time until the viscosity is steady"
@@ -32,16 +23,11 @@ RUNS = {WEAK: (80, "brownian_times", 96, (3, 6), (63, 96)), STRONG: (48, "strain
 DIFFUSION_TIME = 6 * math.pi
 LATER = (57, 75), (75, 96)
 JUDGED = FRACTIONS[1:]  # at the least one the signal is too weak
-UNITS = {"brownian_times": "τ_B", "strain": "strain"}
+
 TOLERANCE = 0.1  # of print: "standard deviation less than 10 %"
 LEFT = 0.05  # of the way, when 95 % are made
 MULTIPLE = math.log(1 / LEFT)  # of the time of an exponential until then
-SCENE = merged(TABLE_SCENE, {"duration": None})
-
-
-def series_of(results):
-    """By seed: the block means of the pairs' viscosity."""
-    return np.array([r["blocks"]["relative_viscosity_pair"] for r in results])
+SCENE = merged(TABLE_SCENE, duration=None)
 
 
 def part_of(rows, length, ends):
@@ -63,25 +49,27 @@ def relaxation(values, length):
 def numbers_of(rows, peclet):
     """Early over steady viscosity, the time of the relaxation, and that to 95 %; with errors by leaving out a seed."""
     _, _, length, early, late = RUNS[peclet]
-    parts = [part_of(rows, length, ends) for ends in (early, late)]
-    share = jackknife(lambda seeds: parts[0][seeds].mean() / parts[1][seeds].mean(), len(rows))
+
+    def share(*ends):
+        before, then = (part_of(rows, length, of) for of in ends)
+        return jackknife(lambda seeds: before[seeds].mean() / then[seeds].mean(), len(rows))
+
     times, errors = jackknife(lambda seeds: relaxation(rows[seeds].mean(axis=0), length), len(rows))
     names = ("early over steady", "time", "time to 95 %")
-    numbers = {n: (*found, len(rows) - 1) for n, found in zip(names, (share, *zip(times, errors)))}
+    numbers = dict(zip(names, (share(early, late), *zip(times, errors))))
     if peclet == WEAK:
-        parts = [part_of(rows, length, ends) for ends in LATER]
-        share = jackknife(lambda seeds: parts[0][seeds].mean() / parts[1][seeds].mean(), len(rows))
-        numbers["later over latest"] = (*share, len(rows) - 1)
-    return numbers
+        numbers["later over latest"] = share(*LATER)
+    return {name: (*found, len(rows) - 1) for name, found in numbers.items()}
 
 
 def measured(program, name, peclet, seeds, fractions, patch=None):
     """By volume fraction: block means by seed."""
     _, unit, length, _, _ = RUNS[peclet]
     parts = {"equilibration": {"strain": 0}, "production": {unit: length}}
-    scene = merged(merged(SCENE, {"peclet": peclet, "duration": parts}), patch or {})
+    scene = merged(SCENE, {"peclet": peclet, "duration": parts}, patch or {})
     program.run(name, scene, [{"/volume_fraction": f} for f in fractions], seeds)
-    return {f: series_of(results) for f, results in zip(fractions, program.stored_results(name))}
+    blocks = ([r["blocks"]["relative_viscosity_pair"] for r in of] for of in program.stored_results(name))
+    return {f: np.array(rows) for f, rows in zip(fractions, blocks)}
 
 
 def measure(program):
@@ -94,7 +82,7 @@ def measure(program):
                 place = {"peclet": peclet, "fraction": fraction, "seeds": len(rows), "unit": unit}
                 place |= {"from": k * length / BLOCKS, "to": (k + 1) * length / BLOCKS}
                 table.append(place | entries("pairs", estimate(values)))
-    write_table(HERE / "table.csv", list(table[0]), table, 5)
+    write_rows(HERE / "table.csv", table, 5)
     write_numbers(HERE / "numbers.csv", numbers)
 
 
@@ -113,12 +101,11 @@ def weak_rows(numbers):
             yield (Statement if judged else Finding)(f"{name}: {text}", "L 4.2.1", *found, degrees=degrees, **bounds)
         *found, degrees = numbers[f"{name}: time to 95 %"]
         yield Finding(f"{name}: τ_B to 95 % of the steady η_r, by an exponential", "L 4.2.1", *found, degrees)
-        text = f"{name}: the same over 6πηa³/kT"
-        yield Finding(text, "L 4.2.1", *over(found, DIFFUSION_TIME), degrees)
+        yield Finding(f"{name}: the same over 6πηa³/kT", "L 4.2.1", *over(found, DIFFUSION_TIME), degrees)
         answer = scaled(number(rest[fraction], "time"), MULTIPLE)
         text = f"φ = {fraction:g}, Pe → 0, from equilibrium: τ_B to 95 % of the answer to a flow, 3.0 τ_φ"
         yield Finding(text, "zero-shear", *answer, rest[fraction]["seeds"] - 1)
-    longer = quotient(*(number(rest[f], "time") for f in (0.56, 0.54)))
+    longer = row_ratio(rest[0.56], rest[0.54], "time")
     text = "τ_φ at φ = 0.56 over that at 0.54 (published: stretched for φ above 0.54)"
     yield Statement(text, "L 4.2.1", *longer, 1, degrees=rest[0.56]["seeds"] - 1)
     for low, high in ((0.45, 0.54), (0.54, 0.56)):
@@ -151,7 +138,7 @@ def draw():
         title = "η_r of pairs over its steady value"
         panel = figure.panel(labels[peclet], title, f"Pe = {peclet:g}", key="bottom right", **ends)
         for fraction, colour in zip(FRACTIONS, (BLUE, GREEN, RED)):
-            rows = [r for r in table if (r["peclet"], r["fraction"]) == (peclet, fraction)]
+            rows = where(table, peclet=peclet, fraction=fraction)
             steady = np.mean([r["pairs"] for r in rows if r["from"] >= late[0] - 1e-9])
             points = [((r["from"] + r["to"]) / 2, *over(number(r, "pairs"), steady)) for r in rows]
             panel.points(points, f"φ = {fraction:g}", colour, 7, 0.7, joined=True)
@@ -166,16 +153,12 @@ def quick_measure(program):
     steady = part_of(rows, length, late)
     found = numbers_of(rows, STRONG)["early over steady"]
     begins = estimate(part_of(rows, length, (0, length / BLOCKS)) / steady.mean())
-    name = f"Pe = {STRONG:g}, φ = 0.5"
-    return [
-        Statement(
-            f"{name}: η_r from a strain of 2 to 3 over that from 5 to 8", "L 4.2.1", *found[:2], 0.8, 1.2, found[2]
-        ),
-        Statement(
-            f"{name}: η_r in the first quarter of a strain over that from 5 to 8", "L 4.2.1", *begins, 0.2, 0.9, 15
-        ),
-        Statement(f"{name}: η_r of pairs from a strain of 5 to 8", "L4.5b", *estimate(steady), 8, 15, 15),
-    ]
+    for text, source, value, low, high in (
+        ("η_r from a strain of 2 to 3 over that from 5 to 8", "L 4.2.1", found[:2], 0.8, 1.2),
+        ("η_r in the first quarter of a strain over that from 5 to 8", "L 4.2.1", begins, 0.2, 0.9),
+        ("η_r of pairs from a strain of 5 to 8", "L4.5b", estimate(steady), 8, 15),
+    ):
+        yield Statement(f"Pe = {STRONG:g}, φ = 0.5: {text}", source, *value, low, high, 15)
 
 
 main(HERE, TITLE, measure, quick_measure, judge, draw)

@@ -1,34 +1,25 @@
 #!/usr/bin/python3
 """Flow at a given stress: beside flow at a given rate, with and without noise; what noise makes of the strain; and
-discontinuous shear thickening, which a given rate jumps over.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+discontinuous shear thickening, which a given rate jumps over."""
 import math
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.at_rest import exact_rows
-from studies.command_line import main
-from studies.estimates import estimate, quotient
-from studies.figure import BLUE, GREEN, ORANGE, RED, Figure
-from studies.scenes import REFERENCE_SCENE, during, merged
-from studies.tables import columns_of, entries, number, read_numbers, read_rows, write_numbers, write_table
-from studies.verdicts import Check, Finding
+from studies.driver import BLUE, Check, Figure, Finding, GREEN, ORANGE, RED, REFERENCE_SCENE, during, entries, estimate
+from studies.driver import exact_rows, in_brownian_times, in_strains, main, merged, number, quotient, read_numbers
+from studies.driver import read_rows, row_ratio, scaled, where, write_numbers, write_rows
 
 TITLE = "Flow at a given stress"
 # Lengths in radii, the solvent's viscosity 1. Of grains the critical load is the unit of force, of colloids kT the unit
 # of energy.
 COMMON = {"particles": {"count": 200, "density": 1e-3}, "fluid": {"viscosity": 1}, "flow": None, "duration": None}
 GRAINS = merged(
-    merged(REFERENCE_SCENE, COMMON),
-    {"contact": {"normal_stiffness": 5e4, "friction": 1, "critical_load": 1}, "volume_fraction": 0.5},
+    REFERENCE_SCENE, COMMON, contact={"normal_stiffness": 5e4, "friction": 1, "critical_load": 1}, volume_fraction=0.5
 )
 COLLOIDS = merged(
-    merged(REFERENCE_SCENE, COMMON),
-    {"contact": {"normal_stiffness": 5e5}, "fluid": {"thermal_energy": 1}, "volume_fraction": 0.45},
+    REFERENCE_SCENE, COMMON, contact={"normal_stiffness": 5e5}, fluid={"thermal_energy": 1}, volume_fraction=0.45
 )
 SEEDS = {"grains": 10, "colloids": 10}
 # Rates, and what viscosity to expect, which says how long a stress must act for a strain of ten.
@@ -49,9 +40,7 @@ THERMAL_ENERGY, VISCOSITY = 0.017, 0.1  # of the study at-rest, whose scene this
 
 def rate_row(program, kind, scene, rate, seeds):
     settings = {"/flow/shear_rate": rate}
-    (point,) = program.run(
-        f"{kind}-rate-{rate:g}", merged(scene, during({"strain": 3}, {"strain": STRAIN})), [settings], seeds
-    )
+    (point,) = program.run(f"{kind}-rate-{rate:g}", merged(scene, in_strains(3, STRAIN)), [settings], seeds)
     seeds = len(point.results)
     row = {"kind": kind, "fraction": scene["volume_fraction"], "control": "rate", "at": rate, "seeds": seeds}
     return row | entries("viscosity", point.measured("relative_viscosity")) | {"flowing": 1.0}
@@ -78,27 +67,25 @@ def measure(program):
             rows.append(stress_row(program, kind, scene, stress, STRAIN * expected, SEEDS[kind]))
     measure_diffusion(program)
     for fraction, (times, seeds) in THICKENING.items():
-        scene = merged(GRAINS, {"volume_fraction": fraction})
+        scene = merged(GRAINS, volume_fraction=fraction)
         for stress in STRESSES:
             rows.append(stress_row(program, "thickening", scene, stress, times, seeds))
-    densest = merged(GRAINS, {"volume_fraction": JUMPING})
+    densest = merged(GRAINS, volume_fraction=JUMPING)
     for rate in RATES_OF_THICKENING:
         rows.append(rate_row(program, "thickening", densest, rate, 4))
-    columns = ["kind", "fraction", "control", "at", "seeds", *columns_of("viscosity"), "flowing"]
-    write_table(HERE / "table.csv", columns, rows, 5)
+    write_rows(HERE / "table.csv", rows, 5)
 
 
 def measure_diffusion(program):
     """By the strains of blocks: D = <strain^2> / (2 t), next to no stress."""
     scene = merged(
-        merged(REFERENCE_SCENE, {"duration": None}),
-        {
-            "particles": {"count": 100},
-            "volume_fraction": DIFFUSING,
-            "flow": None,
-            "fluid": {"thermal_energy": THERMAL_ENERGY},
-            **during({"brownian_times": 50}, {"brownian_times": DIFFUSION_WINDOW}),
-        },
+        REFERENCE_SCENE,
+        {"duration": None},
+        in_brownian_times(50, DIFFUSION_WINDOW),
+        particles={"count": 100},
+        volume_fraction=DIFFUSING,
+        flow=None,
+        fluid={"thermal_energy": THERMAL_ENERGY},
     )
     program.run("diffusion", scene, [{"/flow/stress": 1e-9}], DIFFUSION_SEEDS, "shear_rate")
     (results,) = program.stored_results("diffusion")
@@ -106,8 +93,7 @@ def measure_diffusion(program):
     for result in results:
         time = result["time"]["production"] / 32
         squares.append(sum((rate * time) ** 2 for rate in result["blocks"]["shear_rate"]) / 32 / (2 * time))
-    radii = [1.0, 1.4]
-    cubes = [r**3 for r in radii]
+    cubes = [r**3 for r in (1.0, 1.4)]
     # Half of the volume to each size, of 100 spheres.
     shares = [1 / c for c in cubes]
     volume = 100 * sum(shares[k] / sum(shares) * cubes[k] for k in range(2)) * 4 / 3 * math.pi / DIFFUSING
@@ -115,19 +101,19 @@ def measure_diffusion(program):
     write_numbers(HERE / "diffusion.csv", {"diffusion": (*diffusion, len(squares) - 1)})
 
 
-def read():
-    return read_rows(HERE / "table.csv")
-
-
 def pairs_of(rows, kind):
     """At the same stress: by rate, and by stress."""
-    mine = [r for r in rows if r["kind"] == kind]
+    mine = where(rows, kind=kind)
     return list(zip(mine[::2], mine[1::2]))
 
 
+def curve_of(rows, fraction):
+    return where(rows, kind="thickening", fraction=fraction, control="stress")
+
+
 def slopes(rows, fraction):
-    """d ln viscosity / d ln stress between neighbours of the curve at given stresses, with errors."""
-    curve = [r for r in rows if (r["kind"], r["fraction"], r["control"]) == ("thickening", fraction, "stress")]
+    """Yields d ln viscosity / d ln stress between neighbours of the curve at given stresses, with errors."""
+    curve = curve_of(rows, fraction)
     for low, high in zip(curve, curve[1:]):
         width = math.log(high["at"] / low["at"])
         value = math.log(high["viscosity"] / low["viscosity"]) / width
@@ -135,15 +121,11 @@ def slopes(rows, fraction):
         yield math.sqrt(low["at"] * high["at"]), value, error
 
 
-def steepest(rows, fraction):
-    return max(slopes(rows, fraction), key=lambda slope: slope[1])
-
-
 def judge():
-    rows = read()
+    rows = read_rows(HERE / "table.csv")
     for kind, unit in (("grains", "F_CL/ηa²"), ("colloids", "kT/ηa³")):
         for by_rate, by_stress in pairs_of(rows, kind):
-            ratio = quotient(number(by_stress, "viscosity"), number(by_rate, "viscosity"))
+            ratio = row_ratio(by_stress, by_rate, "viscosity")
             text = f"{kind}, rate {by_rate['at']:g} {unit}: viscosity at the stress over that at the rate"
             yield Check(text, "both controls", *ratio, 0.92, 1.08, by_rate["seeds"] - 1)
     value, error, degrees = read_numbers(HERE / "diffusion.csv")["diffusion"]
@@ -151,35 +133,26 @@ def judge():
     product = value * exact["viscosity"], math.hypot(error * exact["viscosity"], value * exact["viscosity_error"])
     text = f"φ = {DIFFUSING:g}: D V η η_r / kT of the strain, η_r by linear response"
     yield Check(text, "fluctuation and dissipation", *product, 0.85, 1.15, degrees)
-    steep = {fraction: steepest(rows, fraction) for fraction in THICKENING}
-    below, above = [f for f in THICKENING if steep[f][1] < 1], [f for f in THICKENING if steep[f][1] >= 1]
+    steep = {fraction: max(slopes(rows, fraction), key=lambda slope: slope[1]) for fraction in THICKENING}
     onset = onset_of(steep)
     if onset:
         text = "discontinuous from this φ on, where d ln η / d ln σ is 1 at its steepest"
         source = "Mari et al. 2014: about 0.56"
         yield Check(text, source, *onset, PUBLISHED_ONSET - 0.015, PUBLISHED_ONSET + 0.015, 10)
-    for fraction in (*below, *above):
+    for fraction in sorted(THICKENING, key=lambda f: steep[f][1] >= 1):
         stress, value, error = steep[fraction]
         text = f"φ = {fraction:.2f}: largest d ln η / d ln σ, at σ = {stress:.2g} F_CL/a²"
         yield Finding(text, "steepness", value, error)
     for fraction in THICKENING:
-        curve = [r for r in rows if (r["kind"], r["fraction"], r["control"]) == ("thickening", fraction, "stress")]
-        share = sum(r["flowing"] * r["seeds"] for r in curve) / sum(r["seeds"] for r in curve)
+        curve = curve_of(rows, fraction)
         seeds = sum(r["seeds"] for r in curve)
-        yield Finding(
-            f"φ = {fraction:.2f}: share of seeds that flow", "jamming", share, math.sqrt(share * (1 - share) / seeds)
-        )
-    for row in of_densest(rows):
+        share = sum(r["flowing"] * r["seeds"] for r in curve) / seeds
+        error = math.sqrt(share * (1 - share) / seeds)
+        yield Finding(f"φ = {fraction:.2f}: share of seeds that flow", "jamming", share, error)
+    for row in where(rows, kind="thickening", fraction=JUMPING):
         if row["seeds"] > 1:
             text = f"φ = {JUMPING:.2f}, at a {row['control']} of {row['at']:g}: viscosity"
             yield Finding(text, "jump", *number(row, "viscosity"), row["seeds"] - 1)
-
-
-def of_densest(rows):
-    densest = JUMPING
-    for row in rows:
-        if (row["kind"], row["fraction"]) == ("thickening", densest):
-            yield row
 
 
 def onset_of(steep):
@@ -189,44 +162,34 @@ def onset_of(steep):
         (_, a, of_a), (_, b, of_b) = steep[low], steep[high]
         if a < 1 <= b:
             part, width = (1 - a) / (b - a), high - low
-            error = width * math.hypot((1 - part) * of_a, part * of_b) / (b - a)
-            return low + part * width, error
+            return low + part * width, width * math.hypot((1 - part) * of_a, part * of_b) / (b - a)
     return None
 
 
 def draw():
-    rows = read()
+    rows = read_rows(HERE / "table.csv")
     figure = Figure(HERE / "chart.png", columns=3, size=(1500, 480))
     one = figure.panel("σ a²/F_{CL}", "η_r", "φ = 0.50 to 0.57; friction 1", log="xy", key="top left")
     for fraction, colour in zip(THICKENING, (BLUE, GREEN, ORANGE, RED)):
-        curve = [r for r in rows if (r["kind"], r["fraction"], r["control"]) == ("thickening", fraction, "stress")]
-        points = [(r["at"], *number(r, "viscosity")) for r in curve]
-        one.points(points, f"at a stress, {fraction:.2f}", colour, joined=True)
+        one.rows(curve_of(rows, fraction), "at", "viscosity", f"at a stress, {fraction:.2f}", colour, joined=True)
     by_rate = [(r["at"] * r["viscosity"], *number(r, "viscosity")) for r, _ in pairs_of(rows, "grains")]
     one.points(by_rate, "at a rate, 0.50", BLUE, 6)
-    densest = JUMPING
-    two = figure.panel("γ̇ ηa²/F_{CL}", "σ a²/F_{CL}", f"φ = {densest:.2f}", log="xy", key="top left", powers="y")
-    at_densest = list(of_densest(rows))
-    points = [(r["at"] / r["viscosity"], r["at"], 0) for r in at_densest if r["control"] == "stress"]
+    two = figure.panel("γ̇ ηa²/F_{CL}", "σ a²/F_{CL}", f"φ = {JUMPING:.2f}", log="xy", key="top left", powers="y")
+    points = [(r["at"] / r["viscosity"], r["at"], 0) for r in curve_of(rows, JUMPING)]
     two.points(points, "at a stress", ORANGE, joined=True)
-    points = [
-        (r["at"], r["at"] * r["viscosity"], r["at"] * r["viscosity_error"])
-        for r in at_densest
-        if r["control"] == "rate"
-    ]
-    two.points(points, "at a rate", BLUE, 6)
+    by_rate = where(rows, kind="thickening", fraction=JUMPING, control="rate")
+    two.points([(r["at"], *scaled(number(r, "viscosity"), r["at"])) for r in by_rate], "at a rate", BLUE, 6)
     three = figure.panel("Pe", "η_r", "colloids, φ = 0.45, no friction", log="x", key="top left")
     for place, (title, colour, mark) in enumerate((("at a rate", BLUE, 7), ("at its stress", RED, 6))):
-        points = [
-            (6 * math.pi * pair[0]["at"], *number(pair[place], "viscosity")) for pair in pairs_of(rows, "colloids")
-        ]
+        both = pairs_of(rows, "colloids")
+        points = [(6 * math.pi * pair[0]["at"], *number(pair[place], "viscosity")) for pair in both]
         three.points(points, title, colour, mark)
     figure.draw()
 
 
 def quick_measure(program):
     """Spheres that meet nobody flow as the solvent with their stresslets, and a stress is what is asked."""
-    scene = merged(GRAINS, {"particles": {"count": 50}, "volume_fraction": 0.3})
+    scene = merged(GRAINS, particles={"count": 50}, volume_fraction=0.3)
     scene = merged(scene, during({"stress_times": 1}, {"stress_times": 10}))
     (point,) = program.run("quick", scene, [{"/flow/stress": 2}], 4, "shear_rate")
     means = [r["mean"] for r in point["realisations"]]

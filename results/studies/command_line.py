@@ -7,9 +7,10 @@ import platform
 import sys
 import tempfile
 
+from peclet.program import PecletError
+
 from studies.campaigns import Program
-from studies.pages import rewrite, tables_of
-from studies.verdicts import verdict
+from studies.verdicts import rewrite, tables_of, verdict
 
 
 def processor():
@@ -21,26 +22,17 @@ def processor():
 def read_arguments(folder, title, from_table):
     parser = argparse.ArgumentParser(description=title)
     parser.add_argument("binaries", help="folder of peclet and peclet-engine", nargs="?")
-    parser.add_argument(
-        "folder", nargs="?", help="of the campaigns, with which a second call goes on; a temporary one unless given"
-    )
+    text = "folder of the campaigns, with which a second call goes on; a temporary one unless given"
+    parser.add_argument("folder", nargs="?", help=text)
     how = parser.add_mutually_exclusive_group()
-    how.add_argument("--quick", action="store_true", help="half a minute; fails where the physics is broken")
-    how.add_argument(
-        "--long",
-        action="store_true",
-        help="also the points that take hours, where the study has such; goes on with FOLDER",
-    )
-    how.add_argument(
-        "--from-table", action="store_true", help="judge what the tables beside study.py have, without running anything"
-    )
-    parser.add_argument(
-        "--times",
-        type=int,
-        default=1,
-        metavar="N",
-        help="N times as many seeds everywhere, for error bars smaller by the root of N; goes on with FOLDER",
-    )
+    for form, text in (
+        ("quick", "half a minute; fails where the physics is broken"),
+        ("long", "also the points that take hours, where the study has such; goes on with FOLDER"),
+        ("from-table", "judge what the tables beside study.py have, without running anything"),
+    ):
+        how.add_argument(f"--{form}", action="store_true", help=text)
+    text = "N times as many seeds everywhere, for error bars smaller by the root of N; goes on with FOLDER"
+    parser.add_argument("--times", type=int, default=1, metavar="N", help=text)
     arguments = parser.parse_args()
     if arguments.times < 1:
         parser.error("--times: must be at least 1")
@@ -74,11 +66,10 @@ def earlier_provenance(path):
 
 
 def write_study(folder, title, rows, of_runs):
-    """study.json, and the rows on the study's page."""
+    """Writes study.json, and the rows on the study's page."""
     study = {"title": title, "verdict": verdict(rows), **of_runs, "statements": [row.as_json() for row in rows]}
-    text = json.dumps(study, indent=1, ensure_ascii=False) + "\n"
     with open(os.path.join(folder, "study.json"), "w") as f:
-        f.write(text)
+        f.write(json.dumps(study, indent=1, ensure_ascii=False) + "\n")
     rewrite(os.path.join(folder, "README.md"), rows)
 
 
@@ -87,7 +78,10 @@ def with_program(arguments, run):
     with tempfile.TemporaryDirectory() as temporary:
         program = Program(arguments.binaries, arguments.folder or temporary)
         program.long, program.times = arguments.long, arguments.times
-        return run(program), program
+        try:
+            return run(program), program
+        except PecletError as error:
+            sys.exit(str(error))
 
 
 def quick(title, rows):

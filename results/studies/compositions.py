@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 
-from studies.packings import gap_of, linear_mixture, rods
+from studies.estimates import difference
+from studies.published import gap_of, linear_mixture, rods
 from studies.scenes import REFERENCE_SCENE, merged
 
 COLLOIDS, GRAINS = (1.0, 1.4), (5.0, 7.0)
@@ -101,3 +102,14 @@ def packing_models(alone):
         "linear mixture": lambda alpha: linear_mixture(alpha, COLLOIDS[0] / GRAINS[0], alone, alone),
         "rods": lambda alpha: rods(*radii_and_shares(alpha), gap, 4000),
     }
+
+
+def from_nearer_model(jammed, alpha, alone):
+    """Returns a volume fraction of jamming less that of the nearer of the two models."""
+    distances = (difference(jammed, (model(alpha), 0)) for model in packing_models(alone).values())
+    return min(distances, key=lambda distance: abs(distance[0]))
+
+
+def draw_models(panel, alone, colour, titled):
+    for dash, (name, model) in zip((1, 2), packing_models(alone).items()):
+        panel.curve(model, name if titled else None, colour, span=(0, 1), samples=81, dash=dash)

@@ -1,4 +1,4 @@
-"""Means, quotients and other numbers with their standard errors.
+"""Means, quotients and other numbers with their standard errors, and control variates.
 
 A number with its standard error is a pair (value, error).
 """
@@ -87,3 +87,33 @@ def propagated(numbers, function, draws=400):
     generator = random.Random(1)
     drawn = np.array([function([generator.gauss(v, e) for v, e in numbers]) for _ in range(draws)])
     return function([v for v, _ in numbers]), drawn.std(axis=0, ddof=1).tolist()
+
+
+def cross_fitted(values, controls, folds=10):
+    """values - controls b, a row of controls for each realisation. The coefficients b of each fold are those of a
+    linear regression over the realisations of the others: whatever they are, controls of mean zero leave the mean as
+    it is."""
+    values, controls = np.asarray(values, float), np.asarray(controls, float)
+    fold = np.arange(len(values)) % folds
+    found = np.empty_like(values)
+    for k in range(folds):
+        others, own = fold != k, fold == k
+        centred = controls[others] - controls[others].mean(axis=0)
+        coefficients = np.linalg.lstsq(centred, values[others] - values[others].mean(), rcond=None)[0]
+        found[own] = values[own] - controls[own] @ coefficients
+    return found
+
+
+def variance_ratio(plain, controlled):
+    """Variance of one over that of the other, with its standard error by leaving out one realisation at a time. A row
+    of averages for each realisation, or one number."""
+    plain, controlled = (np.asarray(rows, float).reshape(len(rows), -1) for rows in (plain, controlled))
+    return jackknife(lambda chosen: controlled[chosen].var() / plain[chosen].var(), len(plain))
+
+
+def propagated_lists(lists, function, draws=400):
+    """As propagated(), of a function of several lists of values."""
+    ends = np.cumsum([len(numbers) for numbers in lists])[:-1]
+    return propagated(
+        [n for numbers in lists for n in numbers], lambda values: function(np.split(np.array(values), ends)), draws
+    )

@@ -1,7 +1,4 @@
 """Pictures of studies: panels with axes, points with error bars, and curves, drawn by matplotlib into a png."""
-import os
-import sys
-
 import matplotlib
 
 matplotlib.use("Agg")
@@ -9,11 +6,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib import ticker
 from matplotlib.colors import LinearSegmentedColormap
-
-ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-# Of the source, or installed.
-sys.path += [os.path.join(ROOT, "python"), os.path.join(ROOT, "..", "..", "lib", "python3", "dist-packages")]
 from peclet.drawing import mathtext, parts_of, set_ticks
+
+from studies.tables import number
 
 BLUE, GREEN, ORANGE, RED, PURPLE = "#2060b0", "#308030", "#d08020", "#c03028", "#8040a0"
 BLACK, GREY, LIGHT_GREY = "#000000", "#a0a0a0", "#d8d8d8"
@@ -93,6 +88,10 @@ class Panel:
             capsize=2,
         )
         self._say(drawn, title)
+
+    def rows(self, rows, x, name, title, colour, *how, **more):
+        """The points of rows of a table: the number `name` with its standard error over the column x."""
+        self.points([(row[x], *number(row, name)) for row in rows], title, colour, *how, **more)
 
     def _say(self, drawn, title):
         if title:

@@ -19,13 +19,11 @@ WIDTH = 17.7  # of the cell, across: that of 1000 spheres at 0.5 with a height o
 
 SCENE = merged(
     REFERENCE_SCENE,
-    {
-        "particles": {"species": [{"radius": 1.0, "number_share": 1}, {"radius": 1.4, "number_share": 1}]},
-        "flow": {"shear_rate": 0, "waves": [{"periods": 1, "sine": 0.1, "cosine": 0}], "faxen": False},
-        "box": {"height": 50},
-        "observables": ["stress", "profiles"],
-        "profiles": {"bins": 25},
-    },
+    particles={"species": [{"radius": 1.0, "number_share": 1}, {"radius": 1.4, "number_share": 1}]},
+    flow={"shear_rate": 0, "waves": [{"periods": 1, "sine": 0.1, "cosine": 0}], "faxen": False},
+    box={"height": 50},
+    observables=["stress", "profiles"],
+    profiles={"bins": 25},
 )
 
 

@@ -8,23 +8,15 @@ from studies import inhomogeneous
 from studies.estimates import jackknife, quotient
 from studies.learning import METHODS, Regression, all_methods, boosted, columns_of_rows, left_out, relative_error, taken
 from studies.profile_solver import Law, solve, stress_of_drag
-from studies.tables import columns_of, entries, read_rows
+from studies.tables import columns_of, entries, groups, read_rows
 
 import numpy as np
 
 BINS_FOLDER = Path(__file__).resolve().parents[1] / "inhomogeneous-flow"
 NAMES = ("mean", "y", "height", "fraction", "rate", "shear stress", "normal stress", "pressure", "J", "mu", "Theta")
 NAMES += ("lag", "driving", "velocity", "largest share", "mu_error", "fraction_error")
-TRAINING, PUBLISHED, UNSEEN, BEYOND, OTHER = (
-    [flow.name for flow in kind]
-    for kind in (
-        inhomogeneous.TRAINING,
-        inhomogeneous.PUBLISHED,
-        inhomogeneous.UNSEEN,
-        inhomogeneous.BEYOND,
-        inhomogeneous.OTHER,
-    )
-)
+KINDS = "TRAINING", "PUBLISHED", "UNSEEN", "BEYOND", "OTHER"
+TRAINING, PUBLISHED, UNSEEN, BEYOND, OTHER = ([f.name for f in getattr(inhomogeneous, kind)] for kind in KINDS)
 # What maps are asked of, by name of the columns in errors.csv.
 TESTED = {"published": PUBLISHED, "unseen": UNSEEN, "beyond": BEYOND, **{name: [name] for name in PUBLISHED + OTHER}}
 # Inputs and outputs, and the errors in print.
@@ -40,19 +32,15 @@ DEGREES = 2 * PIECES - 1  # of what is asked of two flows
 
 
 def bins_by_flow(path):
-    rows = {}
-    for row in read_rows(path):
-        rows.setdefault(row["flow"], []).append(row)
-    return {flow: columns_of_rows(of, NAMES) for flow, of in rows.items()}
+    return {flow: columns_of_rows(rows, NAMES) for flow, rows in groups(read_rows(path), "flow").items()}
+
+
+def joined(*tables):
+    return {name: np.concatenate([table[name] for table in tables]) for name in NAMES}
 
 
 def together(tables, flows):
-    return {name: np.concatenate([tables[flow][name] for flow in flows]) for name in NAMES}
-
-
-def flows_of(tables, flows):
-    """The flow of each row of together()."""
-    return np.array([flow for flow in flows for _ in tables[flow]["y"]])
+    return joined(*(tables[flow] for flow in flows))
 
 
 def pieces_of(tables, flows):
@@ -72,6 +60,16 @@ def errors(found, table, output, scale, pieces):
     return by_pieces(lambda rows: relative_error(found[rows], table[output][rows], *scale), pieces)
 
 
+def error_ratio(found, other, table, output, scale, pieces):
+    """Returns the error of some values over that of others, its standard error, and degrees of freedom."""
+
+    def ratio(rows):
+        one, base = (relative_error(values[rows], table[output][rows], *scale) for values in (found, other))
+        return one / base
+
+    return (*by_pieces(ratio, pieces), DEGREES)
+
+
 def floor_of(table, output, scale):
     """What a map without an error of its own would be said to have: the noise of the tests' own bins."""
     noise, true = table[f"{output}_error"] / (scale[1] - scale[0]), (table[output] - scale[0]) / (scale[1] - scale[0])
@@ -83,16 +81,14 @@ def scale_of(tables, output):
     return float(values.min()), float(values.max())
 
 
-class MomentumBalance:
-    """mu of bins whose u and phi are known all along y, without any fit. `flows` are those of the rows."""
+def balance_of_momentum(tables):
+    """Returns mu, by flows, of bins whose u and phi are known all along y, without any fit."""
 
-    def __init__(self, tables):
-        self._tables = tables
+    def of(flows):
+        chosen = (tables[flow] for flow in flows)
+        return np.concatenate([np.abs(stress_of_drag(t, inhomogeneous.BIN)) / t["pressure"] for t in chosen])
 
-    def of(self, flows):
-        return np.concatenate(
-            [np.abs(stress_of_drag(self._tables[f], inhomogeneous.BIN)) / self._tables[f]["pressure"] for f in flows]
-        )
+    return of
 
 
 def error_row(tables, found_of, left, map_, output, method):
@@ -116,7 +112,7 @@ def error_row(tables, found_of, left, map_, output, method):
 
 def left_out_of_training(tables, make):
     """What a method says of each training flow when it is fitted to the others."""
-    train, names = together(tables, TRAINING), flows_of(tables, TRAINING)
+    train, names = together(tables, TRAINING), [flow for flow in TRAINING for _ in tables[flow]["y"]]
     found = np.empty(len(names))
     for _, own, others in left_out(names):
         found[own] = make().fit(taken(train, others)).predict(taken(train, own))
@@ -142,21 +138,12 @@ def error_rows(tables):
             row = error_row(tables, lambda flows: model.predict(together(tables, flows)), left, map_, output, method)
             yield row | {"seconds": seconds, "outside": float(np.mean(model.beyond(together(tables, BEYOND)) > 0))}
         if output == "mu" and have_all_bins(tables):
-            balance = MomentumBalance(tables)
-            yield error_row(tables, balance.of, balance.of(TRAINING), map_, output, BALANCE)
+            balance = balance_of_momentum(tables)
+            yield error_row(tables, balance, balance(TRAINING), map_, output, BALANCE)
 
 
-ERRORS = [
-    "map",
-    "output",
-    "method",
-    *columns_of(*TESTED, "left out", "raw"),
-    "own scale",
-    "raw floor",
-    "seconds",
-    "outside",
-]
-ERRORS += [f"{what} floor" for what in (*TESTED, "left out")]
+ERRORS = ["map", "output", "method", *columns_of(*TESTED, "left out", "raw"), "own scale", "raw floor", "seconds"]
+ERRORS += ["outside", *(f"{what} floor" for what in (*TESTED, "left out"))]
 
 
 def fitted(tables, method, inputs, output):
@@ -183,8 +170,7 @@ def centre_numbers(tables):
     more = [taken(tables[f], slow_bins(tables, f)) for f in (*UNSEEN, BEYOND[0])]
     for name, table_of in (("signed where slow", train), ("signed with more slow bins", joined(train, *more))):
         less = METHODS["published"](MAPS[2][0], "mu").fit(table_of).predict(table) - table["mu"]
-        value = by_pieces(lambda rows, less=less: float(less[rows & slow].mean()), pieces)
-        yield name, (*value, PIECES - 1)
+        yield name, (*by_pieces(lambda rows, less=less: float(less[rows & slow].mean()), pieces), PIECES - 1)
 
 
 def comparison_numbers(tables):
@@ -196,12 +182,7 @@ def comparison_numbers(tables):
         models = {n: fitted(tables, "published", MAPS[n][0], output) for n in MAPS if output in MAPS[n][1]}
         found = {n: model.predict(test) for n, model in models.items()}
         for n in found.keys() - {2}:
-
-            def ratio(rows, n=n):
-                of = [relative_error(found[m][rows], test[output][rows], *scale) for m in (n, 2)]
-                return of[0] / of[1]
-
-            yield f"map {n} over map 2, {output}", (*by_pieces(ratio, pieces), DEGREES)
+            yield f"map {n} over map 2, {output}", error_ratio(found[n], found[2], test, output, scale, pieces)
         near = errors(found[2], test, output, scale, pieces)
         beyond = errors(models[2].predict(far), far, output, scale, its)
         yield f"beyond over within, {output}", (*quotient(beyond, near), DEGREES)
@@ -220,10 +201,6 @@ def uniform_points(count):
     return {name: table.get(name, fraction if name in ("fraction", "mean") else zeros) for name in NAMES}
 
 
-def joined(*tables):
-    return {name: np.concatenate([table[name] for table in tables]) for name in NAMES}
-
-
 def uniform_numbers(tables):
     """Error of mu in the unseen flows, by map 1, with uniform flow added to the training or in the place of half of
     it, over that without."""
@@ -235,12 +212,7 @@ def uniform_numbers(tables):
     plain = fitted(tables, "published", MAPS[1][0], "mu").predict(test)
     for name, table in trainings.items():
         found = METHODS["published"](MAPS[1][0], "mu").fit(table).predict(test)
-
-        def ratio(rows, found=found):
-            of = [relative_error(f[rows], test["mu"][rows], *scale) for f in (found, plain)]
-            return of[0] / of[1]
-
-        yield name, (*by_pieces(ratio, pieces), DEGREES)
+        yield name, error_ratio(found, plain, test, "mu", scale, pieces)
 
 
 def tuning_numbers(tables):
@@ -255,17 +227,11 @@ def tuning_numbers(tables):
             return Regression(inputs, output, lambda: boosted(**settings))
 
         def left(settings, output=output, scale=scale, made=made):
-            found = left_out_of_training(tables, lambda: made(settings))
-            return relative_error(found, train[output], *scale)
+            return relative_error(left_out_of_training(tables, lambda: made(settings)), train[output], *scale)
 
         tuned = made(min(grid, key=left)).fit(train).predict(test)
         plain = fitted(tables, "published", inputs, output).predict(test)
-
-        def ratio(rows, tuned=tuned, plain=plain, output=output, scale=scale):
-            parts = [relative_error(f[rows], test[output][rows], *scale) for f in (tuned, plain)]
-            return parts[0] / parts[1]
-
-        yield f"tuned over default, {output}", (*by_pieces(ratio, pieces), DEGREES)
+        yield f"tuned over default, {output}", error_ratio(tuned, plain, test, output, scale, pieces)
 
 
 def pair_numbers(tables):
@@ -312,12 +278,7 @@ def candidate_numbers(tables):
             model = fitted(with_it, "boosting on logarithms", MAPS[3][0], output)
             found[name] = model.predict(together(with_it, PUBLISHED))
         for name in CANDIDATES:
-
-            def ratio(rows, name=name, output=output, scale=scale, found=found):
-                of = [relative_error(found[n][rows], test[output][rows], *scale) for n in (name, "lag")]
-                return of[0] / of[1]
-
-            yield f"{name} over lag, {output}", (*by_pieces(ratio, pieces), DEGREES)
+            yield f"{name} over lag, {output}", error_ratio(found[name], found["lag"], test, output, scale, pieces)
 
 
 def momentum_numbers(tables):
@@ -332,16 +293,10 @@ def momentum_numbers(tables):
 
 
 def all_numbers(tables):
-    for some in (
-        centre_numbers,
-        comparison_numbers,
-        uniform_numbers,
-        tuning_numbers,
-        pair_numbers,
-        candidate_numbers,
-        momentum_numbers,
-    ):
+    for some in (centre_numbers, comparison_numbers, uniform_numbers, tuning_numbers, pair_numbers):
         yield from some(tables)
+    yield from candidate_numbers(tables)
+    yield from momentum_numbers(tables)
 
 
 def solver_rows(tables):
@@ -353,21 +308,10 @@ def solver_rows(tables):
         found = solve(flow, law)
         seconds = time.process_time() - begun
         table = tables[flow.name]
-        for k, y in enumerate(table["y"]):
-            yield {
-                "flow": flow.name,
-                "y": y,
-                "seconds": seconds,
-                "steps": found.steps,
-                "reach": law.reach,
-                "fraction": found.fraction[k],
-                "velocity": found.velocity[k],
-                "pressure": found.pressure,
-                "simulated fraction": table["fraction"][k],
-                "simulated velocity": table["velocity"][k],
-                "simulated pressure": table["normal stress"][k],
-                "driving": table["driving"][k],
-            }
+        simulated = (table[name] for name in ("fraction", "velocity", "normal stress", "driving"))
+        for y, fraction, velocity, *those in zip(table["y"], found.fraction, found.velocity, *simulated):
+            solved = (y, seconds, found.steps, law.reach, fraction, velocity, found.pressure)
+            yield dict(zip(SOLVED, (flow.name, *solved, *those)))
 
 
 SOLVED = ["flow", "y", "seconds", "steps", "reach", "fraction", "velocity", "pressure"]

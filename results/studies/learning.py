@@ -167,21 +167,19 @@ def boosted(**settings):
     return XGBRegressor(objective="reg:squarederror", random_state=SEED, n_jobs=1, **{**chosen, **settings})
 
 
+def regression(make):
+    """Returns how to make a method of a regressor of so many inputs."""
+    return lambda inputs, output: Regression(inputs, output, lambda: make(len(inputs)))
+
+
+HISTOGRAM = {"max_iter": 200, "learning_rate": 0.05, "max_depth": 4, "random_state": SEED}
 METHODS = {
     "published": Published,
-    "boosting on logarithms": lambda inputs, output: Regression(inputs, output, boosted),
-    "random forest": lambda inputs, output: Regression(
-        inputs, output, lambda: RandomForestRegressor(300, min_samples_leaf=2, random_state=SEED)
-    ),
-    "histogram boosting": lambda inputs, output: Regression(
-        inputs,
-        output,
-        lambda: HistGradientBoostingRegressor(max_iter=200, learning_rate=0.05, max_depth=4, random_state=SEED),
-    ),
-    "network": lambda inputs, output: Regression(
-        inputs, output, lambda: MLPRegressor((16, 16), alpha=1e-2, max_iter=5000, random_state=SEED)
-    ),
-    "gaussian process": lambda inputs, output: Regression(inputs, output, lambda: gaussian_process(len(inputs))),
+    "boosting on logarithms": regression(lambda _: boosted()),
+    "random forest": regression(lambda _: RandomForestRegressor(300, min_samples_leaf=2, random_state=SEED)),
+    "histogram boosting": regression(lambda _: HistGradientBoostingRegressor(**HISTOGRAM)),
+    "network": regression(lambda _: MLPRegressor((16, 16), alpha=1e-2, max_iter=5000, random_state=SEED)),
+    "gaussian process": regression(gaussian_process),
 }
 
 

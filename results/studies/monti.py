@@ -74,14 +74,12 @@ def in_units(scene, viscosity, rate, length):
     stiffness, damping = block["normal_stiffness"] * force / length, block["normal_damping"] * force / length / rate
     return merged(
         scene,
-        {
-            "particles": {
-                "density": particles["density"] * viscosity / (length * length * rate),
-                "species": [s | {"radius": s["radius"] * length} for s in particles["species"]],
-            },
-            "fluid": {"viscosity": scene["fluid"]["viscosity"] * viscosity},
-            "flow": {"shear_rate": scene["flow"]["shear_rate"] * rate},
-            "contact": {"normal_stiffness": stiffness, "normal_damping": damping},
-            "lubrication": {"outer_distance": scene["lubrication"]["outer_distance"] * length},
+        particles={
+            "density": particles["density"] * viscosity / (length * length * rate),
+            "species": [s | {"radius": s["radius"] * length} for s in particles["species"]],
         },
+        fluid={"viscosity": scene["fluid"]["viscosity"] * viscosity},
+        flow={"shear_rate": scene["flow"]["shear_rate"] * rate},
+        contact={"normal_stiffness": stiffness, "normal_damping": damping},
+        lubrication={"outer_distance": scene["lubrication"]["outer_distance"] * length},
     )

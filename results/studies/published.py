@@ -1,5 +1,9 @@
-"""Fits to viscosities that others have published."""
+"""Fits to viscosities, and models of packings, that others have published."""
+import heapq
+import math
 
+import numpy as np
+from scipy.optimize import brentq
 
 # c, phi_J and lambda of c (1 - phi / phi_J)^-lambda, relative viscosities without noise, with solvent and stresslet, by
 # friction coefficient: Mari et al. (2014), as Monti et al. (2021) quote them.
@@ -32,3 +36,49 @@ TABLE_4_1 = (
     (1e4, 9e-3, 1.7e-6),
 )
 DENSITY, VISCOSITY, STIFFNESS = 0.1, 0.1, 1e4
+
+RODS = 20000  # of the one-dimensional packing: volume fractions come out to 2e-4
+
+
+def linear_mixture(alpha, ratio, dense_small, dense_large):
+    """Volume fraction of a mixture of small and large spheres whose radii are in the `ratio` small over large and which
+    alone pack to the two volume fractions; `alpha` is the share of the large ones in the volume of the spheres. The
+    linear packing model with the interactions of Yu & Standish (1991): of the volumes 1 / phi that either size gives as
+    the one that carries, the larger."""
+    small, large = 1 / dense_small, 1 / dense_large
+    filling = (1 - ratio) ** 3.3 + 2.8 * ratio * (1 - ratio) ** 2.7  # of small ones in the holes of large ones
+    taking = (1 - ratio) ** 2 + 0.4 * ratio * (1 - ratio) ** 3.7  # of the place of small ones by large ones
+    carried_by_large = large + (1 - alpha) * (small * (1 - filling) - large)
+    carried_by_small = small + alpha * (large - (large - 1) * taking - small)
+    return 1 / max(carried_by_large, carried_by_small)
+
+
+def rod_lengths(radii, shares, count):
+    """Lengths of chords of spheres that a straight line cuts, `shares` being of volume: quantiles of their
+    distribution, from long to short. A line meets a sphere in proportion to its number and cross-section, and a chord
+    of a sphere of diameter D is shorter than l with the probability (l / D)^2."""
+    diameters, shares = 2 * np.asarray(radii, float), np.asarray(shares, float)
+    weights = shares / diameters
+    weights = weights / weights.sum()
+    lengths = np.linspace(0, diameters.max(), 200001)
+    shorter = sum(w * np.minimum(lengths / d, 1) ** 2 for w, d in zip(weights, diameters))
+    return np.interp((np.arange(count) + 0.5) / count, shorter, lengths)[::-1]
+
+
+def rods(radii, shares, gap, count=RODS):
+    """Volume fraction of spheres of these radii and shares of volume by the packing of rods of Farr & Groot (2009):
+    the longest first, each is put into the largest gap, and has a free length of `gap` times the shorter of two
+    neighbours between them at least. 0.7654 belongs to random close packing of spheres of one size at 0.6435."""
+    lengths = rod_lengths(radii, shares, count).tolist()
+    gaps = [-gap * lengths[0]]
+    for length in lengths[1:]:
+        largest = -heapq.heappop(gaps)
+        heapq.heappush(gaps, -gap * length)
+        heapq.heappush(gaps, -max(gap * length, largest - (1 + gap) * length))
+    total = math.fsum(lengths)
+    return total / (total - math.fsum(gaps))
+
+
+def gap_of(radii, shares, fraction, count=RODS):
+    """The `gap` with which these spheres pack to a volume fraction."""
+    return brentq(lambda gap: rods(radii, shares, gap, count) - fraction, 0.2, 3, xtol=1e-4)

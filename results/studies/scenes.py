@@ -1,10 +1,11 @@
 """Scenes that several studies start from, and patches of them."""
 
 
-def merged(base, patch):
-    """`base` with `patch` in it, objects key by key; None removes a key."""
+def merged(base, *patches, **more):
+    """Returns `base` with each patch in it, objects key by key, and last the keys that are given by name; None removes
+    a key."""
     result = dict(base)
-    for key, value in patch.items():
+    for key, value in (pair for patch in (*patches, more) for pair in patch.items()):
         if value is None:
             result.pop(key, None)
         elif isinstance(value, dict) and isinstance(result.get(key), dict):
@@ -56,3 +57,11 @@ def at_peclet(number):
 def during(equilibration, production):
     """A patch: the two parts of a realisation."""
     return {"duration": {"equilibration": equilibration, "production": production}}
+
+
+def in_strains(equilibration, production):
+    return during({"strain": equilibration}, {"strain": production})
+
+
+def in_brownian_times(equilibration, production):
+    return during({"brownian_times": equilibration}, {"brownian_times": production})

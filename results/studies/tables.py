@@ -1,8 +1,16 @@
 """csv files, and rows that have numbers NAME with standard errors NAME_error."""
 import csv
 
+import numpy as np
+
+from studies.estimates import quotient
+
 
 def write_table(path, columns, rows, digits):
+    """`columns` may be a text: names behind commas, NAME± of a number with its standard error."""
+    if isinstance(columns, str):
+        names = (name.strip() for name in columns.split(","))
+        columns = [c for n in names for c in (columns_of(n[:-1]) if n[-1] == "±" else [n])]
     with open(path, "w", newline="") as f:
         writer = csv.DictWriter(f, columns)
         writer.writeheader()
@@ -12,19 +20,19 @@ def write_table(path, columns, rows, digits):
             )
 
 
-def read_table(path):
-    """Rows of a table whose columns are all numbers."""
-    return [{name: float(value) for name, value in row.items()} for row in read_texts(path)]
+def write_rows(path, rows, digits):
+    """Writes all that the rows have, in the order of the first one."""
+    write_table(path, list(rows[0]), rows, digits)
 
 
 def read_texts(path):
-    """Rows of a table as they are written."""
+    """Returns the rows of a table as they are written."""
     with open(path, newline="") as f:
         return list(csv.DictReader(f))
 
 
 def read_rows(path):
-    """Rows of a table with texts; what is a number becomes one, an empty cell nan."""
+    """Returns the rows of a table; what is a number becomes one, an empty cell nan."""
 
     def value(text):
         try:
@@ -36,40 +44,67 @@ def read_rows(path):
 
 
 def write_numbers(path, numbers):
-    """Numbers that only the seeds tell, by name: value, standard error, degrees of freedom."""
+    """Writes numbers that only the seeds tell, by name: value, standard error, degrees of freedom."""
     rows = [dict(zip(("name", "value", "standard_error", "degrees"), (name, *of))) for name, of in numbers.items()]
-    write_table(path, list(rows[0]), rows, 5)
+    write_rows(path, rows, 5)
 
 
 def read_numbers(path):
     return {r["name"]: (r["value"], r["standard_error"], r["degrees"]) for r in read_rows(path)}
 
 
+def where(rows, **equal):
+    """Returns the rows that have these values."""
+    return [row for row in rows if all(row[name] == value for name, value in equal.items())]
+
+
+def first(rows, **equal):
+    """Returns the first row that has these values."""
+    return next(row for row in rows if all(row[name] == value for name, value in equal.items()))
+
+
+def groups(rows, name):
+    """Returns the rows by their value of a column, in the order of their first appearance."""
+    found = {}
+    for row in rows:
+        found.setdefault(row[name], []).append(row)
+    return found
+
+
+def column(rows, name):
+    return np.array([row[name] for row in rows], float)
+
+
 def number(row, name):
-    """A number of a row and its standard error."""
+    """Returns a number of a row and its standard error."""
     return row[name], row[f"{name}_error"]
 
 
+def row_ratio(a, b, name):
+    """Returns the quotient of a number in two independent rows."""
+    return quotient(number(a, name), number(b, name))
+
+
 def entries(name, pair):
-    """The other way round: what a row has of a number and its standard error."""
+    """Returns what a row has of a number and its standard error."""
     return {name: pair[0], f"{name}_error": pair[1]}
 
 
 def number_text(pair, digits):
-    """A number with its standard error on a page."""
+    """Returns a number with its standard error as a page has it."""
     return f"{pair[0]:.{digits}f} ± {pair[1]:.{digits}f}"
 
 
 def columns_of(*names):
-    """Column names of numbers with their errors."""
+    """Returns the column names of numbers with their errors."""
     return [c for n in names for c in (n, f"{n}_error")]
 
 
 def markdown_row(cells):
-    """A line of a table on a page."""
+    """Returns a line of a table on a page."""
     return "|" + "|".join(f" {cell} " if cell != "" else " " for cell in cells) + "|"
 
 
 def markdown_head(names):
-    """The two lines above a table on a page."""
+    """Returns the two lines above a table on a page."""
     return f"{markdown_row(names)}\n|{'---|' * len(names)}"

@@ -1,21 +1,13 @@
 #!/usr/bin/python3
-"""Brownian viscosity of suspensions at rest, from the correlation of the structural Brownian stress.
-
-study.py BIN [FOLDER] [--quick] [--from-table]
-"""
+"""Brownian viscosity of suspensions at rest, from the correlation of the structural Brownian stress."""
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.command_line import main
-from studies.estimates import estimate, logarithm, over, quotient
-from studies.figure import BLUE, GREEN, RED, Figure, shade
-from studies.green_kubo import curve, fit_with_errors
-from studies.scenes import REFERENCE_SCENE, during, merged
-from studies.tables import entries, number, read_numbers, read_rows, write_numbers, write_table
-from studies.verdicts import Finding, Statement
-
+from studies.driver import BLUE, Figure, Finding, GREEN, RED, REFERENCE_SCENE, Statement, entries, estimate, first
+from studies.driver import fit_with_errors, in_brownian_times, logarithm, main, merged, number, over, read_numbers
+from studies.driver import read_rows, row_ratio, shade, viscosity_up_to, write_numbers, write_rows
 import numpy as np
 
 TITLE = "Zero-shear viscosity by Green and Kubo"
@@ -25,15 +17,13 @@ BROWNIAN_TIME = VISCOSITY / THERMAL_ENERGY
 # The longest lag is between an eighth and a quarter of the window: 15 samples times a power of two.
 SCENE = merged(
     REFERENCE_SCENE,
-    {
-        "particles": {"count": 250},
-        "flow": {"shear_rate": 0},
-        "fluid": {"thermal_energy": THERMAL_ENERGY},
-        "observables": ["stress", "stress_correlation"],
-        **during({"brownian_times": 20}, {"brownian_times": 200}),
-    },
+    in_brownian_times(20, 200),
+    particles={"count": 250},
+    flow={"shear_rate": 0},
+    fluid={"thermal_energy": THERMAL_ENERGY},
+    observables=["stress", "stress_correlation"],
 )
-EXPLICIT = {"integrator": {"method": "explicit"}, **during({"brownian_times": 5}, {"brownian_times": 40})}
+EXPLICIT = {"integrator": {"method": "explicit"}, **in_brownian_times(5, 40)}
 
 
 def measured(program, fractions, seeds, patch=None, name="zero-shear"):
@@ -41,10 +31,10 @@ def measured(program, fractions, seeds, patch=None, name="zero-shear"):
     points = program.run(name, merged(SCENE, patch or {}), settings, seeds, "green_kubo_viscosity")
     table, curves = [], {}
     for fraction, point in zip(fractions, points):
-        times, values = curve(point, BROWNIAN_TIME)
-        (viscosity, tau), (viscosity_error, tau_error) = fit_with_errors(times, values)
-        found = {**entries("viscosity", (viscosity, viscosity_error)), **entries("time", (tau, tau_error))}
-        table.append({"fraction": fraction, "seeds": len(values), **found})
+        times, values = viscosity_up_to(point, BROWNIAN_TIME)
+        viscosity, tau = zip(*fit_with_errors(times, values))
+        row = {"fraction": fraction, "seeds": len(values)}
+        table.append(row | entries("viscosity", viscosity) | entries("time", tau))
         curves[fraction] = [(t, *estimate(values[:, k])) for k, t in enumerate(times) if t > 0]
     return table, curves
 
@@ -67,10 +57,9 @@ def growth_rows(rows, degrees):
     text = "growth rate d ln τ_φ / dφ above φ = 0.5 less that below: weakly varying, then growing quickly"
     yield Statement(text, "L4.3b", above - below, float(error), low=0, degrees=degrees)
     text = f"τ_φ at φ = {densest['fraction']:g} over that at 0.5: it grows"
-    yield Statement(text, "L4.3b", *quotient(*(number(r, "time") for r in (densest, dense))), low=1, degrees=degrees)
+    yield Statement(text, "L4.3b", *row_ratio(densest, dense, "time"), low=1, degrees=degrees)
     text = f"η_φ at φ = {densest['fraction']:g} over that at {lowest['fraction']:g}"
-    rise = quotient(*(number(r, "viscosity") for r in (densest, lowest)))
-    yield Statement(text, "L4.3b", *rise, low=1, degrees=degrees)
+    yield Statement(text, "L4.3b", *row_ratio(densest, lowest, "viscosity"), low=1, degrees=degrees)
 
 
 def distance_of(row, points):
@@ -102,9 +91,8 @@ def draw(table, curves):
         fraction, viscosity, tau = row["fraction"], row["viscosity"], row["time"]
         colour = shade((BLUE, GREEN, RED), (fraction - 0.3) / 0.26)
         panel.points(points, f"φ = {fraction:g}", colour, size=0.4)
-        panel.curve(
-            lambda t, eta=viscosity, tau=tau: eta * (1 - np.exp(-t / tau)), None, colour, (points[0][0], points[-1][0])
-        )
+        ends = points[0][0], points[-1][0]
+        panel.curve(lambda t, eta=viscosity, tau=tau: eta * (1 - np.exp(-t / tau)), None, colour, ends)
     panel = figure.panel("φ", "η_φ / η,   τ_φ / τ_B", log="y", key="top left", x_range=(0.28, 0.58))
     for name, title, colour, mark in (("viscosity", "η_φ / η", BLUE, 7), ("time", "τ_φ / τ_B", RED, 5)):
         rows = [(r["fraction"], r[name], 2 * r[f"{name}_error"]) for r in table]
@@ -114,7 +102,7 @@ def draw(table, curves):
 
 def measure(program):
     table, curves = measured(program, FRACTIONS, 24)
-    write_table(HERE / "table.csv", list(table[0]), table, 5)
+    write_rows(HERE / "table.csv", table, 5)
     draw(table, curves)
     degrees, numbers = min(row["seeds"] for row in table) - 1, {}
     for row in table:
@@ -122,19 +110,15 @@ def measure(program):
             name = f"φ = {row['fraction']:g}: largest distance of η_B(t) from η_φ (1 - exp(-t/τ)), over η_φ"
             numbers[name] = (*distance_of(row, curves[row["fraction"]]), degrees)
     explicit = measured(program, [0.4], 4, EXPLICIT, "zero-shear-explicit")[0][0]
-    implicit = next(row for row in table if row["fraction"] == 0.4)
-    ratio = quotient(number(implicit, "viscosity"), number(explicit, "viscosity"))
+    ratio = row_ratio(first(table, fraction=0.4), explicit, "viscosity")
     write_numbers(HERE / "numbers.csv", numbers | {EXPLICIT_NAME: (*ratio, explicit["seeds"] - 1)})
 
 
 def quick_measure(program):
-    seeds = 16
-    small = {"particles": {"count": 100}, **during({"brownian_times": 3}, {"brownian_times": 20})}
-    low, high = (number(row, "viscosity") for row in measured(program, (0.3, 0.5), seeds, small)[0])
-    return [
-        Statement("η_φ at φ = 0.3", "L4.3b", *low, 0.05, 5, seeds - 1),
-        Statement("η_φ at φ = 0.5 over that at 0.3", "L4.3b", *quotient(high, low), 1.2, 50, seeds - 1),
-    ]
+    small = {"particles": {"count": 100}, **in_brownian_times(3, 20)}
+    low, high = measured(program, (0.3, 0.5), 16, small)[0]
+    yield Statement("η_φ at φ = 0.3", "L4.3b", *number(low, "viscosity"), 0.05, 5, 15)
+    yield Statement("η_φ at φ = 0.5 over that at 0.3", "L4.3b", *row_ratio(high, low, "viscosity"), 1.2, 50, 15)
 
 
 main(HERE, TITLE, measure, quick_measure, judge)

@@ -7,17 +7,18 @@ bytes, no kill may be blamed on the engine, and neither a LAMMPS process nor its
 launcher (mpirun -np 2) ranks are struck too, and a SIGTERM to the adapter.
 """
 import argparse
-import json
 import os
 import random
 import signal
 import sqlite3
-import subprocess
 import sys
 import tempfile
 import time
 
 ROOT = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../.."))
+sys.path.insert(0, os.path.join(ROOT, "tests/end_to_end"))
+from campaign_folder import BLAMED, ENDED, RESULTS, CampaignFolder, children, comes_true  # noqa: E402
+
 STUDY = os.path.join(ROOT, "results/lammps-ensemble")
 CAMPAIGN = {
     "name": "drill",
@@ -35,14 +36,6 @@ CAMPAIGN = {
 }
 
 
-def children(process):
-    try:
-        with open(f"/proc/{process}/task/{process}/children") as f:
-            return [int(word) for word in f.read().split()]
-    except (FileNotFoundError, ProcessLookupError):
-        return []
-
-
 def processes_in(folder):
     """LAMMPS runs in a folder of its own below this one."""
     found = []
@@ -55,59 +48,28 @@ def processes_in(folder):
     return found
 
 
-class Drill:
-    def __init__(self, peclet, folder, workers, seeds, launcher):
-        self.peclet, self.folder, self.workers = peclet, folder, workers
-        self.scratch = os.path.join(folder, "scratch")
+class Drill(CampaignFolder):
+    def __init__(self, programs, folder, workers, seeds, launcher):
+        engine = CAMPAIGN["engine"] + (["--launcher", launcher] if launcher else [])
+        document = {**CAMPAIGN, "realisations": {"minimum": seeds, "maximum": seeds}, "engine": engine}
+        self.workers, self.scratch = str(workers), os.path.join(folder, "scratch")
         os.makedirs(self.scratch)
-        with open(os.path.join(folder, "drill.json"), "w") as f:
-            json.dump(
-                {
-                    **CAMPAIGN,
-                    "realisations": {"minimum": seeds, "maximum": seeds},
-                    "engine": CAMPAIGN["engine"] + (["--launcher", launcher] if launcher else []),
-                },
-                f,
-            )
+        super().__init__(programs, folder, document, {"TMPDIR": self.scratch})
 
     def start(self):
-        log = open(os.path.join(self.folder, "log"), "a")
-        return subprocess.Popen(
-            [self.peclet, "run", "drill.json", "--workers", str(self.workers), "--checkpoint", "0.01"],
-            cwd=self.folder,
-            env={**os.environ, "TMPDIR": self.scratch},
-            stdout=log,
-            stderr=log,
-        )
-
-    def export(self):
-        return subprocess.run(
-            [self.peclet, "export", "drill.json", "--json", "--canonical"],
-            cwd=self.folder,
-            capture_output=True,
-            check=True,
-        ).stdout
-
-    def rows(self, query):
-        with sqlite3.connect(f"file:{self.folder}/drill.peclet/campaign.db?mode=ro", uri=True) as database:
-            return database.execute(query).fetchall()
-
-    def ask(self, query):
-        return self.rows(query)[0][0]
+        return super().start("run", "drill.json", "--workers", self.workers, "--checkpoint", "0.01")
 
     def workers_at_work(self, process):
         """Those of its children that have a seed."""
         try:
-            busy = {row[0] for row in self.rows("SELECT process FROM attempt WHERE outcome = 'running'")}
+            busy = {row[0] for row in self.query("SELECT process FROM attempt WHERE outcome = 'running'")}
         except sqlite3.Error:
             return []  # no database yet
         return [child for child in children(process.pid) if child in busy]
 
     def left_behind(self):
         """After a while in which the orphans of a killed run may leave by themselves."""
-        patience = time.monotonic() + 20
-        while processes_in(self.scratch) and time.monotonic() < patience:
-            time.sleep(0.05)
+        comes_true(lambda: not processes_in(self.scratch), nap=0.05)
         return [*processes_in(self.scratch), *os.listdir(self.scratch)]
 
 
@@ -148,20 +110,19 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--launcher", default="")
     arguments = parser.parse_args()
-    peclet = os.path.abspath(os.path.join(arguments.bin, "peclet"))
     chance = random.Random(arguments.seed)
     seeds = max(5, arguments.kills)  # so that the campaign outlasts them
     with tempfile.TemporaryDirectory() as folder:
-        undisturbed = Drill(peclet, os.path.join(folder, "undisturbed"), 1, seeds, arguments.launcher)
+        undisturbed = Drill(arguments.bin, os.path.join(folder, "undisturbed"), 1, seeds, arguments.launcher)
         started = time.monotonic()
         code = undisturbed.start().wait()
         needed = time.monotonic() - started
         print(f"undisturbed, 1 worker: exit code {code} after {needed:.1f} s")
         if code != 0:
-            print(open(os.path.join(undisturbed.folder, "log")).read())
+            print(undisturbed.log())
             return 1
 
-        drill = Drill(peclet, os.path.join(folder, "drill"), 2, seeds, arguments.launcher)
+        drill = Drill(arguments.bin, os.path.join(folder, "drill"), 2, seeds, arguments.launcher)
         whose = ["lmp", "worker", "peclet"] + (["rank", "term"] if arguments.launcher else [])
         kills = dict.fromkeys(whose, 0)
         process = drill.start()
@@ -176,20 +137,12 @@ def main():
                 break  # through before it could be struck as often as asked
         code = process.wait()
         same = drill.export() == undisturbed.export()
-        done, results, blamed = (
-            drill.ask(query)
-            for query in (
-                "SELECT count(*) FROM realisation WHERE state = 'done'",
-                "SELECT count(*) FROM result",
-                "SELECT total(blamed) FROM attempt",
-            )
-        )
+        done, results, blamed = (drill.ask(query) for query in (ENDED, RESULTS, BLAMED))
         cut = drill.ask("SELECT count(*) FROM attempt WHERE outcome IN ('killed', 'abandoned')")
         left = drill.left_behind() + undisturbed.left_behind()
         print(
-            f"kills: {kills}; last run: exit code {code}; same bytes: {same}; realisations {done}, results "
-            f"{results}; attempts "
-            f"cut {cut}, blamed on the engine {blamed:.0f}; left behind: {left}"
+            f"kills: {kills}; last run: exit code {code}; same bytes: {same}; realisations {done}, results {results}; "
+            f"attempts cut {cut}, blamed on the engine {blamed:.0f}; left behind: {left}"
         )
         enough = sum(kills.values()) >= arguments.kills
         return 0 if code == 0 and same and done == results and blamed == 0 and not left and enough and cut else 1

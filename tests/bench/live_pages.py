@@ -21,19 +21,8 @@ import time
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "pages"))
 from browser import Browser  # noqa: E402
 from campaign_page import Folder  # noqa: E402
-from owner_time import SCENE, processor_time, results  # noqa: E402
-
-
-def campaign(binaries):
-    with open(SCENE, encoding="utf-8") as scene:
-        return {
-            "name": "campaign",
-            "engine": [os.path.join(binaries, "fake_engine")],
-            "scene": json.load(scene),
-            "sweep": [{"set": "/flow/shear_rate", "values": [0.001 * (i + 1) for i in range(10)]}],
-            "target": {"observable": "relative_viscosity", "relative_tolerance": 1e-7},
-            "realisations": {"minimum": 8, "maximum": 1_000_000},
-        }
+from owner_time import document, processor_time  # noqa: E402
+from campaign_folder import ENDED, query  # noqa: E402
 
 
 class Asking(threading.Thread):
@@ -81,10 +70,14 @@ def pages(server, number, browser):
 
 
 def window(run, folder, seconds):
-    """Processor seconds of the owner a result, and results a second."""
-    before, count, begun = processor_time(run.pid), results(folder), time.monotonic()
+    """Returns the owner's processor seconds a result, and results a second."""
+
+    def ended():
+        return query(os.path.join(folder, "campaign.peclet", "campaign.db"), ENDED)[0][0]
+
+    before, count, begun = processor_time(run.pid), ended(), time.monotonic()
     time.sleep(seconds)
-    took, taken = processor_time(run.pid) - before, results(folder) - count
+    took, taken = processor_time(run.pid) - before, ended() - count
     return took / max(1, taken), taken / (time.monotonic() - begun)
 
 
@@ -95,7 +88,7 @@ def said(what, values, unit):
 def measure(options, place, browser):
     folder = Folder(options.binaries, place)
     folder.environment.update({f"PECLET_FAKE_{name}": value for name, value in (("STEPS", "1"), ("DEVIATION", "5"))})
-    file = folder.write(campaign(os.path.abspath(options.binaries)))
+    file = folder.write(document(options.binaries, 10, 1_000_000))
     command = ["peclet", "run", file, "--workers", "2", "--quiet"]
     with subprocess.Popen(command, cwd=place, env=folder.environment, stdout=subprocess.DEVNULL) as run:
         time.sleep(3)  # until workers are busy

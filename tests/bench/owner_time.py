@@ -8,38 +8,26 @@ import argparse
 import json
 import os
 import signal
-import sqlite3
 import subprocess
+import sys
 import tempfile
 import time
 
-SCENE = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "runner", "small_scene.json")
+TESTS = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+sys.path.insert(0, os.path.join(TESTS, "end_to_end"))
+from campaign_folder import CampaignFolder, largest_memory, processor_time  # noqa: E402
+
+SCENE = os.path.join(TESTS, "runner", "small_scene.json")
 
 
-def processor_time(process):
-    with open(f"/proc/{process}/stat", encoding="ascii") as stat:
-        fields = stat.read().rsplit(")", 1)[1].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
-
-
-def largest_memory(process):
-    with open(f"/proc/{process}/status", encoding="ascii") as status:
-        return next(int(line.split()[1]) / 1024 for line in status if line.startswith("VmHWM"))
-
-
-def results(folder):
-    database = sqlite3.connect(f"file:{folder}/campaign.peclet/campaign.db?mode=ro", uri=True)
-    with database:
-        return database.execute("SELECT count(*) FROM realisation WHERE state = 'done'").fetchone()[0]
-
-
-def campaign(arguments, maximum):
+def document(binaries, points, maximum):
+    """Returns a campaign of the fake engine that ends at the maximum of seeds."""
     with open(SCENE, encoding="utf-8") as scene:
         return {
             "name": "campaign",
-            "engine": [os.path.abspath(os.path.join(arguments.bin, "fake_engine"))],
+            "engine": [os.path.abspath(os.path.join(binaries, "fake_engine"))],
             "scene": json.load(scene),
-            "sweep": [{"set": "/flow/shear_rate", "values": [0.001 * (i + 1) for i in range(arguments.points)]}],
+            "sweep": [{"set": "/flow/shear_rate", "values": [0.001 * (i + 1) for i in range(points)]}],
             "target": {"observable": "relative_viscosity", "relative_tolerance": 1e-7},
             "realisations": {"minimum": 8, "maximum": maximum},
         }
@@ -47,17 +35,16 @@ def campaign(arguments, maximum):
 
 def measure(arguments, maximum):
     fake = {"STEPS": 1, "DEVIATION": 5, "AHEAD": 1, "PADDING": arguments.padding}
-    environment = dict(os.environ, **{f"PECLET_FAKE_{name}": str(value) for name, value in fake.items()})
+    environment = {f"PECLET_FAKE_{name}": str(value) for name, value in fake.items()}
     with tempfile.TemporaryDirectory() as folder:
-        file = os.path.join(folder, "campaign.json")
-        with open(file, "w", encoding="utf-8") as written:
-            json.dump(campaign(arguments, maximum), written)
-        command = [os.path.join(arguments.bin, "peclet"), "run", file, "--workers", "2"]
-        with subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as run:
+        of = document(arguments.bin, arguments.points, maximum)
+        campaign = CampaignFolder(arguments.bin, folder, of, environment)
+        silent = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+        with campaign.start("run", campaign.file, "--workers", "2", **silent) as run:
             time.sleep(2)  # until workers are busy
-            time_before, before = processor_time(run.pid), results(folder)
+            time_before, before = processor_time(run.pid), campaign.ended()
             time.sleep(arguments.seconds)
-            count = results(folder) - before
+            count = campaign.ended() - before
             each = 1000 * (processor_time(run.pid) - time_before) / max(1, count)
             memory = largest_memory(run.pid)
             run.send_signal(signal.SIGTERM)

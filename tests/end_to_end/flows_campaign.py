@@ -9,7 +9,6 @@ import json
 import os
 import random
 import signal
-import sqlite3
 import subprocess
 import sys
 import tempfile
@@ -17,6 +16,7 @@ import time
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "results"))
+from campaign_folder import CampaignFolder
 from studies.campaigns import read_results
 
 SCENE = {
@@ -38,6 +38,7 @@ def lasting(**limit):
 
 
 CYCLES = {"equilibration": {"cycles": 1}, "production": {"cycles": 4}}
+RAMP = [{"shear_rate": 0, "final_rate": 1, "time": 1}, {"shear_rate": 0}]
 # Flow, k_B T, observables and durations.
 POINTS = [
     ({"shear_rate": 1, "cross_shear": {"amplitude": 0.05, "frequency": 10}}, 0, ["stress", "oscillation"], CYCLES),
@@ -45,37 +46,23 @@ POINTS = [
     ({"extension_rate": 0.5}, 0, ["stress", "transient"], lasting(strain=2)),
     ({"uniaxial_rate": -0.5}, 0, ["stress", "transient"], lasting(strain=2)),
     ({"segments": [{"shear_rate": 1, "strain": 1}, {"shear_rate": -1}]}, 0, ["stress", "transient"], lasting(strain=4)),
-    (
-        {"segments": [{"shear_rate": 0, "final_rate": 1, "time": 1}, {"shear_rate": 0}]},
-        0.1,
-        ["stress", "transient"],
-        lasting(time=2),
-    ),
+    ({"segments": RAMP}, 0.1, ["stress", "transient"], lasting(time=2)),
     ({"stress": 5}, 0, ["stress", "contact_network"], lasting(stress_times=40)),
     ({"stress": 5}, 0.5, ["stress", "contact_network"], lasting(stress_times=5)),
 ]
 
 
-def campaign(name):
-    keys = ["/flow", "/fluid/thermal_energy", "/observables", "/duration"]
-    return {
-        "name": name,
-        "scene": SCENE,
-        "sweep": [{"set": keys, "values": [list(point) for point in POINTS]}],
-        "target": {"observable": "pressure", "absolute_tolerance": 1e9},
-        "realisations": {"minimum": 8, "maximum": 8},
-    }
+class Campaign(CampaignFolder):
+    """Eight seeds of each point."""
 
+    def __init__(self, programs, folder, name, scene, observable, keys, values):
+        document = {"name": name, "scene": scene, "sweep": [{"set": keys, "values": values}]}
+        document |= {"target": {"observable": observable, "absolute_tolerance": 1e9}}
+        document |= {"realisations": {"minimum": 8, "maximum": 8}}
+        super().__init__(programs, folder, document)
 
-def standing_still(flow):
-    """No suspension flows under a stress that would need less than 1 + 2.5 φ."""
-    return {
-        "name": "still",
-        "scene": SCENE | {"duration": lasting(stress_times=2)},
-        "sweep": [{"set": "/flow", "values": flow}],
-        "target": {"observable": "shear_rate", "absolute_tolerance": 1e9},
-        "realisations": {"minimum": 8, "maximum": 8},
-    }
+    def run(self):
+        return self.start("run", self.file, "--quiet", start_new_session=True)
 
 
 def check(holds, *what):
@@ -83,17 +70,10 @@ def check(holds, *what):
         raise SystemExit("flows_campaign.py: " + " ".join(map(str, what)))
 
 
-def written(folder, campaign_):
-    path = os.path.join(folder, campaign_["name"] + ".json")
-    with open(path, "w") as f:
-        json.dump(campaign_, f)
-    return path
-
-
-def results_of(path):
+def results_of(campaign):
     """By point and seed, without what a repetition may change."""
     found = {}
-    for settings, results in read_results(path.removesuffix(".json") + ".peclet"):
+    for settings, results in read_results(campaign.data):
         for result in results:
             for member in ("cost", "engine"):
                 result.pop(member, None)
@@ -101,10 +81,10 @@ def results_of(path):
     return found
 
 
-def disturbed(peclet, path, generator):
+def disturbed(campaign, generator):
     """Runs it to the end through interruptions; returns how many there were."""
     for times in range(200):
-        process = subprocess.Popen([peclet, "run", path, "--quiet"], stdout=subprocess.DEVNULL, start_new_session=True)
+        process = campaign.run()
         try:
             process.wait(timeout=generator.uniform(0.3, 0.3 + 0.05 * times))
             check(process.returncode == 0, "run ended with", process.returncode)
@@ -120,45 +100,46 @@ def disturbed(peclet, path, generator):
     raise SystemExit("flows_campaign.py: does not come to an end")
 
 
-def every_flow(peclet, folder):
-    calm, wild = written(folder, campaign("calm")), written(folder, campaign("wild"))
-    subprocess.run([peclet, "run", calm, "--quiet"], check=True, stdout=subprocess.DEVNULL)
-    times = disturbed(peclet, wild, random.Random(1))
+def every_flow(programs, folder):
+    keys = ["/flow", "/fluid/thermal_energy", "/observables", "/duration"]
+    points = [list(point) for point in POINTS]
+    calm, wild = (Campaign(programs, folder, name, SCENE, "pressure", keys, points) for name in ("calm", "wild"))
+    check(calm.run().wait() == 0, "undisturbed, it fails", calm.log())
+    times = disturbed(wild, random.Random(1))
     expected, found = results_of(calm), results_of(wild)
     check(len(expected) == 8 * len(POINTS), len(expected), "results")
     check(times > 3, "was disturbed", times, "times only")
     for key, result in expected.items():
         check(found[key] == result, "differs after interruptions:", key)
-    subprocess.run([peclet, "doctor", wild], check=True, stdout=subprocess.DEVNULL)
+    check(wild.say("doctor", wild.file).returncode == 0, "is not sound")
     print(f"{len(POINTS)} flows, {len(expected)} results: the same bytes after {times} interruptions")
 
 
-def share_that_flows(peclet, folder):
+def share_that_flows(programs, folder):
+    """No suspension flows under a stress that would need less than 1 + 2.5 φ."""
     flows = [{"stress": 5, "jammed_viscosity": 1.5}, {"stress": 5, "jammed_viscosity": 100}]
-    path = written(folder, standing_still(flows))
+    scene = SCENE | {"duration": lasting(stress_times=2)}
+    campaign = Campaign(programs, folder, "still", scene, "shear_rate", "/flow", flows)
     # Equal rates of 0 have no spread to judge by, whatever the tolerance: the point stays open at the maximum.
-    ended = subprocess.run([peclet, "run", path, "--quiet"], stdout=subprocess.DEVNULL).returncode
+    ended = campaign.run().wait()
     check(ended == 3, "the run ended with", ended)
-    exported = json.loads(subprocess.run([peclet, "export", path], check=True, capture_output=True).stdout)
-    still, flowing = exported["points"]
+    still, flowing = json.loads(campaign.say("export", campaign.file).stdout)["points"]
     for point, share in ((still, 0), (flowing, 1)):
         check(len(point["realisations"]) == 8, "lost realisations of", point["settings"])
         for realisation in point["realisations"]:
             check(realisation["mean"]["flowing"] == share, "flows", realisation["mean"]["flowing"], point["settings"])
     check(all(r["ending"]["cause"] == "jammed" for r in still["realisations"]), "has not ended as jammed")
-    shown = subprocess.run([peclet, "status", path], check=True, capture_output=True, text=True).stdout
-    check("jammed" in shown, "status says nothing of jams:", shown)
-    database = sqlite3.connect(f"file:{path.removesuffix('.json')}.peclet/campaign.db?mode=ro", uri=True)
-    causes = database.execute("SELECT cause, count(*) FROM realisations GROUP BY cause ORDER BY cause").fetchall()
+    shown = campaign.say("status", campaign.file)
+    check(shown.returncode == 0 and b"jammed" in shown.stdout, "status says nothing of jams:", shown)
+    causes = campaign.query("SELECT cause, count(*) FROM realisations GROUP BY cause ORDER BY cause")
     check(causes == [("completed", 8), ("jammed", 8)], "has the causes", causes)
     print("what stands still is counted: 8 of 16 flow")
 
 
 def main():
-    peclet = os.path.join(sys.argv[1], "peclet")
     with tempfile.TemporaryDirectory() as folder:
-        share_that_flows(peclet, folder)
-        every_flow(peclet, folder)
+        share_that_flows(sys.argv[1], folder)
+        every_flow(sys.argv[1], folder)
 
 
 main()

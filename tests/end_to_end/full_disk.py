@@ -11,15 +11,14 @@ The file systems are small tmpfs. Mounting them takes root, or an unprivileged u
 script makes for itself; where the kernel grants neither, it fails and says so.
 """
 import argparse
-import json
 import os
 import signal
-import sqlite3
 import subprocess
 import sys
 import tempfile
 import time
 
+from campaign_folder import BLAMED, ENDED, RESULTS, CampaignFolder, comes_true
 from drill.campaign import REAL
 
 # Seeds of many checkpoints each here, and of some on a machine that is several times faster.
@@ -36,38 +35,14 @@ CASES = {  # what is full: the folder whose file system is filled, and which fol
 SMALL = ("400k", "1m", "2m", "3m")  # the database alone, without results, takes half a megabyte
 
 
-class Drill:
+class Drill(CampaignFolder):
     """A campaign in a folder of its own, its runs, and what they said."""
 
-    def __init__(self, peclet, folder):
-        self.peclet, self.folder = peclet, folder
-        os.makedirs(folder)
-        with open(os.path.join(folder, "drill.json"), "w") as f:
-            json.dump(dict(REAL, scene=SCENE, engine=["peclet-engine", "serve"]), f)
+    def __init__(self, programs, folder):
+        super().__init__(programs, folder, dict(REAL, scene=SCENE, engine=["peclet-engine", "serve"]))
 
     def start(self):
-        with open(os.path.join(self.folder, "log"), "a") as log:
-            return subprocess.Popen(
-                [self.peclet, "run", "drill.json", "--workers", "2", "--checkpoint", str(CHECKPOINT_SECONDS)],
-                cwd=self.folder,
-                stdout=log,
-                stderr=log,
-            )
-
-    def export(self):
-        return subprocess.run(
-            [self.peclet, "export", "drill.json", "--json", "--canonical"],
-            cwd=self.folder,
-            capture_output=True,
-            check=True,
-        ).stdout
-
-    def count(self, query):
-        database = sqlite3.connect(f"file:{self.folder}/drill.peclet/campaign.db?mode=ro", uri=True)
-        try:
-            return database.execute(query).fetchone()[0]
-        finally:
-            database.close()
+        return super().start("run", "drill.json", "--workers", "2", "--checkpoint", str(CHECKPOINT_SECONDS))
 
 
 def in_own_namespace():
@@ -77,10 +52,8 @@ def in_own_namespace():
     ways = [["unshare", "-m"]] if os.geteuid() == 0 else []
     for way in ways + [["unshare", "-Urm"]]:
         with tempfile.TemporaryDirectory() as folder:
-            if (
-                subprocess.run(way + ["mount", "-t", "tmpfs", "none", folder], stderr=subprocess.DEVNULL).returncode
-                == 0
-            ):
+            tried = subprocess.run(way + ["mount", "-t", "tmpfs", "none", folder], stderr=subprocess.DEVNULL)
+            if tried.returncode == 0:
                 os.execvpe(way[0], way + [sys.executable] + sys.argv, {**os.environ, "PECLET_MAY_MOUNT": "1"})
     sys.exit(
         "full_disk.py: needs to mount a tmpfs: run it as root, or where unprivileged user namespaces are allowed "
@@ -93,26 +66,21 @@ def mount(path, size):
     subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "none", path], check=True)
 
 
-class FullDisk:
-    def __init__(self, peclet, folder, case):
-        self.full, self.own = CASES[case]
-        self.drill = Drill(peclet, folder)
-        self.root = os.path.join(folder, "drill.peclet")
-        mount(self.root, "16m")
-        for name in self.own:
-            mount(os.path.join(self.root, name), "16m")
-        self.filler = os.path.join(self.root, self.full, "filler")
+class FullDisk(Drill):
+    def __init__(self, programs, folder, case):
+        super().__init__(programs, folder)
+        full, own = CASES[case]
+        self.mounted = [self.data, *(self.path(name) for name in own)]
+        for place in self.mounted:
+            mount(place, "16m")
+        self.filler = self.path(full, "filler")
 
     def __enter__(self):
         return self
 
     def __exit__(self, *raised):
-        for folder in [os.path.join(self.root, name) for name in self.own] + [self.root]:
-            subprocess.run(["umount", "--lazy", folder], check=True)
-
-    def log(self):
-        with open(os.path.join(self.drill.folder, "log")) as f:
-            return f.read()
+        for place in reversed(self.mounted):
+            subprocess.run(["umount", "--lazy", place], check=True)
 
     def fill(self):
         with open(self.filler, "ab", buffering=0) as f:
@@ -130,36 +98,32 @@ class FullDisk:
             time.sleep(0.02)
 
     def attempts(self):
-        return self.drill.count("SELECT count(*) FROM attempt")
+        return self.ask("SELECT count(*) FROM attempt")
 
-    def wait(self, what, until, process):
-        end = time.monotonic() + 120
-        while not until():
-            assert time.monotonic() < end, f"waited in vain for: {what}\n{self.log()}"
-            assert process.poll() is None, f"the run ended before: {what}\n{self.log()}"
-            time.sleep(0.02)
+    def fill_under_a_run(self):
+        """Returns the process of a run whose disk is full from its first results on."""
+        process = self.start()
+        begun = comes_true(lambda: self.ended() >= 2 or process.poll() is not None, 120, 0.02)
+        assert begun, f"no results within 120 s\n{self.log()}"
+        assert process.poll() is None, f"the run ended before the disk was full\n{self.log()}"
+        self.fill()
+        return process
 
-    def begun(self):
-        try:
-            return self.drill.count("SELECT count(*) FROM realisation WHERE state = 'done'") >= 2
-        except sqlite3.Error:
-            return False
+    def wait_until_said(self, process):
+        end = time.monotonic() + 60
+        while "is full" not in self.log():
+            in_time = time.monotonic() < end and process.poll() is None
+            assert in_time, f"it does not say that the disk is full\n{self.log()}"
+            self.keep_full(0.1)
 
 
 def starve(disk, case):
-    """A run whose disk is full for some seconds. Returns what it says of itself."""
-    process = disk.drill.start()
-    disk.wait("the first results", disk.begun, process)
-    disk.fill()
+    """Starts a run whose disk is full for some seconds, and returns its process."""
+    process = disk.fill_under_a_run()
     if case == "logs":  # nobody waits for a log
         disk.keep_full(1)
     else:
-        end = time.monotonic() + 60
-        while "is full" not in disk.log():
-            assert (
-                time.monotonic() < end and process.poll() is None
-            ), f"it does not say that the disk is full\n{disk.log()}"
-            disk.keep_full(0.1)
+        disk.wait_until_said(process)
         before = disk.attempts()
         disk.keep_full(6)
         assert disk.attempts() == before, "seeds were given out although the disk is full"
@@ -169,13 +133,8 @@ def starve(disk, case):
 
 
 def stop_while_full(disk):
-    process = disk.drill.start()
-    disk.wait("the first results", disk.begun, process)
-    disk.fill()
-    end = time.monotonic() + 60
-    while "is full" not in disk.log():
-        assert time.monotonic() < end and process.poll() is None, disk.log()
-        disk.keep_full(0.1)
+    process = disk.fill_under_a_run()
+    disk.wait_until_said(process)
     process.send_signal(signal.SIGTERM)
     started = time.monotonic()
     while process.poll() is None and time.monotonic() < started + 60:
@@ -186,43 +145,31 @@ def stop_while_full(disk):
 
 
 def judge(disk, name, code, reference):
-    same = disk.drill.export() == reference
-    blamed = disk.drill.count("SELECT total(blamed) FROM attempt")
-    done = disk.drill.count("SELECT count(*) FROM realisation WHERE state = 'done'")
-    stored = disk.drill.count("SELECT count(*) FROM result")
-    sound = disk.drill.count("PRAGMA integrity_check") == "ok"
-    print(
-        f"{name}: exit code {code}, same bytes {same}, realisations {done}, results {stored}, blamed {blamed:.0f}, "
-        f"integrity {sound}",
-        flush=True,
-    )
+    same, sound = disk.export() == reference, disk.ask("PRAGMA integrity_check") == "ok"
+    blamed, done, stored = (disk.ask(query) for query in (BLAMED, ENDED, RESULTS))
+    counts = f"realisations {done}, results {stored}, blamed {blamed:.0f}, integrity {sound}"
+    print(f"{name}: exit code {code}, same bytes {same}, {counts}", flush=True)
     return code == 0 and same and done == stored and blamed == 0 and sound
 
 
-def too_small(peclet, folder, size, reference):
+def too_small(programs, folder, size, reference):
     """The campaign's file system is too small for it: it ends by itself, says so, and goes on elsewhere to the same
     bytes."""
-    drill = Drill(peclet, folder)
-    root = os.path.join(folder, "drill.peclet")
-    mount(root, size)
+    drill = Drill(programs, folder)
+    mount(drill.data, size)
     try:
         code = drill.start().wait(300)
-        with open(os.path.join(folder, "log")) as f:
-            log = f.read()
-        said = log.count("for which nobody can make room")
-        moved = os.path.join(folder, "larger.peclet")
-        subprocess.run(["cp", "-a", root, moved], check=True)
+        said = drill.log().count("for which nobody can make room")
+        moved = drill.place("larger.peclet")
+        subprocess.run(["cp", "-a", drill.data, moved], check=True)
     finally:
-        subprocess.run(["umount", "--lazy", root], check=True)
-    os.rmdir(root)
-    os.rename(moved, root)
+        subprocess.run(["umount", "--lazy", drill.data], check=True)
+    os.rmdir(drill.data)
+    os.rename(moved, drill.data)
     again = drill.start().wait(300)
     same = drill.export() == reference
-    print(
-        f"a file system of {size}: exit code {code}, said {said} times; in a larger one: exit code {again}, same "
-        f"bytes {same}",
-        flush=True,
-    )
+    text = f"a file system of {size}: exit code {code}, said {said} times; in a larger one: exit code {again}, same"
+    print(f"{text} bytes {same}", flush=True)
     return (code == 75 and said == 1 or code == 0) and again == 0 and same
 
 
@@ -232,24 +179,23 @@ def main():
     parser.add_argument("--only", choices=[*CASES, "small"])
     arguments = parser.parse_args()
     in_own_namespace()
-    peclet = os.path.abspath(os.path.join(arguments.bin, "peclet"))
     passed = True
     with tempfile.TemporaryDirectory() as folder:
-        undisturbed = Drill(peclet, os.path.join(folder, "undisturbed"))
+        undisturbed = Drill(arguments.bin, os.path.join(folder, "undisturbed"))
         assert undisturbed.start().wait() == 0
         reference = undisturbed.export()
         if arguments.only in (None, "small"):
             for size in SMALL:
-                passed &= too_small(peclet, os.path.join(folder, size), size, reference)
+                passed &= too_small(arguments.bin, os.path.join(folder, size), size, reference)
         for case in [case for case in CASES if arguments.only in (None, case)]:
-            with FullDisk(peclet, os.path.join(folder, case), case) as disk:
+            with FullDisk(arguments.bin, os.path.join(folder, case), case) as disk:
                 passed &= judge(disk, f"{case} full", starve(disk, case).wait(), reference)
         if not arguments.only or arguments.only == "everything":
-            with FullDisk(peclet, os.path.join(folder, "stopped"), "everything") as disk:
+            with FullDisk(arguments.bin, os.path.join(folder, "stopped"), "everything") as disk:
                 code, seconds = stop_while_full(disk)
                 print(f"SIGTERM while everything is full: exit code {code} after {seconds:.1f} s")
                 passed &= code == 75 and seconds < 30  # well before the owner would kill its workers
-                passed &= judge(disk, "and then resumed", disk.drill.start().wait(), reference)
+                passed &= judge(disk, "and then resumed", disk.start().wait(), reference)
     return 0 if passed else 1
 
 

@@ -11,16 +11,15 @@ Prints a line for each way; the exit code is 1 when one of them failed. BIN hold
 """
 import argparse
 import concurrent.futures
-import json
 import os
 import shutil
 import signal
-import sqlite3
 import subprocess
 import sys
 import tempfile
 import time
 
+from campaign_folder import CampaignFolder
 from hostile import engine as honest_engine
 from hostile import lies
 
@@ -46,27 +45,19 @@ def expect(truth, message):
         raise Trouble(message)
 
 
-class Campaign:
+class Campaign(CampaignFolder):
     def __init__(self, programs, folder, way, times):
-        self.peclet = os.path.join(programs, "peclet")
-        self.folder = tempfile.mkdtemp(dir=folder)
-        self.data = os.path.join(self.folder, "hostile.peclet")
-        with open(os.path.join(self.folder, "hostile.json"), "w") as f:
-            json.dump({**CAMPAIGN, "engine": [ENGINE, way.name, str(times)]}, f)
+        document = {**CAMPAIGN, "engine": [ENGINE, way.name, str(times)]}
+        super().__init__(programs, tempfile.mkdtemp(dir=folder), document)
 
     def verb(self, *words):
-        return subprocess.run([self.peclet, *words], cwd=self.folder, capture_output=True, timeout=PATIENCE)
+        return self.say(*words, timeout=PATIENCE)
 
     def run(self):
         """The exit code; the largest memory and what was printed are kept."""
-        with open(os.path.join(self.folder, "printed"), "wb") as printed:
-            process = subprocess.Popen(
-                [self.peclet, "run", "hostile.json", "--workers", "1", "--threads", "1", "--lease", str(LEASE)],
-                cwd=self.folder,
-                stdout=subprocess.DEVNULL,
-                stderr=printed,
-                stdin=subprocess.DEVNULL,
-            )
+        with open(self.place("printed"), "wb") as printed:
+            words = f"run hostile.json --workers 1 --threads 1 --lease {LEASE}".split()
+            process = self.start(*words, stdout=subprocess.DEVNULL, stderr=printed)
             end = time.monotonic() + PATIENCE
             self.memory = 0
             while process.poll() is None:
@@ -76,16 +67,9 @@ class Campaign:
                     process.wait()
                     raise Trouble(f"still runs after {PATIENCE} s")
                 time.sleep(0.01)
-        with open(os.path.join(self.folder, "printed"), "rb") as f:
+        with open(self.place("printed"), "rb") as f:
             self.printed = f.read()
         return process.returncode
-
-    def query(self, sql):
-        database = sqlite3.connect(f"file:{os.path.join(self.data, 'campaign.db')}?mode=ro", uri=True)
-        try:
-            return database.execute(sql).fetchall()
-        finally:
-            database.close()
 
     def export(self):
         done = self.verb("export", "hostile.json", "--json", "--canonical")

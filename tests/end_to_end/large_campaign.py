@@ -27,15 +27,15 @@ import tempfile
 import threading
 import time
 
-TICKS = os.sysconf("SC_CLK_TCK")
+from campaign_folder import CampaignFolder, largest_memory, processor_time
 
 
 class Owner(threading.Thread):
     """Watches the run's process: its own processor time, its memory, and the commits that it has made."""
 
-    def __init__(self, process, folder):
+    def __init__(self, process, campaign):
         super().__init__(daemon=True)
-        self.process, self.index = process, os.path.join(folder, "large.peclet", "campaign.db-shm")
+        self.process, self.index = process, campaign.path("campaign.db-shm")
         self.seconds = self.memory = self.commits = 0
 
     def run(self):
@@ -47,11 +47,8 @@ class Owner(threading.Thread):
             time.sleep(0.2)
 
     def look(self):
-        with open(f"/proc/{self.process.pid}/stat") as f:
-            fields = f.read().rsplit(")", 1)[1].split()
-        self.seconds = (int(fields[11]) + int(fields[12])) / TICKS
-        with open(f"/proc/{self.process.pid}/status") as f:
-            self.memory = next((int(line.split()[1]) for line in f if line.startswith("VmHWM")), self.memory)
+        self.seconds = processor_time(self.process.pid)
+        self.memory = max(self.memory, largest_memory(self.process.pid))
         # https://www.sqlite.org/walformat.html: the index begins with the version, a zero, and the counter of
         # transactions.
         with open(self.index, "rb") as f:
@@ -61,21 +58,20 @@ class Owner(threading.Thread):
 class Statuses(threading.Thread):
     """Asks for the status every now and then."""
 
-    def __init__(self, peclet, folder):
+    def __init__(self, campaign):
         super().__init__(daemon=True)
-        self.peclet, self.folder = peclet, folder
-        self.asking, self.seconds = True, []
+        self.campaign, self.asking, self.seconds = campaign, True, []
 
     def run(self):
         time.sleep(3)
         while self.asking:
-            self.seconds.append(status_seconds(self.peclet, self.folder))
+            self.seconds.append(status_seconds(self.campaign))
             time.sleep(3)
 
 
-def status_seconds(peclet, folder):
+def status_seconds(campaign):
     started = time.monotonic()
-    subprocess.run([peclet, "status", "large.json"], cwd=folder, capture_output=True, check=True)
+    campaign.say("status", "large.json", check=True)
     return time.monotonic() - started
 
 
@@ -117,27 +113,16 @@ def main():
     )
     parser.add_argument("--claims", action="store_true", help="fail unless every claim holds")
     arguments = parser.parse_args()
-    peclet, engine = (os.path.abspath(os.path.join(arguments.bin, name)) for name in ("peclet", "fake_engine"))
+    engine = os.path.abspath(os.path.join(arguments.bin, "fake_engine"))
     with tempfile.TemporaryDirectory() as folder:
-        with open(os.path.join(folder, "large.json"), "w") as f:
-            json.dump(campaign_of(arguments, engine), f)
         times = os.path.join(folder, "times")
-        environment = dict(
-            os.environ,
-            PECLET_FAKE_STEPS="1",
-            PECLET_FAKE_STEP_MS=str(arguments.milliseconds),
-            PECLET_FAKE_PADDING=str(arguments.block_numbers),
-            PECLET_FAKE_TIMES=times,
-            PECLET_FAKE_AHEAD="1",
-        )
+        fake = {"STEPS": 1, "STEP_MS": arguments.milliseconds, "PADDING": arguments.block_numbers, "TIMES": times}
+        environment = {f"PECLET_FAKE_{name}": str(value) for name, value in (fake | {"AHEAD": 1}).items()}
+        campaign = CampaignFolder(arguments.bin, folder, campaign_of(arguments, engine), environment)
         started = time.monotonic()
-        run = subprocess.Popen(
-            [peclet, "run", "large.json", "--quiet", "--threads", "1", "--workers", str(arguments.workers)],
-            cwd=folder,
-            stdout=subprocess.DEVNULL,
-            env=environment,
-        )
-        owner, statuses = Owner(run, folder), Statuses(peclet, folder)
+        words = f"run large.json --quiet --threads 1 --workers {arguments.workers}".split()
+        run = campaign.start(*words, stdout=subprocess.DEVNULL, stderr=None)
+        owner, statuses = Owner(run, campaign), Statuses(campaign)
         owner.start()
         statuses.start()
         _, code, usage = os.wait4(run.pid, 0)
@@ -145,37 +130,27 @@ def main():
         statuses.asking = False
         wall = time.monotonic() - started
         statuses.join()
-        after = [status_seconds(peclet, folder) for _ in range(7)]
-        status = json.loads(
-            subprocess.run(
-                [peclet, "status", "large.json", "--json"], cwd=folder, capture_output=True, check=True
-            ).stdout
-        )
+        after = [status_seconds(campaign) for _ in range(7)]
+        status = json.loads(campaign.say("status", "large.json", "--json", check=True).stdout)
         done = sum(point["seeds"]["done"] for point in status["points"])
-        size = os.path.getsize(os.path.join(folder, "large.peclet", "campaign.db"))
+        size = os.path.getsize(campaign.path("campaign.db"))
         busy, span = busy_share(times, arguments.workers)
     engines = usage.ru_utime + usage.ru_stime - owner.seconds
     during = statuses.seconds or after
     print(f"{done} realisations in {wall:.0f} s with {arguments.workers} workers, exit code {run.returncode}")
     print(f"workers busy: {100 * busy:.1f} % of {span:.0f} s; load of the machine: {os.getloadavg()[0]:.1f}")
-    print(
-        f"processor time per realisation: owner {1e3 * owner.seconds / done:.3f} ms, engines "
-        f"{1e3 * engines / done:.3f} ms"
-    )
-    print(f"largest memory of the owner: {owner.memory / 1024:.0f} MiB")
-    print(
-        f"{owner.commits} commits: {owner.commits / span:.0f} a second, {done / max(1, owner.commits):.1f} results "
-        "in each"
-    )
+    costs = 1e3 * owner.seconds / done, 1e3 * engines / done
+    print("processor time per realisation: owner {:.3f} ms, engines {:.3f} ms".format(*costs))
+    print(f"largest memory of the owner: {owner.memory:.0f} MiB")
+    each = done / max(1, owner.commits)
+    print(f"{owner.commits} commits: {owner.commits / span:.0f} a second, {each:.1f} results in each")
     for name, seconds in (("while it runs", during), ("afterwards", after)):
-        print(
-            f"status {name}: {statistics.median(seconds):.3f} s (median), {max(seconds):.3f} s (largest of "
-            f"{len(seconds)})"
-        )
+        middle, most = statistics.median(seconds), max(seconds)
+        print(f"status {name}: {middle:.3f} s (median), {most:.3f} s (largest of {len(seconds)})")
     print(f"database: {size / 1e6:.0f} MB, {size / done / 1e3:.2f} kB per realisation")
     passed = done == arguments.points * arguments.seeds and statistics.median(during + after) < 0.3
     if arguments.claims:
-        passed &= busy >= 0.97 and size < 300e6 and owner.memory < 200 * 1024
+        passed &= busy >= 0.97 and size < 300e6 and owner.memory < 200
     return 0 if passed else 1
 
 

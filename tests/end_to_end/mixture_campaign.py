@@ -8,9 +8,10 @@ its base, and alpha on the axis of its picture.
 import copy
 import json
 import os
-import subprocess
 import sys
 import tempfile
+
+from campaign_folder import CampaignFolder
 
 ALPHA = [0, 0.1, 0.2, 0.3, 0.4, 0.5]
 PUBLISHED = [0.550, 0.576, 0.604, 0.636, 0.671, 0.710]
@@ -45,9 +46,9 @@ def check(holds, *what):
         raise SystemExit("mixture_campaign.py: " + " ".join(map(str, what)))
 
 
-def output_of(*command):
-    found = subprocess.run(command, capture_output=True, text=True, check=False)
-    check(found.returncode == 0, command, found.stdout, found.stderr)
+def output_of(campaign, verb, *words):
+    found = campaign.say(verb, *words, campaign.file, text=True)
+    check(found.returncode == 0, verb, found.stdout, found.stderr)
     return found.stdout
 
 
@@ -59,34 +60,29 @@ def derived_agree(points, fractions, where):
         check(abs(derived["alpha"] - alpha) < 0.01, where, alpha, derived)
 
 
-def run_small(peclet, folder):
+def run_small(programs, folder):
     """Radii 1:1.4:2:2.8, at volume fractions from 0.2 on."""
-    campaign = copy.deepcopy(CAMPAIGN)
-    campaign["scene"]["particles"]["count"] = 250
-    campaign["scene"]["particles"]["mixture"]["grains"] = species(2, 2.8)
-    campaign["scene"]["addition"]["base_volume_fraction"] = 0.2
-    path = os.path.join(folder, "small.json")
-    with open(path, "w", encoding="utf-8") as file:
-        json.dump(campaign, file)
-    output_of(peclet, "run", path, "--workers", "2")
-    points = json.loads(output_of(peclet, "export", path, "--json"))["points"]
+    document = copy.deepcopy(CAMPAIGN)
+    document["scene"]["particles"]["count"] = 250
+    document["scene"]["particles"]["mixture"]["grains"] = species(2, 2.8)
+    document["scene"]["addition"]["base_volume_fraction"] = 0.2
+    campaign = CampaignFolder(programs, folder, document)
+    output_of(campaign, "run", "--workers=2")
+    points = json.loads(output_of(campaign, "export", "--json"))["points"]
     # Of a part each of colloids and liquid 4: 1 / (1 + 4 (1 - alpha)).
     derived_agree(points, [1 / (5 - 4 * alpha) for alpha in ALPHA], "export")
     check([point["label"] for point in points] == [f"alpha={alpha:g}" for alpha in ALPHA], points)
-    drawn = json.loads(output_of(peclet, "plot", "--json", path))
+    drawn = json.loads(output_of(campaign, "plot", "--json"))
     symbols = {key["pointer"]: key["symbol"] for key in drawn["parameters"]}
     check(symbols[drawn["over"]] == "α", "the axis is not alpha")
 
 
 def main():
-    peclet = os.path.join(os.path.abspath(sys.argv[1]), "peclet")
     with tempfile.TemporaryDirectory() as folder:
-        path = os.path.join(folder, "grains.json")
-        with open(path, "w", encoding="utf-8") as file:
-            json.dump(CAMPAIGN, file)
-        derived_agree(json.loads(output_of(peclet, "validate", path, "--json"))["points"], PUBLISHED, "validate")
-        check("φ" in output_of(peclet, "validate", path), "validate has no column φ")
-        run_small(peclet, folder)
+        campaign = CampaignFolder(sys.argv[1], os.path.join(folder, "whole"), CAMPAIGN)
+        derived_agree(json.loads(output_of(campaign, "validate", "--json"))["points"], PUBLISHED, "validate")
+        check("φ" in output_of(campaign, "validate"), "validate has no column φ")
+        run_small(sys.argv[1], os.path.join(folder, "small"))
 
 
 main()

@@ -1,11 +1,8 @@
 """A campaign of the Slurm drill: run locally or through Slurm, and counted afterwards."""
-import contextlib
-import json
 import os
 import shutil
-import sqlite3
-import subprocess
 
+from campaign_folder import BLAMED, CampaignFolder
 from drill.campaign import REAL
 from slurm_cluster import CPUS
 
@@ -20,21 +17,15 @@ CAMPAIGN = {
 }
 
 
-class Campaign:
+class Campaign(CampaignFolder):
     """A campaign in a folder of its own, run locally or through Slurm."""
 
     def __init__(self, binaries, folder, document=None, environment=None):
-        self.peclet = os.path.join(binaries, "peclet")
-        self.folder = folder
-        os.makedirs(folder)
-        document = dict(document or CAMPAIGN)
+        document = document or CAMPAIGN
         engine = "peclet-engine" if document.get("scene") == REAL["scene"] else "fake_engine"
-        document["engine"] = [os.path.join(binaries, engine), "serve"]
-        with open(os.path.join(folder, "drill.json"), "w") as f:
-            json.dump(document, f)
-        self.environment = {**os.environ, **ENVIRONMENT, **(environment or {})}
-        self.shared = os.path.join(folder, "shared")
-        self.hold = os.path.join(folder, "hold")
+        document = {**document, "engine": [os.path.join(binaries, engine), "serve"]}
+        super().__init__(binaries, folder, document, {**ENVIRONMENT, **(environment or {})})
+        self.shared, self.hold = self.place("shared"), self.place("hold")
         self.processes = []
 
     def holds(self, seed=0):
@@ -53,10 +44,7 @@ class Campaign:
         os.remove(self.hold)
 
     def start(self, *words):
-        log = open(os.path.join(self.folder, "log"), "a")
-        self.processes.append(
-            subprocess.Popen([self.peclet, *words], cwd=self.folder, env=self.environment, stdout=log, stderr=log)
-        )
+        self.processes.append(super().start(*words))
         return self.processes[-1]
 
     def stop(self):
@@ -81,38 +69,17 @@ class Campaign:
     def follow(self, *words):
         return self.hand_over("--follow", "--interval", "0.3", *words)
 
-    def log(self):
-        with open(os.path.join(self.folder, "log")) as f:
-            return f.read()
-
     def printed(self):
         """By the job whose script docs/clusters.md has."""
-        path = os.path.join(self.folder, "friction.log")
+        path = self.place("friction.log")
         if not os.path.exists(path):
             return ""
         with open(path) as f:
             return "--- friction.log\n" + f.read()
 
-    def export(self):
-        return subprocess.run(
-            [self.peclet, "export", "drill.json", "--canonical"], cwd=self.folder, capture_output=True, check=True
-        ).stdout
-
-    def ask(self, query):
-        with contextlib.closing(
-            sqlite3.connect(f"file:{self.folder}/drill.peclet/campaign.db?mode=ro", uri=True)
-        ) as db:
-            return db.execute(query).fetchone()[0]
-
     def spooled(self):
         spool = os.path.join(self.shared, "spool")
         return [name for name in os.listdir(spool) if name.endswith(".json")] if os.path.isdir(spool) else []
-
-    def ended(self):
-        try:
-            return self.ask("SELECT count(*) FROM realisation WHERE state = 'done'")
-        except sqlite3.Error:
-            return 0
 
     def lost(self):
         """Seeds of the looks that have no result; and files, bundles and seeds that were left lying."""
@@ -148,13 +115,13 @@ class Campaign:
         )
 
     def blamed(self):
-        return self.ask("SELECT total(blamed) FROM attempt")
+        return self.ask(BLAMED)
 
 
 def template_of(campaign, submission):
     """The Slurm template with another way to submit."""
     source = os.path.join(os.path.dirname(__file__), "..", "..", "templates", "slurm")
-    template = os.path.join(campaign.folder, "template")
+    template = campaign.place("template")
     shutil.copytree(source, template)
     with open(os.path.join(template, "submit.sh"), "w") as f:
         f.write(f"script=$2\nshift 2\nHOME_OF_DRILL='{campaign.folder}'\n{submission}\n")

@@ -5,6 +5,7 @@ import signal
 import subprocess
 import time
 
+from campaign_folder import processes_with
 from slurm_campaign import Campaign, script_of_the_page, template_of
 from slurm_cluster import CPUS
 
@@ -112,8 +113,7 @@ class Drill:
             self.running(campaign)
             self.cluster.stop("slurmctld", number)
             time.sleep(1)
-            self.cluster.start_controller()
-            self.cluster.wait_for_controller()
+            self.cluster.restart_controller()
         # Killed, it may have forgotten jobs that it had started, and give their numbers out again; it then takes the
         # node out of use until an administrator says that all is well.
         resumed = 0
@@ -137,8 +137,7 @@ class Drill:
         assert campaign.ask("SELECT count(*) FROM bundle_seed WHERE outcome NOT IN ('result')") == 0
         taken = campaign.ended()
         assert taken > 0, campaign.log()
-        self.cluster.start_controller()
-        self.cluster.wait_for_controller()
+        self.cluster.restart_controller()
         campaign.do(*campaign.follow())
         return f"of {out} seeds {taken} taken in without a controller, the others left alone"
 
@@ -151,7 +150,7 @@ class Drill:
             *campaign.hand_over("--template", template)
         )  # nothing is left to hand over: only the name is asked for
         assert campaign.ask("SELECT count(*) FROM bundle WHERE job IS NULL") == 0, campaign.log()
-        with open(os.path.join(campaign.folder, "numbers")) as f:
+        with open(campaign.place("numbers")) as f:
             submitted = len(f.readlines())
         assert submitted == 1, f"submitted {submitted} times"
         campaign.lets_go()
@@ -172,8 +171,7 @@ class Drill:
         self.cluster.stop("slurmctld")
         campaign.do(*campaign.hand_over(), code=1)
         assert "Unable to contact slurm controller" in campaign.log(), campaign.log()
-        self.cluster.start_controller()
-        self.cluster.wait_for_controller()
+        self.cluster.restart_controller()
         assert campaign.ask("SELECT count(*) FROM bundle_seed WHERE outcome IS NULL") == 0
         campaign.run_locally()
         return "sbatch refused, and without a controller: exit code 1, nothing out, all run by `peclet run`"
@@ -203,8 +201,7 @@ class Drill:
         campaign.run_locally()
         campaign.lets_go()
         self.cluster.wait_until(campaign.spooled, "late results")
-        self.cluster.start_controller()
-        self.cluster.wait_for_controller()
+        self.cluster.restart_controller()
         self.cluster.wait_until(lambda: not self.cluster.tasks("RUNNING,PENDING,COMPLETING"), "the late tasks to leave")
         late = len(campaign.spooled())
         campaign.do("ingest", "drill.json")
@@ -212,17 +209,15 @@ class Drill:
 
     def one_job(self, campaign):
         """The script of docs/clusters.md, warned as at its time limit, and preempted."""
-        saved = os.path.join(campaign.folder, "saved")
-        script = os.path.join(campaign.folder, "one_job.sh")
+        saved, script = campaign.place("saved"), campaign.place("one_job.sh")
         with open(script, "w") as f:
             f.write(script_of_the_page(campaign, saved))
-        bin_folder = os.path.dirname(campaign.peclet)
         subprocess.run(
             ["sbatch", "--parsable", script],
             cwd=campaign.folder,
             check=True,
             capture_output=True,
-            env={**campaign.environment, "PATH": bin_folder + ":" + os.environ["PATH"]},
+            env={**os.environ, **campaign.environment, "PATH": campaign.programs + ":" + os.environ["PATH"]},
         )
         interruptions = (("scancel", "--batch", "--signal=USR1", "--me"), URGENT)
         for count, interruption in enumerate(interruptions, 1):
@@ -279,15 +274,13 @@ class Drill:
 
 def kill_one(what, folder):
     """Kills one process of a campaign with SIGKILL: its command has `what`, its environment or command the folder."""
-    for process in os.listdir("/proc"):
+    for process in processes_with("SLURM_SUBMIT_DIR", folder):
         try:
             with open(f"/proc/{process}/cmdline", "rb") as f:
                 command = f.read().replace(b"\0", b" ").decode(errors="replace")
-            with open(f"/proc/{process}/environ", "rb") as f:
-                environment = f.read().decode(errors="replace")
-        except (OSError, ValueError):
+        except OSError:
             continue
-        if what in command and f"SLURM_SUBMIT_DIR={folder}\0" in environment:
-            os.kill(int(process), signal.SIGKILL)
+        if what in command:
+            os.kill(process, signal.SIGKILL)
             return 1
     return 0

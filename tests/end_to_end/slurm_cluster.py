@@ -8,6 +8,8 @@ import socket
 import subprocess
 import time
 
+from campaign_folder import comes_true
+
 CPUS = 4
 
 CONFIGURATION = """
@@ -123,7 +125,9 @@ class Cluster:
     def start_controller(self):
         self.start("slurmctld", "-D", "-f", self.configuration)
 
-    def wait_for_controller(self):
+    def restart_controller(self):
+        """Starts the controller, and waits until it answers."""
+        self.start_controller()
         self.wait_until(lambda: self.say("scontrol", "ping").endswith("UP"), "the controller")
 
     def clear(self):
@@ -140,11 +144,8 @@ class Cluster:
         return answer.stdout.strip() if answer.returncode == 0 else ""
 
     def wait_until(self, is_so, what, seconds=60):
-        end = time.monotonic() + seconds
-        while not is_so():
-            if time.monotonic() > end:
-                raise AssertionError(f"waited {seconds} s for {what}\n{self.say('squeue')}\n{self.log()}")
-            time.sleep(0.1)
+        if not comes_true(is_so, seconds, 0.1):
+            raise AssertionError(f"waited {seconds} s for {what}\n{self.say('squeue')}\n{self.log()}")
 
     def log(self):
         text = ""

@@ -63,6 +63,7 @@ Physics physics_with(const Terms& terms) {
                                         .friction = terms.friction ? 0.5 : 0,
                                         .kinetic_friction = terms.kinetic ? 0.3 : unused,
                                         .tangential_stiffness = 2.0 / 7.0 * 1e4,
+                                        .tangential_damping = terms.friction && terms.damping ? 0.9 : 0,
                                         .rolling_stiffness = terms.rolling ? 700.0 : 0,
                                         .rolling_friction = 0.2};
   }

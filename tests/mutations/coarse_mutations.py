@@ -72,9 +72,9 @@ COARSE = [
     ),
     (
         "friction twice as strong",
-        "engine/terms/friction.h",
-        "return (contact.friction / contact.tangential_stiffness)",
-        "return (2 * contact.friction / contact.tangential_stiffness)",
+        "engine/terms/spring_laws.h",
+        "(Law::coefficient(parameters) / Law::stiffness(parameters))",
+        "(2 * Law::coefficient(parameters) / Law::stiffness(parameters))",
     ),
     (
         "contact spring that is not turned",

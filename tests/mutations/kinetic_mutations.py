@@ -15,4 +15,18 @@ KINETIC = [
         "if (false) ",
         "engine_tests:PairPass.EqualsTheSumOfItsTermsForEveryRecipe",
     ),
+    (
+        "a tangential dashpot beyond Coulomb's law",
+        "engine/terms/spring_laws.h",
+        "return cut_to(spring + ahead, limit);",
+        "return spring + ahead;",
+        "engine_tests:TangentialDampingOfTwo.IsLimitedTogetherWithTheSpring",
+    ),
+    (
+        "a tangential dashpot left out of implicit steps",
+        "engine/terms/spring_laws.h",
+        "if (damped) add(weights.resistance, resistance);",
+        "",
+        "engine_tests:TangentialDampingOfTwo.CouplesAsTheChangeOfItsForce",
+    ),
 ]

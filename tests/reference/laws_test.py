@@ -205,6 +205,16 @@ class Contact(unittest.TestCase):
         held = contact.held_spring(self.pairs, spring, spring, 1.0, np.full(200, 0.1))
         np.testing.assert_allclose(held, 0.1 * spring / np.linalg.norm(spring, axis=1, keepdims=True))
 
+    def test_a_dashpot_dissipates_within_what_coulomb_lets_it_and_the_spring_do(self):
+        spring, velocity, limit = 0.1 * spring_of(self.pairs), contact.slip_velocity(self.pairs), np.full(200, 300.0)
+        stuck = contact.held_spring(self.pairs, spring, 0 * spring, 0.0, limit / 1e3)
+        for damping in (1.0, 100.0, 1e4):
+            force, *_ = contact.friction(self.pairs, stuck, 1e3, damping, limit)
+            both = 1e3 * stuck + damping * velocity
+            length = np.linalg.norm(both, axis=1, keepdims=True)
+            np.testing.assert_allclose(force, np.where(length > 300, 300 / length, 1) * both)
+            self.assertGreater(np.sum((force - 1e3 * stuck) * velocity, axis=1).min(), 0)
+
     def test_friction_and_rolling_slow_down_what_stretched_their_springs(self):
         for velocity, law in ((contact.slip_velocity, contact.friction), (contact.rolling_velocity, contact.rolling)):
             spring = 1e-3 * velocity(self.pairs)

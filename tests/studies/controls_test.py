@@ -5,8 +5,8 @@ import unittest
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "results"))
-from studies.controls import cross_fitted, variance_ratio
-from studies.networks import contacts_per_sphere, largest_cluster, lifetime
+from studies.configurations import contacts_per_sphere, largest_cluster, lifetime
+from studies.estimates import cross_fitted, variance_ratio
 
 import numpy as np
 

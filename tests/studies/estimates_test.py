@@ -25,12 +25,10 @@ from studies.estimates import (
     student_quantile,
     weighted_mean,
 )
-from studies.at_rest import SLOW_SHEAR, rows_at_rest
+from studies.at_rest import SLOW_SHEAR, fit_with_errors, fitted, rows_at_rest
 from studies.fits import divergence, jammed_and_exponent, line_through, lines, log_minimum, log_of_share, multiples
 from studies.fits import thickening_decades
-from studies.green_kubo import fit_with_errors, fitted
-from studies.packings import gap_of, linear_mixture, rod_lengths, rods
-from studies.published import JAMMED_AT_REST, diverging, mari_fit
+from studies.published import JAMMED_AT_REST, diverging, gap_of, linear_mixture, mari_fit, rod_lengths, rods
 from studies.tables import columns_of, markdown_head, markdown_row, number_text
 
 

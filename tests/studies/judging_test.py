@@ -37,6 +37,7 @@ class Judging(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             copy = os.path.join(folder, "results")
             shutil.copytree(os.path.join(RESULTS, "studies"), os.path.join(copy, "studies"))
+            shutil.copytree(os.path.join(ROOT, "python"), os.path.join(folder, "python"))
             os.mkdir(os.path.join(copy, "bare"))
             with open(os.path.join(copy, "bare", "study.py"), "w") as f:
                 f.write(

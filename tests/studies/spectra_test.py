@@ -5,8 +5,8 @@ import unittest
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "results"))
-from studies.prices import price, seconds_of_window
-from studies.spectra import storage_by_loss, viscosity_at_high_frequency
+from studies.at_rest import storage_by_loss, viscosity_at_high_frequency
+from studies.costs import price, seconds_of_window
 
 import numpy as np
 

@@ -15,9 +15,8 @@ import unittest.mock
 RESULTS = os.path.join(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))), "results")
 sys.path.insert(0, RESULTS)
 from studies.command_line import main
-from studies.pages import BEGIN, END, tables_of, with_rows
 from studies.tables import read_numbers, read_rows, write_numbers
-from studies.verdicts import Check, Finding, Statement, rows_of, verdict
+from studies.verdicts import BEGIN, END, Check, Finding, Statement, rows_of, tables_of, verdict, with_rows
 
 STUDIES = sorted(name for name in os.listdir(RESULTS) if os.path.exists(os.path.join(RESULTS, name, "study.json")))
 

@@ -2,6 +2,7 @@
 import mmap
 import os
 import struct
+import time
 
 LAYOUT = struct.Struct("<5q256s")  # calls, struck, off, sequence, process, what
 
@@ -23,6 +24,11 @@ class Board:
     struck = property(lambda self: self._field(1))
     process = property(lambda self: self._field(4))
     what = property(lambda self: self.page[40:296].split(b"\0")[0].decode(errors="replace"))
+
+    def wait(self, process):
+        """Waits until a call was hit, or the process has ended."""
+        while not self.struck and process.poll() is None:
+            time.sleep(0.002)
 
     def switch_off(self):
         """Nothing is hit any more."""

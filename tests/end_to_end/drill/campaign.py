@@ -10,7 +10,8 @@ import signal
 import sqlite3
 import subprocess
 import tempfile
-import time
+
+from campaign_folder import CampaignFolder, comes_true, processes_with
 
 MARKER = "PECLET_DRILL_FOLDER"
 
@@ -60,14 +61,6 @@ def alive(process):
         return False
 
 
-def children(process):
-    try:
-        with open(f"/proc/{process}/task/{process}/children") as f:
-            return [int(word) for word in f.read().split()]
-    except (FileNotFoundError, ProcessLookupError):
-        return []
-
-
 def ends_within(process, seconds):
     """Waits for a child without the naps that Popen.wait() takes."""
     descriptor = os.pidfd_open(process.pid)
@@ -79,71 +72,29 @@ def ends_within(process, seconds):
 
 def stragglers(folder):
     """The processes that were started for the campaign in `folder` and still run."""
-    marker = f"{MARKER}={folder}".encode()
-    found = []
-    for name in os.listdir("/proc"):
-        if not name.isdigit() or int(name) == os.getpid():
-            continue
-        try:
-            with open(f"/proc/{name}/environ", "rb") as f:
-                if marker in f.read().split(b"\0") and alive(int(name)):
-                    found.append(int(name))
-        except (FileNotFoundError, ProcessLookupError, PermissionError):
-            pass
-    return found
+    return [process for process in processes_with(MARKER, folder) if alive(process)]
 
 
-class Campaign:
+class Campaign(CampaignFolder):
     """A folder with drill.json, the runs of it, and what they have acknowledged so far."""
 
     def __init__(self, lab, document=None, workers=2, lease=120, checkpoint=60, **fake):
         self.lab = lab
-        self.folder = tempfile.mkdtemp(dir=lab.folder)
         self.workers, self.lease, self.checkpoint = workers, lease, checkpoint
-        self.document = dict(document or FAKE)
-        self.document["engine"] = [lab.engine if document is REAL else lab.fake_engine, "serve"]
+        engine = lab.engine if document is REAL else lab.fake_engine
+        document = dict(document or FAKE, engine=[engine, "serve"])
         fake.setdefault("files", 2)
-        self.environment = {f"PECLET_FAKE_{name.upper()}": str(value) for name, value in fake.items()}
-        self.data = os.path.join(self.folder, "drill.peclet")
+        variables = {f"PECLET_FAKE_{name.upper()}": str(value) for name, value in fake.items()}
         self.safe = {}  # (hash, seed) -> (final state, last attempt when it was acknowledged)
         self.left_alone = False  # whether workers may have outlived their owner
         self.unmount = None  # a file system of its own that goes with it
-        self.write()
-
-    def write(self):
-        with open(os.path.join(self.folder, "drill.json"), "w") as f:
-            json.dump(self.document, f)
-
-    def command(self):
-        return [
-            self.lab.peclet,
-            "run",
-            "drill.json",
-            "--workers",
-            str(self.workers),
-            "--threads",
-            "1",
-            "--quiet",
-            "--lease",
-            str(self.lease),
-            "--checkpoint",
-            str(self.checkpoint),
-        ]
+        super().__init__(os.path.dirname(lab.peclet), tempfile.mkdtemp(dir=lab.folder), document, variables)
 
     def start(self, environment=None, command=None):
-        variables = dict(os.environ, **self.environment, **(environment or {}))
-        variables[MARKER] = self.folder
         self.left_alone = True
-        with open(os.path.join(self.folder, "log"), "a") as log:
-            process = subprocess.Popen(
-                command or self.command(),
-                cwd=self.folder,
-                stdin=subprocess.DEVNULL,
-                stdout=log,
-                stderr=log,
-                env=variables,
-            )
-        return process
+        words = f"run drill.json --workers {self.workers} --threads 1 --quiet --lease {self.lease} --checkpoint"
+        variables = {**(environment or {}), MARKER: self.folder}
+        return super().start(*words.split(), str(self.checkpoint), command=command, environment=variables)
 
     def run(self, environment=None):
         """The exit code of a run; negative when a signal ended it. A run that hangs is stopped by SIGABRT."""
@@ -159,20 +110,11 @@ class Campaign:
         """Waits until the workers of dead owners have left."""
         if not self.left_alone:
             return
-        patience = time.monotonic() + 20
-        while time.monotonic() < patience and stragglers(self.folder):
-            time.sleep(0.005)
+        comes_true(lambda: not stragglers(self.folder), nap=0.005)
         for process in stragglers(self.folder):
             with contextlib.suppress(ProcessLookupError):
                 os.kill(process, signal.SIGKILL)
         self.left_alone = False
-
-    def log(self):
-        with open(os.path.join(self.folder, "log"), errors="replace") as f:
-            return f.read()
-
-    def path(self, *names):
-        return os.path.join(self.data, *names)
 
     def spool(self):
         """Of the results that lie in the spool whole."""
@@ -194,17 +136,13 @@ class Campaign:
         set_up = not os.path.exists(self.path("campaign.db-journal"))
         if not os.path.exists(self.path("campaign.db")):
             return []
-        database = sqlite3.connect(f"file:{self.path('campaign.db')}?mode=ro", uri=True, timeout=20)
         try:
-            if not database.execute("SELECT count(*) FROM sqlite_schema").fetchone()[0]:
-                return []
-            return database.execute(sql).fetchall()
+            has_tables = super().query("SELECT count(*) FROM sqlite_schema")[0][0]
+            return super().query(sql) if has_tables else []
         except sqlite3.OperationalError:
             if set_up:
                 raise
             return []
-        finally:
-            database.close()
 
     def count(self, sql):
         rows = self.query(sql)
@@ -254,8 +192,7 @@ class Campaign:
             self.safe.setdefault(key, (state, last))
 
     def export(self):
-        command = [self.lab.peclet, "export", "drill.json", "--json", "--canonical"]
-        done = subprocess.run(command, cwd=self.folder, capture_output=True, timeout=PATIENCE)
+        done = self.say("export", "drill.json", "--json", "--canonical", timeout=PATIENCE)
         return done.stdout if done.returncode == 0 else done.stderr
 
     def close(self):

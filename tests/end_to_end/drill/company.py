@@ -1,10 +1,10 @@
 """Other processes at the same campaign: a second owner, and readers."""
 import os
 import signal
-import subprocess
 import threading
 import time
 
+from campaign_folder import comes_true
 from drill.board import Board
 from drill.campaign import Campaign, alive
 from drill.stops import busy_workers
@@ -31,13 +31,11 @@ def second_owners(lab, tally, chance, times):
 
 def readers(lab, tally, chance, loops, seeds):
     """`loops` loops of `peclet status` beside the run, and a reader that is stopped while it holds its snapshot."""
-    document_size = {"minimum": seeds, "maximum": seeds}
     campaign = Campaign(lab, steps=10, step_ms=4)
-    hold = os.path.join(campaign.folder, "hold")
+    hold = campaign.environment["PECLET_FAKE_HOLD"] = campaign.place("hold")
     with open(hold, "w"):  # no seed ends before there are readers
         pass
-    campaign.environment["PECLET_FAKE_HOLD"] = hold
-    campaign.document["realisations"] = document_size
+    campaign.document["realisations"] = {"minimum": seeds, "maximum": seeds}
     campaign.write()
     owner = campaign.start()
     busy_workers(campaign, owner)
@@ -47,7 +45,7 @@ def readers(lab, tally, chance, loops, seeds):
     def look():
         while owner.poll() is None:
             started = time.monotonic()
-            done = subprocess.run([lab.peclet, "status", "drill.json"], cwd=campaign.folder, capture_output=True)
+            done = campaign.say("status", "drill.json")
             with lock:
                 answers.append(done.returncode)
                 slowest[0] = max(slowest[0], time.monotonic() - started)
@@ -81,14 +79,8 @@ def stop_a_reader(campaign, tally):
     count = Board(campaign.folder)
     campaign.start(count.environment(campaign.lab.shim, call="read", path="campaign.db"), command).wait()
     board = Board(campaign.folder)
-    reader = campaign.start(
-        board.environment(
-            campaign.lab.shim, call="read", path="campaign.db", action="stop", number=max(3, count.calls // 2)
-        ),
-        command,
-    )
-    patience = time.monotonic() + 20
-    while not board.struck and time.monotonic() < patience and reader.poll() is None:
-        time.sleep(0.005)
+    fault = {"call": "read", "path": "campaign.db", "action": "stop", "number": max(3, count.calls // 2)}
+    reader = campaign.start(board.environment(campaign.lab.shim, **fault), command)
+    comes_true(lambda: board.struck or reader.poll() is not None, nap=0.005)
     tally.expect(campaign, board.struck == 1, "no reader was stopped within its snapshot")
     return reader

@@ -1,13 +1,15 @@
 """Kills and power cuts: at random moments, and before every single call that changes a file or sends a frame."""
 import collections
 import contextlib
+import itertools
 import os
 import re
 import signal
 import time
 
+from campaign_folder import children
 from drill.board import Board
-from drill.campaign import FAKE, Campaign, children
+from drill.campaign import FAKE, Campaign
 from drill.power import acknowledged_spool, cut, read_journal
 
 
@@ -55,23 +57,26 @@ def random_kills(lab, tally, chance, kills, document, per_campaign, **settings):
         blamed = campaign.count("SELECT total(blamed) FROM attempt")
         tally.expect(campaign, not blamed, f"{blamed:.0f} attempts are blamed for kills")
         tally.judge(campaign, sum(struck.values()) - before)
-    tally.remarks.append(", ".join(f"{count} of {whom}" for whom, count in sorted(struck.items())))
+    tally.count(struck, "of ")
 
 
 def edges(lab, tally, chance, role, stride, document=FAKE, action="kill"):
     """Every call of the owner or of its workers that changes a file or sends a frame, and a kill before it."""
-    calls, struck, number = None, collections.Counter(), 1 if stride == 1 else chance.randint(1, stride)
-    while calls is None or number <= calls:
+    struck = collections.Counter()
+    for number in calls_of(stride, chance):
         campaign = Campaign(lab, document, workers=1, checkpoint=0.001)
         board = Board(campaign.folder)
         campaign.run(board.environment(lab.shim, role=role, number=number, action=action))
         if not board.struck:
-            calls = number  # the campaign was through before
-        else:
-            struck[kind_of(board.what)] += 1
-            tally.judge(campaign)
-        number += stride
-    tally.remarks.append(", ".join(f"{count} {kind}" for kind, count in sorted(struck.items())))
+            break  # the campaign was through before
+        struck[kind_of(board.what)] += 1
+        tally.judge(campaign)
+    tally.count(struck)
+
+
+def calls_of(stride, chance):
+    """Returns the numbers of calls, every `stride`th from one of the first on."""
+    return itertools.count(1 if stride == 1 else chance.randint(1, stride), stride)
 
 
 def kind_of(what):

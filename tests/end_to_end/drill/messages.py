@@ -3,7 +3,6 @@ else's; and engines that hang, crash or lie."""
 import json
 import os
 import re
-import time
 
 from drill.board import Board
 from drill.campaign import Campaign
@@ -42,14 +41,9 @@ def other_answer(lab, tally, chance, times):
     for _ in range(times):
         campaign = Campaign(lab, workers=1)
         board = Board(campaign.folder)
-        owner = campaign.start(
-            dict(
-                board.environment(lab.shim, role="worker", call="rename", path="/spool/", number=1, action="wait"),
-                PECLET_FAKE_DRIFT="1",
-            )
-        )
-        while not board.struck and owner.poll() is None:
-            time.sleep(0.002)
+        fault = {"call": "rename", "path": "/spool/", "number": 1, "action": "wait"}
+        owner = campaign.start({**board.environment(lab.shim, role="worker", **fault), "PECLET_FAKE_DRIFT": "1"})
+        board.wait(owner)
         owner.kill()
         owner.wait()
         code = campaign.run()
@@ -70,26 +64,17 @@ def spool_files(lab, tally, chance, times):
     for _ in range(times):
         campaign = Campaign(lab)
         board = Board(campaign.folder)
-        campaign.run(
-            board.environment(
-                lab.shim, role="owner", call="remove", path="/spool/", number=chance.randint(1, 12), action="cut"
-            )
-        )
+        fault = {"call": "remove", "path": "/spool/", "number": chance.randint(1, 12), "action": "cut"}
+        campaign.run(board.environment(lab.shim, role="owner", **fault))
         campaign.settle()
         campaign.acknowledge()
         spool = campaign.path("spool")
         name = next(name for name in os.listdir(spool) if re.fullmatch(r"[0-9a-f]{16}-\d+-\d+\.json", name))
         put = litter(spool, name, chance)
         campaign.run()
-        tally.expect(
-            campaign,
-            not [
-                left
-                for left in os.listdir(spool)
-                if left.endswith(".json") and "folder" not in left and "nowhere" not in left
-            ],
-            "files were left in the spool",
-        )
+        left = [name for name in os.listdir(spool) if name.endswith(".json")]
+        left = [name for name in left if "folder" not in name and "nowhere" not in name]
+        tally.expect(campaign, not left, "files were left in the spool")
         kept = len([name for name in os.listdir(os.path.join(spool, "rejected")) if "@" not in name])
         tally.expect(campaign, kept == put, f"{kept} files were kept aside, not {put}")
         tally.judge(campaign, put)

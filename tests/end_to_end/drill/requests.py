@@ -6,7 +6,7 @@ import time
 
 from drill.board import Board
 from drill.campaign import FAKE, Campaign
-from drill.kills import kind_of
+from drill.kills import calls_of, kind_of
 
 WISHES = [
     ["set", "drill.json", "--tolerance", "0.3"],
@@ -51,21 +51,19 @@ def changes_and_kills(lab, tally, chance, times):
 def edges_of_a_verb(lab, tally, chance, stride):
     """A finished campaign is reopened, and the verb is killed before every call that changes a file; it is said
     again."""
-    calls, struck, number = None, collections.Counter(), 1 if stride == 1 else chance.randint(1, stride)
+    struck = collections.Counter()
     tighten = [lab.peclet, "set", "drill.json", "--tolerance", str(FAKE["target"]["relative_tolerance"])]
-    while calls is None or number <= calls:
+    for number in calls_of(stride, chance):
         campaign = Campaign(lab, dict(FAKE, target=dict(FAKE["target"], relative_tolerance=0.3)))
         campaign.run()
         board = Board(campaign.folder)
         disturbed = board.environment(lab.shim, role="owner", number=number, path="drill.json,.peclet/")
         campaign.start(disturbed, tighten).wait()
         if not board.struck:
-            calls = number  # the verb was through before
-        else:
-            struck[kind_of(board.what)] += 1
-            code = campaign.start(command=tighten).wait()
-            tally.expect(campaign, code == 0, f"peclet set ended with exit code {code}")
-            campaign.document = dict(campaign.document, target=FAKE["target"])
-            tally.judge(campaign)
-        number += stride
-    tally.remarks.append(", ".join(f"{count} {kind}" for kind, count in sorted(struck.items())))
+            break  # the verb was through before
+        struck[kind_of(board.what)] += 1
+        code = campaign.start(command=tighten).wait()
+        tally.expect(campaign, code == 0, f"peclet set ended with exit code {code}")
+        campaign.document = dict(campaign.document, target=FAKE["target"])
+        tally.judge(campaign)
+    tally.count(struck)

@@ -5,8 +5,9 @@ import os
 import signal
 import time
 
+from campaign_folder import children, comes_true
 from drill.board import Board
-from drill.campaign import Campaign, alive, children
+from drill.campaign import Campaign, alive
 
 LEASE = 1.2
 BEYOND = 2.5  # so long is a process stopped: longer than its lease, whatever the owner waits for meanwhile
@@ -24,14 +25,16 @@ def nobody_is_blamed(tally, campaign):
 
 def busy_workers(campaign, owner):
     """Waits until there are workers with seeds."""
-    patience = time.monotonic() + 20
-    while time.monotonic() < patience and owner.poll() is None:
+    found = []
+
+    def are_busy():
         with contextlib.suppress(Exception):  # there may be no database yet
             running = [row[0] for row in campaign.query("SELECT process FROM attempt WHERE outcome = 'running'")]
-            if found := [process for process in children(owner.pid) if process in running]:
-                return found
-        time.sleep(0.01)
-    return []
+            found.extend(process for process in children(owner.pid) if process in running)
+        return found or owner.poll() is not None
+
+    comes_true(are_busy)
+    return found
 
 
 def worker_stopped(lab, tally, chance, times):
@@ -42,10 +45,8 @@ def worker_stopped(lab, tally, chance, times):
         time.sleep(chance.uniform(0, 0.5))
         victim = chance.choice(busy_workers(campaign, owner))
         signal_to(victim, signal.SIGSTOP)
-        patience = time.monotonic() + 60
-        while time.monotonic() < patience and alive(victim) and owner.poll() is None:
-            time.sleep(0.02)
-        tally.expect(campaign, not alive(victim) or owner.poll() is not None, "a stopped worker outlived its lease")
+        gone = comes_true(lambda: not alive(victim) or owner.poll() is not None, 60, 0.02)
+        tally.expect(campaign, gone, "a stopped worker outlived its lease")
         signal_to(victim, signal.SIGCONT)
         owner.wait()
         nobody_is_blamed(tally, campaign)
@@ -59,8 +60,7 @@ def late_workers(lab, tally, chance, times):
         campaign = Campaign(lab, checkpoint=0.001, steps=10, step_ms=1)
         board = Board(campaign.folder)
         owner = campaign.start(board.environment(lab.shim, role="worker", number=chance.randint(1, 120), action="wait"))
-        while not board.struck and owner.poll() is None:
-            time.sleep(0.002)
+        board.wait(owner)
         owner.kill()
         owner.wait()
         campaign.acknowledge()
@@ -83,13 +83,9 @@ def owner_stopped(lab, tally, chance, times):
         board = Board(campaign.folder)
         if number % 2 == 0:
             call, path = chance.choice((("any", ".peclet/,socket"), ("write", "campaign.db"), ("read", "campaign.db")))
-            owner = campaign.start(
-                board.environment(
-                    lab.shim, role="owner", call=call, path=path, number=chance.randint(20, 60), action="stop"
-                )
-            )
-            while not board.struck and owner.poll() is None:
-                time.sleep(0.005)
+            fault = {"call": call, "path": path, "number": chance.randint(20, 60), "action": "stop"}
+            owner = campaign.start(board.environment(lab.shim, role="owner", **fault))
+            board.wait(owner)
         else:
             owner = campaign.start()
             busy_workers(campaign, owner)

@@ -1,11 +1,14 @@
 """Calls that fail under SQLite, and file systems that are full until somebody makes room."""
 import collections
 import ctypes
+import itertools
 import os
 import subprocess
 
+from campaign_folder import BLAMED
 from drill.board import Board
 from drill.campaign import FAKE, PATIENCE, Campaign, ends_within
+from drill.kills import calls_of
 
 # The shortest campaign there is: every one of its calls can fail in turn.
 SHORT = dict(FAKE, sweep=[{"set": "/peclet", "values": [1]}], realisations={"minimum": 2, "maximum": 2})
@@ -16,27 +19,21 @@ CLONE_NEWNS, CLONE_NEWUSER = 0x00020000, 0x10000000
 def failing_calls(lab, tally, chance, call, action, path, stride=1, role="owner", document=SHORT):
     """The nth call fails, for all n: the run ends with exit code 1 and a message, or goes on. What cannot be read may
     be called damaged (6), as SQLite does."""
-    allowed = {1, 6} if call == "read" else {1}
-    calls, number, codes = None, 1 if stride == 1 else chance.randint(1, stride), collections.Counter()
-    while calls is None or number <= calls:
+    allowed, codes = {1, 6} if call == "read" else {1}, collections.Counter()
+    for number in calls_of(stride, chance):
         campaign = Campaign(lab, document, workers=1)
         board = Board(campaign.folder)
         code = campaign.run(board.environment(lab.shim, role=role, call=call, path=path, number=number, action=action))
         if not board.struck:
-            calls = number
             campaign.close()
             break
         codes[code] += 1
         log = campaign.log().splitlines()
         what = f"{board.what} (call {number})"
         tally.expect(campaign, code in allowed | {lab.undisturbed(campaign)[0]}, f"{what}: exit code {code}")
-        tally.expect(
-            campaign,
-            code not in allowed or any(line.startswith("peclet: ") and len(line) > 20 for line in log),
-            f"{what}: no message",
-        )
+        spoke = any(line.startswith("peclet: ") and len(line) > 20 for line in log)
+        tally.expect(campaign, code not in allowed or spoke, f"{what}: no message")
         tally.judge(campaign)
-        number += stride
     tally.remarks.append("exit codes " + ", ".join(f"{code}: {count}" for code, count in sorted(codes.items())))
 
 
@@ -44,26 +41,21 @@ def passing_failures(lab, tally, chance, calls, actions, path, stride=1):
     """The owner's nth call on files of realisations fails once, for all n: it waits and goes on by itself, and nobody
     is blamed. A result that could be read is not thrown away because the disk failed."""
     codes = collections.Counter()
-    for call in calls:
-        for action in actions:
-            number, last = 1 if stride == 1 else chance.randint(1, stride), None
-            while last is None or number <= last:
-                campaign = Campaign(lab, SHORT, workers=1)
-                board = Board(campaign.folder)
-                code = campaign.run(
-                    board.environment(lab.shim, role="owner", call=call, path=path, number=number, action=action)
-                )
-                if not board.struck:
-                    last = number
-                    campaign.close()
-                    break
-                codes[code] += 1
-                what = f"{board.what} (call {number}, {action})"
-                blamed = campaign.count("SELECT total(blamed) FROM attempt")
-                tally.expect(campaign, code == lab.undisturbed(campaign)[0], f"{what}: exit code {code}")
-                tally.expect(campaign, not blamed, f"{what}: {blamed} attempts were blamed")
-                tally.judge(campaign)
-                number += stride
+    for call, action in itertools.product(calls, actions):
+        for number in calls_of(stride, chance):
+            campaign = Campaign(lab, SHORT, workers=1)
+            board = Board(campaign.folder)
+            fault = {"call": call, "path": path, "number": number, "action": action}
+            code = campaign.run(board.environment(lab.shim, role="owner", **fault))
+            if not board.struck:
+                campaign.close()
+                break
+            codes[code] += 1
+            what = f"{board.what} (call {number}, {action})"
+            blamed = campaign.count(BLAMED)
+            tally.expect(campaign, code == lab.undisturbed(campaign)[0], f"{what}: exit code {code}")
+            tally.expect(campaign, not blamed, f"{what}: {blamed} attempts were blamed")
+            tally.judge(campaign)
     tally.remarks.append("exit codes " + ", ".join(f"{code}: {count}" for code, count in sorted(codes.items())))
 
 
@@ -104,7 +96,7 @@ def full_disks(lab, tally, chance, times, folders):
             tally.expect(campaign, not given_up, f"{name or 'everything'} full: {given_up} seeds were given up")
             campaign.unmount = place
             tally.judge(campaign)
-    tally.remarks.append(", ".join(f"{count} {outcome}" for outcome, count in sorted(outcomes.items())))
+    tally.count(outcomes)
 
 
 def fill(ballast, place, room):

@@ -92,6 +92,10 @@ class Tally:
                 surplus,
             )
 
+    def count(self, counts, between=""):
+        """Remarks how often each of several things happened."""
+        self.remarks.append(", ".join(f"{number} {between}{what}" for what, number in sorted(counts.items())))
+
     def row(self):
         return [self.name, self.tried, self.lost, self.double, self.different, self.other, f"{self.seconds:.0f}"]
 

@@ -1,14 +1,13 @@
 """One way that is tried: a campaign of which some seeds have ended, what somebody has put into its folder, and what the
 programs do about it."""
-import json
 import os
 import re
 import shutil
 import signal
-import sqlite3
 import subprocess
 import time
 
+from campaign_folder import CampaignFolder, query
 from drill.campaign import FAKE, REAL
 from .things import ROOT
 from .ways import REFUSED
@@ -41,16 +40,12 @@ class Stock:
 
     def of(self, real):
         if real not in self.known:
-            folder = os.path.join(self.folder, "real" if real else "fake")
-            os.makedirs(folder)
             document = dict(REAL if real else FAKE, engine=[self.engine if real else self.fake_engine, "serve"])
-            with open(os.path.join(folder, "drill.json"), "w") as f:
-                json.dump(document, f)
-            whole = os.path.join(self.folder, os.path.basename(folder) + "-whole")
-            shutil.copytree(folder, whole)
-            run(self.peclet, whole, "run", "drill.json", "--quiet")
-            run(self.peclet, folder, "plan", "drill.json", "--pilot")
-            self.known[real] = folder, export(self.peclet, whole)
+            folder = os.path.join(self.folder, "real" if real else "fake")
+            for place, words in ((folder + "-whole", ("run", "--quiet")), (folder, ("plan", "--pilot"))):
+                CampaignFolder(os.path.dirname(self.peclet), place, document)
+                run(self.peclet, place, words[0], "drill.json", words[1])
+            self.known[real] = folder, export(self.peclet, folder + "-whole")
         return self.known[real]
 
 
@@ -139,14 +134,11 @@ class Trial:
         """Of what is put, with the point and seed that a run takes next."""
         path = self.way.path
         if "{point}" in path:
-            database = sqlite3.connect(f"file:{self.data}/campaign.db?mode=ro", uri=True)
-            try:
-                point, seed = database.execute(
-                    "SELECT substr(hash, 1, 16), max(seed) + 1 FROM realisation JOIN point USING "
-                    "(point_id) WHERE state = 'done' GROUP BY point_id ORDER BY place LIMIT 1"
-                ).fetchone()
-            finally:
-                database.close()
+            ((point, seed),) = query(
+                os.path.join(self.data, "campaign.db"),
+                "SELECT substr(hash, 1, 16), max(seed) + 1 FROM realisation JOIN point USING (point_id) "
+                "WHERE state = 'done' GROUP BY point_id ORDER BY place LIMIT 1",
+            )
             path = path.format(point=point, seed=seed)
         return os.path.join(self.data, path)
 
@@ -171,13 +163,8 @@ class Trial:
         self.way.put(place, self)
         before = picture(self.folder, self.data)
         if not self.short:
-            for verb in (
-                ["status", "drill.json"],
-                ["doctor", "drill.json"],
-                ["explain", "drill.json"],
-                ["backup", "drill.json", "copy"],
-            ):
-                self.says(*verb)
+            for verb, *more in (["status"], ["doctor"], ["explain"], ["backup", "copy"]):
+                self.says(verb, "drill.json", *more)
             shutil.rmtree(os.path.join(self.folder, "copy"), ignore_errors=True)
         said = self.says("run", "drill.json", "--quiet", "--workers", "2")
         if picture(self.folder, self.data) != before:

@@ -8,17 +8,9 @@ from .folders import running
 from .night import workers_of
 
 
-def finished(night):
-    night.write()
-    night.types("peclet run night.json --quiet > table")
-    return night.remembers()
-
-
 def killed(night):
     """A campaign whose owner was killed when it had results, and whose workers have left."""
-    night.slow(300)
-    night.write()
-    night.types("peclet run night.json --quiet --workers 2 --time-limit 0.6 > table", 75)
+    night.has_begun(0.6)
     before = len(night.results())
     run = running(night, before + 3, 300)
     os.killpg(run.pid, signal.SIGKILL)
@@ -31,7 +23,7 @@ def killed(night):
 
 def deleted(night):
     """campaign.db deleted"""
-    finished(night)
+    night.has_run()
     night.types("rm night.peclet/campaign.db && peclet run night.json", 6, ["is gone", "backups"])
     night.follows(r"peclet restore [^`]*", 0, ["restored from", "with 16 results"])
     night.follows(r"peclet run [^`\n]*", 0, ["2 converged"])
@@ -41,33 +33,28 @@ def deleted(night):
 def deleted_while_it_runs(night):
     """campaign.db deleted while it runs"""
     run = running(night, 3, 300)
-    night.remembers()
     night.types("rm night.peclet/campaign.db")
     night.waits(run, 6, ["was deleted while the campaign ran", "were saved in"])
     night.lets_go()
     night.follows(r"peclet restore [^`]*", 0, ["restored from"])
-    night.types("peclet run night.json --quiet", 0, ["2 converged"])
-    night.lost_nothing()
+    night.ends()
     night.answers_as_undisturbed()
 
 
 def cut(night):
     """campaign.db cut short"""
-    finished(night)
+    night.has_run()
     night.types(
         "truncate -s 20000 night.peclet/campaign.db && peclet status night.json", 6, ["is damaged", "peclet restore"]
     )
     night.types("peclet run night.json", 6, ["damaged", "peclet restore"])
     night.follows(r"peclet restore [^`]*", 0, ["restored from", "with 16 results", "is kept in"])
-    night.types("peclet run night.json --quiet", 0, ["2 converged"])
-    night.lost_nothing()
+    night.ends()
 
 
 def older_copy(night):
     """campaign.db overwritten by last week's copy"""
-    night.slow(300)
-    night.write()
-    night.types("peclet run night.json --quiet --workers 2 --time-limit 0.8 > table", 75)
+    night.has_begun(0.8)
     shutil.copy(night.path("night.peclet", "campaign.db"), night.path("last-week.db"))
     night.slow(20)
     night.types("peclet run night.json --quiet > table")
@@ -78,8 +65,7 @@ def older_copy(night):
         ["is older than its own backup", "16", "Put the newer one back with"],
     )
     night.follows(r"peclet restore [^`]*", 0, ["with 16 results", "is kept in"])
-    night.types("peclet run night.json --quiet", 0, ["2 converged"])
-    night.lost_nothing()
+    night.ends()
 
 
 def log_deleted(night):
@@ -109,9 +95,7 @@ def copied_without_log(night):
 
 def restored_over_newer(night):
     """An old backup restored over a newer database"""
-    night.slow(300)
-    night.write()
-    night.types("peclet run night.json --quiet --workers 2 --time-limit 0.8 > table", 75)
+    night.has_begun(0.8)
     night.types("peclet backup night.json usb")
     night.slow(20)
     night.types("peclet run night.json --quiet > table")
@@ -125,7 +109,7 @@ def restored_over_newer(night):
 
 def another_program(night):
     """A database of another peclet"""
-    finished(night)
+    night.has_run()
     database = sqlite3.connect(night.path("night.peclet", "campaign.db"))
     database.execute("PRAGMA user_version = 99")
     database.close()

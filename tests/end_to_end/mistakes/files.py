@@ -7,9 +7,7 @@ from .night import CAMPAIGN, Wrong
 
 def other_folder(night):
     """From another folder"""
-    night.write()
-    night.types("peclet run night.json --quiet > table")
-    night.remembers()
+    night.has_run()
     night.types(
         "mkdir elsewhere && cd elsewhere && peclet status night.json", 2, ["night.json", "no such file or folder"]
     )
@@ -24,19 +22,14 @@ def other_folder(night):
 
 def folder_for_file(night):
     """The folder in place of the file"""
-    night.write()
-    night.types("peclet run night.json --quiet > table")
-    night.remembers()
+    night.has_run()
     night.types("peclet run night.peclet/", 2, ["is a folder", "night.json"])
-    night.types("peclet run night.json --quiet", 0, ["2 converged"])
-    night.lost_nothing()
+    night.ends()
 
 
 def renamed(night):
     """The file renamed without its folder"""
-    night.write()
-    night.types("peclet run night.json --quiet > table")
-    night.remembers()
+    night.has_run()
     night.types(
         "mv night.json evening.json && peclet run evening.json",
         2,
@@ -50,9 +43,7 @@ def renamed(night):
 
 def other_name(night):
     """Another name in the file"""
-    night.write()
-    night.types("peclet run night.json --quiet > table")
-    night.remembers()
+    night.has_run()
     night.types(
         'sed -i \'s/"night"/"evening"/\' night.json && peclet run night.json',
         0,

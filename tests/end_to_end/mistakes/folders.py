@@ -12,6 +12,7 @@ def running(night, results=3, milliseconds=100, command="peclet run night.json -
     night.write()
     run = night.starts(command)
     night.wait_for_results(results)
+    night.remembers()
     return run
 
 
@@ -25,8 +26,7 @@ def second_owner(night):
     night.waits(run, 75, ["workers checkpoint and stop"])
     night.lets_go()
     night.remembers()
-    night.types("peclet run night.json --quiet", 0, ["2 converged"])
-    night.lost_nothing()
+    night.ends()
     night.answers_as_undisturbed()
 
 
@@ -59,7 +59,6 @@ def copied(night):
 def folder_deleted(night):
     """The whole folder deleted while it runs"""
     run = running(night)
-    night.remembers()
     night.types("rm -rf night.peclet || rm -rf night.peclet")
     night.waits(run, 6, ["was deleted while the campaign ran", "were saved in"])
     night.lets_go()
@@ -72,7 +71,6 @@ def folder_deleted(night):
 def folder_moved(night):
     """The folder moved while it runs"""
     run = running(night)
-    night.remembers()
     night.types("mv night.peclet moved.peclet")
     night.waits(run, 6, ["was moved to", "moved.peclet", "--directory"])
     night.lets_go()
@@ -83,7 +81,6 @@ def folder_moved(night):
 def folders_below_deleted(night):
     """spool, logs and checkpoints deleted while it runs"""
     run = running(night)
-    night.remembers()
     night.types("rm -r night.peclet/spool night.peclet/logs night.peclet/checkpoints")
     night.wait_for_answer(run, "made anew")
     night.lets_go()

@@ -7,8 +7,8 @@ import shutil
 import signal
 import sqlite3
 import subprocess
-import time
 
+from campaign_folder import comes_true, processes_with, query
 from thirty_spheres import thirty_spheres
 
 # Nothing takes this long: a command that does hangs.
@@ -31,15 +31,7 @@ REAL = dict(
 
 def workers_of(night):
     """The engines that run for the case's campaign."""
-    mark = f"PECLET_CAMPAIGN={night.path('night.peclet')}".encode()
-    found = []
-    for name in os.listdir("/proc"):
-        with contextlib.suppress(FileNotFoundError, ProcessLookupError, PermissionError):
-            if name.isdigit():
-                with open(f"/proc/{name}/environ", "rb") as f:
-                    if mark in f.read().split(b"\0"):
-                        found.append(int(name))
-    return found
+    return processes_with("PECLET_CAMPAIGN", night.path("night.peclet"))
 
 
 class Wrong(Exception):
@@ -69,17 +61,9 @@ class Night:
 
     def types(self, command, code=0, says=(), hides=()):
         """Runs a line as a shell would, and judges exit code and answer. Returns the answer."""
-        done = subprocess.run(
-            ["bash", "-c", command],
-            cwd=self.folder,
-            env=self.environment,
-            text=True,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            timeout=PATIENCE,
-        )
-        self.hear(command, done.stdout)
+        done = self.shell(command, stderr=subprocess.STDOUT)
+        self.said = done.stdout
+        self.page += [("types", command), ("answer", self.said)]
         self.judge(done.returncode, code, says, hides)
         return self.said
 
@@ -87,25 +71,22 @@ class Night:
         """The line with an & behind it, in a process group of its own as an interactive shell makes one."""
         log = self.path(f"answer-{len(self.started)}")
         with open(log, "w") as f:
-            process = subprocess.Popen(
-                ["bash", "-c", "exec " + command],
-                cwd=self.folder,
-                env=self.environment,
-                stdin=subprocess.DEVNULL,
-                stdout=f,
-                stderr=f,
-                start_new_session=True,
-            )
+            how = {"stdin": subprocess.DEVNULL, "stdout": f, "stderr": f, "start_new_session": True}
+            command_line = ["bash", "-c", "exec " + command]
+            process = subprocess.Popen(command_line, cwd=self.folder, env=self.environment, **how)
         self.page.append(("types", command + " &"))
         self.started.append((process, log))
         return process
 
+    def answer_of(self, process):
+        """Returns what was started has said so far."""
+        with open(next(log for known, log in self.started if known is process)) as f:
+            return f.read()
+
     def waits(self, process, code=0, says=(), hides=()):
         """For the end of what was started."""
-        log = next(log for known, log in self.started if known is process)
         got = process.wait(timeout=PATIENCE)
-        with open(log) as f:
-            self.said = f.read()
+        self.said = self.answer_of(process)
         self.page.append(("answer", self.said))
         self.judge(got, code, says, hides)
         return self.said
@@ -126,6 +107,23 @@ class Night:
             raise Wrong(f"no command to follow in: {self.said!r}")
         return self.types(found.group(1) or found.group(2), code, says)
 
+    def has_run(self):
+        """The campaign is run to its end."""
+        self.write()
+        self.types("peclet run night.json --quiet > table")
+        self.remembers()
+
+    def has_begun(self, seconds):
+        """The campaign is run for a while, with slow seeds."""
+        self.slow(300)
+        self.write()
+        self.types(f"peclet run night.json --quiet --workers 2 --time-limit {seconds} > table", 75)
+
+    def ends(self):
+        """Runs the campaign to its end, which loses nothing."""
+        self.types("peclet run night.json --quiet", 0, ["2 converged"])
+        self.lost_nothing()
+
     # What must be true.
 
     def judge(self, got, code, says, hides):
@@ -143,9 +141,7 @@ class Night:
         self.page.append(("code", got))
 
     def query(self, sql, data="night.peclet"):
-        database = sqlite3.connect(f"file:{self.path(data, 'campaign.db')}?mode=ro", uri=True, timeout=20)
-        with contextlib.closing(database):
-            return database.execute(sql).fetchall()
+        return query(self.path(data, "campaign.db"), sql)
 
     def results(self, data="night.peclet"):
         """What the database of a campaign's folder holds."""
@@ -184,32 +180,23 @@ class Night:
     def path(self, *names):
         return os.path.join(self.folder, *names)
 
+    def shell(self, command, **how):
+        how = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "text": True, "timeout": PATIENCE, **how}
+        return subprocess.run(["bash", "-c", command], cwd=self.folder, env=self.environment, **how)
+
     def quietly(self, command):
-        done = subprocess.run(
-            ["bash", "-c", command],
-            cwd=self.folder,
-            env=self.environment,
-            capture_output=True,
-            text=True,
-            timeout=PATIENCE,
-        )
+        done = self.shell(command, stderr=subprocess.PIPE)
         if done.returncode not in (0, 3):
             raise Wrong(f"{command}: exit code {done.returncode}: {done.stdout}{done.stderr}")
         return done.stdout
 
-    def hear(self, command, text):
-        self.said = text
-        self.page.append(("types", command))
-        self.page.append(("answer", text))
-
     def wait_for(self, what, happened):
-        end = time.monotonic() + PATIENCE
-        while time.monotonic() < end:
+        def has_happened():
             with contextlib.suppress(OSError, sqlite3.Error):
-                if happened():
-                    return
-            time.sleep(0.02)
-        raise Wrong(f"waited in vain for {what}")
+                return happened()
+
+        if not comes_true(has_happened, PATIENCE, 0.02):
+            raise Wrong(f"{what}: not within {PATIENCE} s")
 
     def wait_for_results(self, count, data="night.peclet"):
         self.wait_for(f"{count} results", lambda: len(self.results(data)) >= count)
@@ -227,13 +214,7 @@ class Night:
 
     def wait_for_answer(self, process, phrase):
         """Until what was started has said that."""
-        log = next(log for known, log in self.started if known is process)
-
-        def said():
-            with open(log) as f:
-                return phrase in f.read()
-
-        self.wait_for(f"the answer {phrase!r}", said)
+        self.wait_for(f"the answer {phrase!r}", lambda: phrase in self.answer_of(process))
 
     def slow(self, milliseconds):
         self.environment["PECLET_FAKE_STEP_MS"] = str(milliseconds / 10)

@@ -23,15 +23,13 @@ def interrupted_twice(night):
     del night.environment["PECLET_FAKE_FAULTS"]
     night.lets_go()
     night.slow(20)
-    night.types("peclet run night.json --quiet", 0, ["2 converged"])
-    night.lost_nothing()
+    night.ends()
     night.answers_as_undisturbed()
 
 
 def owner_killed(night):
     """kill -9 of the owner"""
     run = running(night)
-    night.remembers()
     os.kill(run.pid, signal.SIGKILL)
     run.wait()
     night.remarks("The run is killed.")
@@ -47,7 +45,6 @@ def owner_killed(night):
 def worker_killed(night):
     """kill -9 of a worker"""
     run = running(night)
-    night.remembers()
     os.kill(workers_of(night)[0], signal.SIGKILL)
     night.lets_go()
     night.waits(run, 0, ["2 converged"], ["lost"])
@@ -77,15 +74,13 @@ def laptop_closed(night):
 def connection_lost(night):
     """The ssh connection lost (SIGHUP)"""
     run = running(night)
-    night.remembers()
     os.killpg(run.pid, signal.SIGHUP)
     night.remarks("The terminal is gone; the shell sends its jobs SIGHUP.")
     night.waits(run, 75, ["workers checkpoint and stop", "`peclet run night.json` goes on"])
     night.lets_go()
     night.lost_nothing()
     night.slow(20)
-    night.types("peclet run night.json --quiet", 0, ["2 converged"])
-    night.lost_nothing()
+    night.ends()
 
 
 def connection_lost_under_nohup(night):

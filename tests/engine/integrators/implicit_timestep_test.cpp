@@ -90,6 +90,18 @@ TEST(ImplicitTimestep, IsTheLeastOfStrainBrownianAndContactTimes) {
               4 * with_friction.damping / with_friction.frequency_squared, 1e-15);
 }
 
+// The step resolves the time in which a contact gives way along n, whatever damps it across n.
+TEST(ImplicitTimestep, IsNotLengthenedByATangentialDashpot) {
+  const auto step = [](double stiffness, double damping) {
+    return automatic_timestep(scene_with(
+        {{"fluid", {{"thermal_energy", nullptr}}},
+         {"contact",
+          {{"normal_stiffness", stiffness}, {"friction", 0.5}, {"tangential_damping", damping}}}}));
+  };
+  EXPECT_NEAR(step(1e6, 0) / step(2e6, 0), 2, 0.01);
+  EXPECT_EQ(step(1e6, 1e5), step(1e6, 0));
+}
+
 // Springs of strength / kappa^2 exp(-h / kappa) with kappa = 1 at h = outer gap (a_i + a_j) / 2 = 0.1,
 // between two of the small spheres, whose drags 6 pi eta a are in series.
 TEST(ImplicitTimestep, IsBoundByARepulsionBeyondLubrication) {

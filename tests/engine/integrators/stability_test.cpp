@@ -125,6 +125,10 @@ TEST(Stability, EveryPartOfTheSceneCounts) {
   const Json stiff_tangent = {{"contact", {{"friction", 0.5}, {"tangential_stiffness", 1e4}}}};
   EXPECT_NEAR(rates(stiff_tangent).frequency_squared / plain.frequency_squared, 3.5, 1e-12);
   EXPECT_NEAR(rates({{"contact", {{"normal_damping", 3}}}}).damping - plain.damping, 3 * mobility, 1e-8);
+  const auto damped = [](double damping) {
+    return Json{{"contact", {{"friction", 0.5}, {"tangential_damping", damping}}}};
+  };
+  EXPECT_NEAR(rates(damped(3e3)).damping - rates(damped(2e3)).damping, 3.5e3 * mobility, 1e-6);
   const Json repulsion = {
       {"repulsion", {{"form", "exponential"}, {"strength", 1.7}, {"relative_length", 0.01}}}};
   EXPECT_NEAR(rates(repulsion).frequency_squared - plain.frequency_squared, 1.7 / 4e-4 * mobility, 1e-4);

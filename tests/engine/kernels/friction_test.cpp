@@ -1,6 +1,4 @@
 // Springs of sliding and of rolling: kinematics, loads, and the rules of their memory.
-#include "engine/terms/friction.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,7 +6,7 @@
 
 #include "engine/kernels/pair_pass.h"
 #include "engine/terms/lubrication.h"
-#include "engine/terms/rolling.h"
+#include "engine/terms/spring_laws.h"
 #include "tests/engine/two_spheres.h"
 
 namespace peclet::engine {
@@ -17,6 +15,12 @@ namespace {
 constexpr Vector3 n = {0, 0, 1};
 constexpr double boundless = std::numeric_limits<double>::infinity();
 
+// A contact of radii 1 and `ratio` with k_t = 3000 and k_r = 700.
+ContactOf<double> contact_at(const PairGeometry& pair, double ratio) {
+  static constexpr ContactParameters parameters = {.tangential_stiffness = 3e3, .rolling_stiffness = 700};
+  return {parameters, pair, contact_levers(1, ratio, pair), 2 * ratio / (1 + ratio)};
+}
+
 TEST(Slip, IsZeroForARigidMotionOfThePair) {
   Draws draws(61);
   for (const double ratio : size_ratios) {
@@ -24,7 +28,7 @@ TEST(Slip, IsZeroForARigidMotionOfThePair) {
       const PairGeometry pair = pair_at(1, ratio, gap, draws.direction());
       const Vector3 spin = draws.direction();
       const Vector3 slip =
-          slip_velocity(contact_levers(1, ratio, pair), pair, {cross(spin, pair.separation), spin, spin});
+          SlidingFriction::stretch_rate(contact_at(pair, ratio), {cross(spin, pair.separation), spin, spin});
       EXPECT_LT(norm(slip), 1e-14 * pair.distance);
     }
   }
@@ -33,25 +37,24 @@ TEST(Slip, IsZeroForARigidMotionOfThePair) {
 // Two gears: equal and opposite surface speeds slip, equal ones roll.
 TEST(Slip, OfSpinningSpheresIsThatOfTheirSurfaces) {
   const PairGeometry pair = pair_at(1, 2, -1e-9, {1, 0, 0});
-  const ContactLevers lever = contact_levers(1, 2, pair);
+  const ContactOf<double> contact = contact_at(pair, 2);
   // j's surface at its near end moves by Omega_j x (-l_j n), i's by Omega_i x l_i n.
-  const Vector3 both = slip_velocity(lever, pair, {{}, {0, 0, 1}, {0, 0, 1}});
+  const Vector3 both = SlidingFriction::stretch_rate(contact, {{}, {0, 0, 1}, {0, 0, 1}});
   EXPECT_NEAR(both.y, -3, 1e-8);
-  const Vector3 gears = slip_velocity(lever, pair, {{}, {0, 0, 2}, {0, 0, -1}});
+  const Vector3 gears = SlidingFriction::stretch_rate(contact, {{}, {0, 0, 2}, {0, 0, -1}});
   EXPECT_NEAR(norm(gears), 0, 1e-8);
 }
 
 TEST(Slip, IgnoresTheNormalVelocity) {
   const PairGeometry pair = pair_at(1, 1, -0.01, n);
-  EXPECT_EQ(norm(slip_velocity(contact_levers(1, 1, pair), pair, {{0, 0, 5}, {}, {}})), 0);
+  EXPECT_EQ(norm(SlidingFriction::stretch_rate(contact_at(pair, 1), {{0, 0, 5}, {}, {}})), 0);
 }
 
 TEST(Friction, TorquesBalanceTheForceOfThePair) {
   Draws draws(62);
   for (const double ratio : size_ratios) {
     const PairGeometry pair = pair_at(1, ratio, -0.02, draws.direction());
-    const PairLoad load =
-        friction_load(3e3, across(draws.vector(), pair.normal), contact_levers(1, ratio, pair), pair);
+    const PairLoad load = SlidingFriction::load(contact_at(pair, ratio), across(draws.vector(), pair.normal));
     const Vector3 net = load.torque_first + load.torque_second - cross(pair.separation, load.force);
     EXPECT_LT(norm(net), 1e-13 * norm(load.force));
   }
@@ -60,10 +63,10 @@ TEST(Friction, TorquesBalanceTheForceOfThePair) {
 TEST(Friction, DragsTheFirstSphereAlongWithTheSecond) {
   const PairGeometry pair = pair_at(1, 1, -0.01, n);
   const PairMotion motion = {{1, 0, 0}, {}, {}};
-  const ContactLevers lever = contact_levers(1, 1, pair);
-  const Vector3 spring = advanced_spring({}, n, 1e-3 * slip_velocity(lever, pair, motion), boundless);
-  const PairLoad load = friction_load(2000, spring, lever, pair);
-  EXPECT_NEAR(load.force.x, 2, 1e-12);  // k_t times the way slipped, on i along the motion of j
+  const ContactOf<double> contact = contact_at(pair, 1);
+  const Vector3 slip = SlidingFriction::stretch_rate(contact, motion);
+  const PairLoad load = SlidingFriction::load(contact, advanced_spring({}, n, 1e-3 * slip, boundless));
+  EXPECT_NEAR(load.force.x, 3, 1e-12);  // k_t times the way slipped, on i along the motion of j
   EXPECT_GT(dissipated(load, motion), 0);
 }
 
@@ -71,8 +74,8 @@ TEST(Rolling, GivesACoupleThatOpposesTheDifferenceOfSpins) {
   const PairGeometry pair = pair_at(1, 1.4, -0.01, n);
   const double reduced = 2 * 1.4 / 2.4;
   const PairMotion motion = {{}, {0.3, -0.2, 5}, {-0.1, 0, 2}};
-  const Vector3 spring = 1e-3 * rolling_velocity(reduced, pair, motion);
-  const PairLoad load = rolling_load(700, spring, reduced, pair);
+  const ContactOf<double> contact = contact_at(pair, 1.4);
+  const PairLoad load = RollingFriction::load(contact, 1e-3 * RollingFriction::stretch_rate(contact, motion));
   EXPECT_EQ(norm(load.force), 0);
   EXPECT_EQ(norm(load.torque_first + load.torque_second), 0);
   // -a^2 k_r times the tangential angle rolled, on i.
@@ -84,17 +87,16 @@ TEST(Rolling, GivesACoupleThatOpposesTheDifferenceOfSpins) {
 // In a matrix springs act as a resistance: with k_t and k_r for one second it has the loads of springs that
 // have been stretched from nothing for one second.
 TEST(TangentialCoupling, HasTheLoadsOfSpringsThatHaveBeenStretched) {
-  constexpr double sliding = 3e3, rolling = 700;
   Draws draws(63);
   for (const double ratio : size_ratios) {
     const PairGeometry pair = pair_at(1, ratio, -0.02, draws.direction());
-    const ContactLevers lever = contact_levers(1, ratio, pair);
-    const double reduced = 2 * ratio / (1 + ratio);
+    const ContactOf<double> contact = contact_at(pair, ratio);
     const PairMotion motion = {draws.vector(), draws.vector(), draws.vector()};
-    const PairLoad slid = friction_load(sliding, slip_velocity(lever, pair, motion), lever, pair);
-    const PairLoad rolled = rolling_load(rolling, rolling_velocity(reduced, pair, motion), reduced, pair);
-    const PairLoad found = lubrication_load(
-        tangential_coupling(lever, sliding, rolling_coupling(rolling, reduced)), pair, motion);
+    const PairLoad slid = SlidingFriction::load(contact, SlidingFriction::stretch_rate(contact, motion));
+    const PairLoad rolled = RollingFriction::load(contact, RollingFriction::stretch_rate(contact, motion));
+    PairResistance coupling{};
+    add_springs(coupling, {.friction = true, .rolling = true}, contact, {.tangential = 1}, {1, 1});
+    const PairLoad found = lubrication_load(coupling, pair, motion);
     const double scale = norm(slid.force) + norm(rolled.torque_first);
     EXPECT_LT(norm(found.force - slid.force), 1e-12 * scale);
     EXPECT_LT(norm(found.torque_first - slid.torque_first - rolled.torque_first), 1e-12 * scale);
@@ -166,10 +168,10 @@ class ContactOfTwo : public testing::Test {
 TEST_F(ContactOfTwo, SlidesAtTheCoulombForce) {
   for (int step = 0; step < 100; ++step) {
     const TermLoadsOf<double> loads = after_step(-0.01, {{1, 0, 0}, {}, {}});
-    EXPECT_LE(norm(loads.friction.force), 0.5 * norm(loads.contact_normal) * (1 + 1e-14));
+    EXPECT_LE(norm(loads.springs.tangential.force), 0.5 * norm(loads.contact_normal) * (1 + 1e-14));
   }
   const TermLoadsOf<double> loads = after_step(-0.01, {{1, 0, 0}, {}, {}});
-  EXPECT_NEAR(norm(loads.friction.force), 0.5 * norm(loads.contact_normal), 1e-12);
+  EXPECT_NEAR(norm(loads.springs.tangential.force), 0.5 * norm(loads.contact_normal), 1e-12);
 }
 
 // F_n = 100 and 20, F_CL = 30: friction goes by 70 and by nothing.
@@ -179,11 +181,11 @@ TEST_F(ContactOfTwo, HasNoFrictionBelowTheCriticalLoad) {
   for (int step = 0; step < 1000; ++step) {
     loads = after_step(-0.01, {{1, 0, 0}, {3, 0, 0}, {-3, 0, 0}});
   }
-  EXPECT_NEAR(norm(loads.friction.force), 0.5 * 70, 1e-12);
-  EXPECT_NEAR(norm(loads.rolling.torque_first), 0.2 * 70, 1e-12);
+  EXPECT_NEAR(norm(loads.springs.tangential.force), 0.5 * 70, 1e-12);
+  EXPECT_NEAR(norm(loads.springs.rolling.torque_first), 0.2 * 70, 1e-12);
   loads = after_step(-0.002, {{1, 0, 0}, {3, 0, 0}, {-3, 0, 0}});
-  EXPECT_EQ(norm(loads.friction.force), 0);
-  EXPECT_EQ(norm(loads.rolling.torque_first), 0);
+  EXPECT_EQ(norm(loads.springs.tangential.force), 0);
+  EXPECT_EQ(norm(loads.springs.rolling.torque_first), 0);
   EXPECT_EQ(norm(springs_.tangential), 0);
   EXPECT_NEAR(norm(loads.contact_normal), 20, 1e-12);
 }
@@ -196,7 +198,7 @@ TEST_F(ContactOfTwo, HasNoMoreFrictionThanOfTheLargestLoad) {
     for (int step = 0; step < 1000; ++step) {
       loads = after_step(-0.01, {{1, 0, 0}, {}, {}});
     }
-    EXPECT_NEAR(norm(loads.friction.force), 0.5 * std::min(largest, 70.0), 1e-12);
+    EXPECT_NEAR(norm(loads.springs.tangential.force), 0.5 * std::min(largest, 70.0), 1e-12);
   }
 }
 
@@ -205,7 +207,7 @@ TEST_F(ContactOfTwo, RollsAtTheLargestCouple) {
   for (int step = 0; step < 1000; ++step) {
     loads = after_step(-0.01, {{}, {3, 0, 0}, {-3, 0, 0}});
   }
-  EXPECT_NEAR(norm(loads.rolling.torque_first), 0.2 * norm(loads.contact_normal), 1e-12);  // a = 1
+  EXPECT_NEAR(norm(loads.springs.rolling.torque_first), 0.2 * norm(loads.contact_normal), 1e-12);  // a = 1
 }
 
 TEST_F(ContactOfTwo, ForgetsWhenItOpens) {
@@ -216,7 +218,7 @@ TEST_F(ContactOfTwo, ForgetsWhenItOpens) {
   EXPECT_EQ(norm(springs_.tangential), 0);
   EXPECT_EQ(norm(springs_.rolling), 0);
   const TermLoadsOf<double> again = after_step(-0.01, {{}, {}, {}});
-  EXPECT_EQ(norm(again.friction.force), 0);
+  EXPECT_EQ(norm(again.springs.tangential.force), 0);
 }
 
 TEST_F(ContactOfTwo, IsCutWhenTheNormalForceFalls) {

@@ -23,7 +23,7 @@ class KineticFrictionOfTwo : public testing::Test {
     parameters_.spring_timestep = 1e-3;
     return pair_terms<terms>(parameters_, kind_, pair_at(1, 1, gap, {0, 0, 1}), {{slip, 0, 0}, {}, {}},
                              springs_, no_noise, no_law)
-        .friction.force.x;
+        .springs.tangential.force.x;
   }
   double after_steps(int steps, double slip, double gap = -0.01) {
     double force = 0;
@@ -129,10 +129,12 @@ TEST_F(KineticFrictionOfTwo, PushesOnTheWayByWhatTheStepBegan) {
 
 // Of a spring that breaks away, and of one that is held by what it may have while it sticks.
 TEST_F(KineticFrictionOfTwo, LeavesItsShareOfTheStiffness) {
-  const double overlap = 0.01, longest = still * load / stiffness, left = kinetic * load / stiffness;
+  const PairGeometry pair = pair_at(1, 1, -0.01, {0, 0, 1});
+  const ContactOf<double> contact = contact_of(contact_, kind_, pair);
+  const double longest = still * load / stiffness, left = kinetic * load / stiffness;
   const auto share = [&](double length, double slides) {
     return held_share(Vector3{0.5 * length, 0, 0}, {0, 0, 1}, {0.5 * length, 0, 0},
-                      sliding_limits(contact_, overlap, slides));
+                      spring_limits<SlidingFriction>(contact, true, slides));
   };
   EXPECT_EQ(share(0.99 * longest, 0), 1);
   EXPECT_NEAR(share(1.01 * longest, 0), left / (1.01 * longest), 1e-14);

@@ -20,6 +20,7 @@ constexpr Terms tried[] = {
     {.contact = true},
     {.lubrication = true, .contact = true, .damping = true},
     {.contact = true, .friction = true},
+    {.contact = true, .damping = true, .friction = true},
     {.lubrication = true, .contact = true, .friction = true, .rolling = true},
     {.lubrication = true, .contact = true, .conservative = true},
 };

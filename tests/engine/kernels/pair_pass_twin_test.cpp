@@ -116,8 +116,8 @@ TEST(PairPass, EqualsThePlainLoopOverAllPairs) {
     held[{i, j, seen.image}] = {springs.tangential, springs.rolling, springs.slides};
     PairLoad sum = t.lubrication;
     sum += t.noise;
-    sum += t.friction;
-    sum += t.rolling;
+    sum += t.springs.tangential;
+    sum += t.springs.rolling;
     sum.force += t.contact_normal + t.contact_damping + t.conservative;
     force.add(i, sum.force);
     force.add(j, -sum.force);

@@ -65,6 +65,21 @@ TEST(ContactNetwork, LeavesContactsBelowTheCriticalLoadWithoutFriction) {
   EXPECT_EQ(blocks["frictional_contacts"][0], 0.5);
 }
 
+// k_t s = 250 of 500 and, where the surfaces move, gamma_t v_t = 100 besides; what is more than 500 is cut.
+TEST(ContactNetwork, CountsWhatDashpotsPush) {
+  Scene scene = scene_with("contact_network");
+  scene.physics.contact->tangential_damping = 100;
+  System system = chain(scene, 6.8);
+  system.springs = SpringField(SpringKinds::tangential, system.list.pairs().size());
+  for (std::size_t p = 0; p < system.list.pairs().size(); ++p) system.springs.set(p, {{0, 0.0875, 0}, {}});
+  for (const auto& [velocity, mobilised] : {std::pair{1.0, 0.7}, {10.0, 1.0}}) {
+    system.particles.velocity.set(2, {0, velocity, 0});
+    const auto observable = observable_of(scene, system, 256);
+    observable->sample(system, 0);
+    EXPECT_NEAR(mean_of(*observable)["mobilised_friction"].get<double>(), (0.5 + mobilised) / 2, 1e-12);
+  }
+}
+
 // Of two contacts with the same spring the one slides that remembers it.
 TEST(ContactNetwork, CountsContactsThatRememberThatTheySlide) {
   Scene scene = scene_with("contact_network");

@@ -71,6 +71,7 @@ TEST(Scene, DefaultsThatFollowFromOtherKeys) {
   EXPECT_DOUBLE_EQ(scene.physics.contact->tangential_stiffness, 2e3);
   EXPECT_EQ(scene.physics.contact->rolling_friction, 0.4);
   EXPECT_EQ(scene.physics.contact->normal_damping, 0);
+  EXPECT_EQ(scene.physics.contact->tangential_damping, 0);
   EXPECT_FALSE(remembers_sliding(*scene.physics.contact));
   EXPECT_EQ(scene.physics.contact->critical_load, 0);
   EXPECT_EQ(scene.physics.contact->largest_load, std::numeric_limits<double>::infinity());

@@ -99,7 +99,9 @@ def add_contact(answer, scene, state, pairs):
         answer.add_pairs("contact_damping", touching, contact.contact_damping(touching, block["normal_damping"]))
     if block.get("friction", 0) > 0:
         tangential, rolling = springs_after(scene, state, touching, 0)
-        answer.add_pairs("friction", touching, *contact.friction(touching, tangential, block["tangential_stiffness"]))
+        stiffness, damping = block["tangential_stiffness"], block.get("tangential_damping", 0)
+        limit = block["friction"] * block["normal_stiffness"] * touching.overlap
+        answer.add_pairs("friction", touching, *contact.friction(touching, tangential, stiffness, damping, limit))
         if "rolling_stiffness" in block:
             answer.add_pairs("rolling", touching, *contact.rolling(touching, rolling, block["rolling_stiffness"]))
 

@@ -111,22 +111,24 @@ TEST(Plan, ADecidedPointHasNothingToCome) {
 }
 
 // Four values leave a variance of 0.32 to 14 times the sample's open, those of ten points, which cost as
-// much, 0.64 to 1.8 times: 30 degrees of freedom.
-TEST(Plan, OfASumMoreIsKnownThanOfEachPart) {
-  const Campaign campaign = plain_campaign(10, 8, 4000, 0.03);
-  const auto seeds_of = [&](std::size_t points) {
-    Campaign part = campaign;
-    part.points.resize(points);
+// much, 0.64 to 1.8 times: 30 degrees of freedom. Where one outweighs the others, it alone is what counts: 3.
+TEST(Plan, OfASumMoreIsKnownThanOfEachPartUnlessOneOutweighsTheOthers) {
+  const auto seconds_of = [](std::size_t points, double of_first) {
+    Campaign campaign = plain_campaign(10, 8, 4000, 0.03);
+    campaign.points.resize(points);
     std::map<std::string, PointHistory> known;
-    for (const StatePoint& point : part.points) {
-      PointHistory& history = known[point.hash] = {{4, 1, 1}, {}};
+    for (const StatePoint& point : campaign.points) {
+      const double seconds = known.empty() ? of_first : 1;
+      PointHistory& history = known[point.hash] = {{4, seconds, seconds}, {}};
       for (const double value : {8.0, 12.0, 8.0, 12.0}) history.outcomes.emplace_back(Outcome{{value}});
     }
-    return make_plan(part, std::vector<double>(points, 1), known, 1).totals.seeds;
+    return make_plan(campaign, std::vector<double>(points, 1), known, 1).totals.cpu_seconds;
   };
-  const Expected<double> one = seeds_of(1), ten = seeds_of(10);
+  const Expected<double> one = seconds_of(1, 1), ten = seconds_of(10, 1), unequal = seconds_of(10, 1e6);
   EXPECT_LT(ten.upper, 10 * one.upper / 3);
   EXPECT_GT(ten.lower, 10 * one.lower * 1.4);
+  EXPECT_NEAR(unequal.upper / 1e6, one.upper, 1e-2 * one.upper);
+  EXPECT_NEAR(unequal.lower / 1e6, one.lower, 1e-2 * one.lower);
 }
 
 // A minute a seed, as a point says of which four seeds have ended; the other one is as long.

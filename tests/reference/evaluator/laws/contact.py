@@ -39,14 +39,17 @@ def held_spring(pairs, spring, velocity, time, longest):
     flat = across(pairs.normal, spring)
     flat_length = np.linalg.norm(flat, axis=1, keepdims=True)
     turned = np.divide(flat * length, flat_length, out=np.zeros_like(flat), where=flat_length > 1e-14 * length)
-    stretched = turned + time * velocity
-    length = np.linalg.norm(stretched, axis=1)
-    return stretched * column(np.minimum(1, np.divide(longest, length, out=np.ones_like(length), where=length > 0)))
+    return shortened(turned + time * velocity, longest)
 
 
-def friction(pairs, spring, stiffness):
-    """F_i = k_t s, T = l n x F_i on both (L 3 and 4, M 4)."""
-    force = stiffness * spring
+def shortened(vectors, longest):
+    length = np.linalg.norm(vectors, axis=1)
+    return vectors * column(np.minimum(1, np.divide(longest, length, out=np.ones_like(length), where=length > 0)))
+
+
+def friction(pairs, spring, stiffness, damping=0.0, limit=np.inf):
+    """F_i = k_t s + gamma_t v_t, which Coulomb's law limits, T = l n x F_i on both (L 3 and 4, M 4)."""
+    force = shortened(stiffness * spring + damping * slip_velocity(pairs), limit)
     moment = np.cross(pairs.normal, force)
     lever_i, lever_j = levers(pairs)
     return force, column(lever_i) * moment, column(lever_j) * moment

@@ -1,0 +1,167 @@
+// A dashpot beside the tangential spring of a contact: what it adds, and that Coulomb's law limits both
+// together.
+#include <gtest/gtest.h>
+
+#include "engine/kernels/pair_pass.h"
+#include "tests/engine/two_spheres.h"
+
+namespace peclet::engine {
+namespace {
+
+// One pair of k_n = 1e4, k_t = 2857, mu = 0.5 and gamma_t = 20.
+class TangentialDampingOfTwo : public testing::Test {
+ protected:
+  static constexpr double stiffness = 2857, friction = 0.5, damping = 20, step = 1e-3;
+  static constexpr double load = 100, limit = friction * load;  // at an overlap of 0.01
+  static constexpr Terms sticking = {.contact = true, .friction = true};
+  static constexpr Terms sliding = {.contact = true, .friction = true, .kinetic = true};
+
+  PairLoad after_step(const PairGeometry& pair, const PairMotion& motion, double ratio = 1) {
+    return remembers_sliding(contact_) ? load_after_step<sliding>(pair, motion, ratio)
+                                       : load_after_step<sticking>(pair, motion, ratio);
+  }
+  // The force along x on the first sphere after a step in which the surfaces slip along x.
+  double after_step(double slip, double gap = -0.01) {
+    return after_step(pair_at(1, 1, gap, {0, 0, 1}), {{slip, 0, 0}, {}, {}}).force.x;
+  }
+
+  ContactParameters contact_ = {.normal_stiffness = 1e4,
+                                .friction = friction,
+                                .tangential_stiffness = stiffness,
+                                .tangential_damping = damping};
+  double step_ = step, felt_share_ = 1;
+  PairSpringsOf<double> springs_;
+
+ private:
+  template <Terms terms>
+  PairLoad load_after_step(const PairGeometry& pair, const PairMotion& motion, double ratio) {
+    Physics physics;
+    physics.viscosity = 0.1;
+    physics.contact = contact_;
+    const auto no_noise = [] { return PairNormalsOf<double>{}; };
+    const auto no_law = [](StressTerm /*part*/, const Vector3& /*force*/) {};
+    PairParameters parameters = pair_parameters(physics, step_);
+    parameters.felt_share = felt_share_;
+    return pair_terms<terms>(parameters, make_pair_kind(physics, 1, ratio), pair, motion, springs_, no_noise,
+                             no_law)
+        .springs.tangential;
+  }
+};
+
+TEST_F(TangentialDampingOfTwo, AddsItsForceToThatOfTheSpring) {
+  for (int k = 1; k <= 5; ++k) {
+    EXPECT_NEAR(after_step(1), k * stiffness * step + damping, 1e-12);
+    EXPECT_NEAR(springs_.tangential.x, k * step, 1e-15);
+  }
+  EXPECT_NEAR(after_step(0), 5 * stiffness * step, 1e-12);
+}
+
+// 2.857 k + 20 <= 50 holds up to k = 10. The spring goes on to its own limit.
+TEST_F(TangentialDampingOfTwo, IsLimitedTogetherWithTheSpring) {
+  for (int k = 1; k <= 17; ++k) {
+    EXPECT_NEAR(after_step(1), std::min(k * stiffness * step + damping, limit), 1e-12);
+    EXPECT_NEAR(springs_.tangential.x, k * step, 1e-15);
+  }
+  for (int k = 0; k < 20; ++k) EXPECT_NEAR(after_step(10), limit, 1e-12);
+  EXPECT_NEAR(stiffness * springs_.tangential.x, limit, 1e-12);
+  EXPECT_NEAR(after_step(-1), limit - stiffness * step - damping, 1e-12);
+}
+
+// A contact that begins has no load, so it slides; the dashpot pushes whole as soon as the load bears that.
+TEST_F(TangentialDampingOfTwo, PushesWholeAfterAContactHasBegunInMotion) {
+  const double small_limit = friction * 1e4 * 1e-5;
+  for (int k = 1; k <= 5; ++k) EXPECT_NEAR(after_step(1, -1e-5), small_limit, 1e-12);
+  EXPECT_NEAR(after_step(1), small_limit + stiffness * step + damping, 1e-12);
+  EXPECT_NEAR(after_step(0), small_limit + stiffness * step, 1e-12);
+}
+
+// 2.857 k + 20 > 50 at k = 11. Both stick again where both together are at most 30.
+TEST_F(TangentialDampingOfTwo, SlidesAndSticksByBothTogether) {
+  contact_.kinetic_friction = 0.3;
+  for (int k = 1; k <= 10; ++k) {
+    EXPECT_NEAR(after_step(1), k * stiffness * step + damping, 1e-12);
+    EXPECT_EQ(springs_.slides, 0);
+  }
+  for (int k = 11; k <= 20; ++k) {
+    EXPECT_NEAR(after_step(1), 0.3 * load, 1e-12);
+    EXPECT_EQ(springs_.slides, 1);
+    EXPECT_NEAR(stiffness * springs_.tangential.x, 0.3 * load, 1e-12);
+  }
+  EXPECT_NEAR(after_step(-1), 0.3 * load - stiffness * step - damping, 1e-12);
+  EXPECT_EQ(springs_.slides, 0);
+  springs_ = {};
+  EXPECT_NEAR(after_step(10), 0.3 * load, 1e-12);  // 28.57 + 200, of which the spring is shorter than 30
+  EXPECT_EQ(springs_.slides, 1);
+  EXPECT_NEAR(stiffness * springs_.tangential.x, 10 * stiffness * step, 1e-12);
+}
+
+TEST_F(TangentialDampingOfTwo, PushesWholeWhereTheSpringPushesInPart) {
+  felt_share_ = 0.6;
+  EXPECT_NEAR(after_step(1), 0.6 * stiffness * step + damping, 1e-12);
+  EXPECT_NEAR(after_step(1), 1.6 * stiffness * step + damping, 1e-12);
+}
+
+// F = gamma_t v_t and T = l n x F without a spring, and the torques balance.
+TEST_F(TangentialDampingOfTwo, HasBalancedTorquesAndDissipates) {
+  contact_.friction = 1e6;
+  step_ = 0;
+  Draws draws(64);
+  for (const double ratio : size_ratios) {
+    const PairGeometry pair = pair_at(1, ratio, -0.02, draws.direction());
+    const PairMotion motion = random_motion(draws);
+    const PairLoad found = after_step(pair, motion, ratio);
+    const ContactLevers lever = contact_levers(1, ratio, pair);
+    const Vector3 spin = lever.first * motion.spin_first + lever.second * motion.spin_second;
+    const Vector3 slip = across(motion.velocity, pair.normal) - cross(spin, pair.normal);
+    EXPECT_LT(norm(found.force - damping * slip), 1e-12 * norm(found.force));
+    EXPECT_LT(norm(found.torque_first - lever.first * cross(pair.normal, found.force)),
+              1e-12 * norm(found.force));
+    EXPECT_LT(norm(found.torque_first + found.torque_second - cross(pair.separation, found.force)),
+              1e-12 * norm(found.force));
+    EXPECT_NEAR(dissipated(found, motion), damping * dot(slip, slip), 1e-11 * damping * dot(slip, slip));
+  }
+}
+
+TEST_F(TangentialDampingOfTwo, FeelsNoRigidRotation) {
+  Draws draws(65);
+  for (const double ratio : size_ratios) {
+    const PairGeometry pair = pair_at(1, ratio, -0.02, draws.direction());
+    const Vector3 spin = draws.vector();
+    const PairLoad found = after_step(pair, {cross(spin, pair.separation), spin, spin}, ratio);
+    EXPECT_LT(norm(found.force), 1e-12 * damping);
+  }
+}
+
+// Slips that jump at random, of 1e-3 to 1e3 times mu N / gamma_t: no step stores more than is put in.
+TEST_F(TangentialDampingOfTwo, DissipatesWhateverTheMotion) {
+  Draws draws(66);
+  const PairGeometry pair = pair_at(1, 1, -0.01, {0, 0, 1});
+  const auto stored = [&] { return 0.5 * stiffness * dot(springs_.tangential, springs_.tangential); };
+  for (const double kinetic : {ContactParameters{}.kinetic_friction, 0.3}) {
+    contact_.kinetic_friction = kinetic;
+    for (int k = 0; k < 2000; ++k) {
+      const double size = limit / damping * std::pow(10, draws.uniform(-3, 3));
+      const Vector3 slip = size * across(draws.direction(), pair.normal);
+      const double before = stored();
+      const Vector3 force = after_step(pair, {slip, {}, {}}).force;
+      EXPECT_LE(norm(force), limit * (1 + 1e-14));
+      EXPECT_GE(step * dot(force, slip) - (stored() - before), -1e-12) << k;
+    }
+  }
+}
+
+// In a matrix a spring that holds has k_t dt + gamma_t, and one that slides the share that is not cut.
+TEST_F(TangentialDampingOfTwo, CouplesAsTheChangeOfItsForce) {
+  const PairGeometry pair = pair_at(1, 1, -0.01, {0, 0, 1});
+  const ContactOf<double> contact = {contact_, pair, contact_levers(1, 1, pair), 1};
+  for (const double slip : {1.0, 5.0}) {
+    PairResistance coupling{};
+    add_springs(coupling, sticking, contact, {.resistance = 1, .tangential = step},
+                held_shares(sticking, contact, {{slip, 0, 0}, {}, {}}, step, PairSpringsOf<double>{}));
+    springs_ = {};
+    EXPECT_NEAR(coupling.shear * slip, after_step(slip), 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace peclet::engine
