@@ -10,7 +10,6 @@
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
-#include <system_error>
 
 namespace peclet {
 
@@ -39,6 +38,36 @@ void write_all(int descriptor, std::string_view bytes, const std::filesystem::pa
   }
 }
 
+void read_pieces(int descriptor, const std::filesystem::path& path,
+                 const std::function<void(std::string_view)>& take, const char* action) {
+  std::array<char, 65536> chunk;  // NOLINT(cppcoreguidelines-pro-type-member-init): read() fills it
+  for (;;) {
+    const ssize_t count = ::read(descriptor, chunk.data(), chunk.size());
+    if (count == 0) return;
+    if (count < 0 && errno != EINTR) fail_to(action, path);
+    if (count > 0) take({chunk.data(), static_cast<std::size_t>(count)});
+  }
+}
+
+std::size_t read_at(int descriptor, std::uint64_t place, std::span<std::byte> bytes,
+                    const std::filesystem::path& path) {
+  std::size_t filled = 0;
+  while (filled < bytes.size()) {
+    const ssize_t more =
+        ::pread(descriptor, bytes.data() + filled, bytes.size() - filled, static_cast<off_t>(place + filled));
+    if (more < 0 && errno != EINTR) fail_to("cannot read", path);
+    if (more == 0) break;
+    if (more > 0) filled += static_cast<std::size_t>(more);
+  }
+  return filled;
+}
+
+void synchronise(int descriptor, const std::filesystem::path& path) {
+  while (::fsync(descriptor) != 0) {
+    if (errno != EINTR) fail_to("cannot synchronise", path);
+  }
+}
+
 void fail_to(const char* action, const std::filesystem::path& path) {
   throw std::system_error(errno, std::generic_category(), fmt::format("{} {}", action, path.string()));
 }
@@ -58,29 +87,12 @@ Descriptor create_temporary(const std::filesystem::path& path, std::filesystem::
   }
 }
 
-void synchronise(int descriptor, const std::filesystem::path& path) {
-  while (::fsync(descriptor) != 0) {
-    if (errno != EINTR) fail_to("cannot synchronise", path);
-  }
-}
-
 void synchronise_folder(const std::filesystem::path& path) {
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   const Descriptor descriptor = open_file(folder, O_RDONLY | O_DIRECTORY);
   if (descriptor.number() < 0) fail_to("cannot open", folder);
   synchronise(descriptor.number(), folder);
 }
-
-}  // namespace
-
-bool means_no_room(int error) { return error == ENOSPC || error == EDQUOT; }
-
-bool means_machine_fault(int error) {
-  constexpr std::array faults{EIO, ENOMEM, ENFILE, EMFILE, ESTALE, ETIMEDOUT, ENOTCONN, ENOLCK};
-  return means_no_room(error) || std::find(faults.begin(), faults.end(), error) != faults.end();
-}
-
-namespace {
 
 // `write` fills the new file, of `bytes` bytes.
 template <typename Write>
@@ -106,6 +118,13 @@ void replace_durably(const std::filesystem::path& path, std::uint64_t bytes, con
 
 }  // namespace
 
+bool means_no_room(int error) { return error == ENOSPC || error == EDQUOT; }
+
+bool means_machine_fault(int error) {
+  constexpr std::array faults{EIO, ENOMEM, ENFILE, EMFILE, ESTALE, ETIMEDOUT, ENOTCONN, ENOLCK};
+  return means_no_room(error) || std::find(faults.begin(), faults.end(), error) != faults.end();
+}
+
 void write_durably(const std::filesystem::path& path, std::string_view bytes) {
   replace_durably(path, bytes.size(), [&](int file) { write_all(file, bytes, path); });
 }
@@ -118,13 +137,8 @@ void write_durably(const std::filesystem::path& path, const std::function<std::s
 
 void copy_durably(int from, std::uint64_t bytes, const std::filesystem::path& path) {
   replace_durably(path, bytes, [&](int file) {
-    std::array<char, 65536> chunk;  // NOLINT(cppcoreguidelines-pro-type-member-init): read() fills it
-    for (;;) {
-      const ssize_t count = ::read(from, chunk.data(), chunk.size());
-      if (count == 0) return;
-      if (count < 0 && errno != EINTR) fail_to("cannot read what becomes", path);
-      if (count > 0) write_all(file, {chunk.data(), static_cast<std::size_t>(count)}, path);
-    }
+    const auto take = [&](std::string_view piece) { write_all(file, piece, path); };
+    read_pieces(from, path, take, "cannot read what becomes");
   });
 }
 
@@ -161,16 +175,8 @@ std::string read_file(const std::filesystem::path& path) {
   const Descriptor descriptor = open_file(path, O_RDONLY);
   if (descriptor.number() < 0) fail_to("cannot open", path);
   std::string content;
-  std::array<char, 65536> chunk;  // NOLINT(cppcoreguidelines-pro-type-member-init): read() fills it
-  for (;;) {
-    const ssize_t count = ::read(descriptor.number(), chunk.data(), chunk.size());
-    if (count == 0) return content;
-    if (count > 0) {
-      content.append(chunk.data(), static_cast<std::size_t>(count));
-    } else if (errno != EINTR) {
-      fail_to("cannot read", path);
-    }
-  }
+  read_pieces(descriptor.number(), path, [&](std::string_view piece) { content += piece; });
+  return content;
 }
 
 }  // namespace peclet

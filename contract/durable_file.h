@@ -1,9 +1,11 @@
 // Open files, and files that are either whole or not there.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -37,11 +39,21 @@ Descriptor open_file(const std::filesystem::path& path, int flags, unsigned mode
 // Writes every byte. Throws std::system_error naming the path.
 void write_all(int descriptor, std::string_view bytes, const std::filesystem::path& path);
 
+// Takes what is left to read of an open file, piece by piece. Throws std::system_error naming the path.
+void read_pieces(int descriptor, const std::filesystem::path& path,
+                 const std::function<void(std::string_view)>& take, const char* action = "cannot read");
+
+// Reads bytes at a place of an open file; returns their number, which is less only where the file ends.
+// Throws std::system_error naming the path.
+std::size_t read_at(int descriptor, std::uint64_t place, std::span<std::byte> bytes,
+                    const std::filesystem::path& path);
+
+// Has what was written on disk. Throws std::system_error naming the path.
+void synchronise(int descriptor, const std::filesystem::path& path);
+
 // Throws what errno says: "cannot open /the/path: ...".
 [[noreturn]] void fail_to(const char* action, const std::filesystem::path& path);
 
-// Files that are either there whole or not there: temporary file, fsync, rename, fsync of the folder.
-//
 // The file system is full, or the user's quota of it: what could not be written may be tried again later.
 class NoRoomError : public std::system_error {
  public:

@@ -8,13 +8,12 @@
 
 namespace peclet {
 
-// What is wrong with something that a person gave us, said once and completely.
-//
 // A message is one line of at most so many characters, whatever was given.
 constexpr std::size_t longest_message = 480;
 
-// Carries the file, the JSON pointer inside it, the offending value and what is allowed instead.
-// Programs print what() and leave with exit code 2; nothing has been written by then.
+// What is wrong with something that a person gave: the file, the JSON pointer inside it, the offending value
+// and what is allowed instead. Programs print what() and leave with exit code 2; nothing has been written by
+// then.
 //
 // Here, and nowhere else, what is quoted becomes printable and short (printable.h): whoever throws hands over
 // what was given, as it is.
@@ -44,9 +43,8 @@ class InputError : public std::runtime_error {
   Parts parts_;
 };
 
-// What is stored, or what an engine says about it, is not what this program may go on with.
-//
-// Programs print what() and leave with exit code 6.
+// What is stored, or what an engine says about it, is not what this program may go on with. Programs print
+// what() and leave with exit code 6.
 class IntegrityError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

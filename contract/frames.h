@@ -17,10 +17,8 @@
 
 namespace peclet {
 
-// Endings of a realisation that leave a result: engines write them, the runner reads them.
-//
-// To the end, or until it jammed under a stress, after which it counts as standing still. After any other
-// ending there are no means.
+// Returns whether a realisation with this cause has means: it ran to its end, or until it jammed under a
+// stress, after which it counts as standing still.
 inline bool has_results(std::string_view cause) { return cause == "completed" || cause == "jammed"; }
 
 // Returns whether a realisation with this cause has jammed: it stood still under its stress, was pressed

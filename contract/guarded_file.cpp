@@ -3,16 +3,10 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <fstream>
 #include <sstream>
-#include <string>
-#include <system_error>
-
-#include "contract/durable_file.h"
 
 namespace peclet {
 namespace {
@@ -79,14 +73,11 @@ std::string read_regular(const fs::path& path, std::uint64_t most) {
   if (size > most) refuse_size(path, most);
   std::string content;
   content.reserve(size);
-  std::array<char, 65536> chunk;  // NOLINT(cppcoreguidelines-pro-type-member-init): read() fills it
-  for (;;) {
-    const ssize_t count = ::read(file.number(), chunk.data(), chunk.size());
-    if (count == 0) return content;
-    if (count < 0 && errno != EINTR) fail_to("cannot read", path);
-    if (count > 0) content.append(chunk.data(), static_cast<std::size_t>(count));
+  read_pieces(file.number(), path, [&](std::string_view piece) {
+    content += piece;
     if (content.size() > most) refuse_size(path, most);  // it grew meanwhile
-  }
+  });
+  return content;
 }
 
 void copy_regular(const fs::path& from, const fs::path& to, std::uint64_t most) {

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
-#include <utility>
 
 #include "contract/errors.h"
 #include "contract/text.h"
@@ -192,64 +191,6 @@ class Validation {
   const KeyTable& table_;
   const std::string& file_;
 };
-
-}  // namespace
-
-KeyTable::KeyTable(std::string title, std::vector<Key> keys, Unknown unknown)
-    : title_(std::move(title)), keys_(std::move(keys)), unknown_(unknown) {}
-
-const Key* KeyTable::find(std::string_view pointer) const {
-  const auto found = std::ranges::find(keys_, pointer, &Key::pointer);
-  return found == keys_.end() ? nullptr : &*found;
-}
-
-std::vector<const Key*> KeyTable::below(std::string_view pointer) const {
-  std::vector<const Key*> found;
-  for (const Key& key : keys_) {
-    if (std::string_view(key.pointer).substr(0, key.pointer.rfind('/')) == pointer) found.push_back(&key);
-  }
-  return found;
-}
-
-Json KeyTable::validate(Json document, const std::string& file, const std::string& root) const {
-  const Validation validation(*this, file);
-  if (const Key* key = find(root)) {
-    validation.check_value(document, *key, "");
-  } else {
-    if (!document.is_object()) throw InputError(file, "", shortened(document), "must be an object");
-    validation.check_object(document, root, "");
-  }
-  return document;
-}
-
-Json KindTables::validate(Json document, const std::string& file) const {
-  // What tells it apart comes first: it decides what else there is.
-  const KeyTable kind("", {key_}, Unknown::ignored);
-  document = kind.validate(std::move(document), file);
-  const std::string name = document[name_of(key_)];
-  const auto found = std::ranges::find(key_.choices, name);
-  return tables_[static_cast<std::size_t>(found - key_.choices.begin())].validate(std::move(document), file);
-}
-
-bool is_hash(std::string_view text) {
-  return text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
-}
-
-bool is_name(std::string_view text) { return !text.empty() && printable(text, longest_name) == text; }
-
-std::string shortened(const Json& value) {
-  constexpr std::size_t longest = 60;
-  std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
-  if (text.size() <= longest) return text;
-  std::size_t end = longest - 3;
-  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U)
-    --end;  // not inside a character
-  return text.substr(0, end) + "...";
-}
-
-// How a table of keys is written: as rows, in words, as JSON Schema, as a page of the manual.
-
-namespace {
 
 struct KindText {
   KeyKind kind;
@@ -508,6 +449,58 @@ std::string cell(const std::string& text) {
 }
 
 }  // namespace
+
+KeyTable::KeyTable(std::string title, std::vector<Key> keys, Unknown unknown)
+    : title_(std::move(title)), keys_(std::move(keys)), unknown_(unknown) {}
+
+const Key* KeyTable::find(std::string_view pointer) const {
+  const auto found = std::ranges::find(keys_, pointer, &Key::pointer);
+  return found == keys_.end() ? nullptr : &*found;
+}
+
+std::vector<const Key*> KeyTable::below(std::string_view pointer) const {
+  std::vector<const Key*> found;
+  for (const Key& key : keys_) {
+    if (std::string_view(key.pointer).substr(0, key.pointer.rfind('/')) == pointer) found.push_back(&key);
+  }
+  return found;
+}
+
+Json KeyTable::validate(Json document, const std::string& file, const std::string& root) const {
+  const Validation validation(*this, file);
+  if (const Key* key = find(root)) {
+    validation.check_value(document, *key, "");
+  } else {
+    if (!document.is_object()) throw InputError(file, "", shortened(document), "must be an object");
+    validation.check_object(document, root, "");
+  }
+  return document;
+}
+
+Json KindTables::validate(Json document, const std::string& file) const {
+  // What tells it apart comes first: it decides what else there is.
+  const KeyTable kind("", {key_}, Unknown::ignored);
+  document = kind.validate(std::move(document), file);
+  const std::string name = document[name_of(key_)];
+  const auto found = std::ranges::find(key_.choices, name);
+  return tables_[static_cast<std::size_t>(found - key_.choices.begin())].validate(std::move(document), file);
+}
+
+bool is_hash(std::string_view text) {
+  return text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
+bool is_name(std::string_view text) { return !text.empty() && printable(text, longest_name) == text; }
+
+std::string shortened(const Json& value) {
+  constexpr std::size_t longest = 60;
+  std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  if (text.size() <= longest) return text;
+  std::size_t end = longest - 3;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U)
+    --end;  // not inside a character
+  return text.substr(0, end) + "...";
+}
 
 std::vector<Key> keys_of(std::string_view rows) {
   std::vector<Key> keys;

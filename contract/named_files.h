@@ -11,8 +11,6 @@
 
 namespace peclet {
 
-// Files that a person gives us: read once and whole, and not without bound.
-//
 // How much an input may be. A file that is larger is refused before it is read, a pipe or a device once it
 // has given more.
 struct InputLimits {
@@ -35,8 +33,6 @@ Json parse_json_input(std::string_view text, const std::string& file,
 // Both. Throws InputError.
 Json read_json_input(const std::filesystem::path& path, const InputLimits& limits = input_limits);
 
-// Where a person wants an answer to be: a file, or whatever else bears the name that was given.
-//
 // Throws InputError when nothing can be written under the name: a folder, a socket, a loop of links, a
 // descriptor that is not open, no folder to make a file in, no permission. For programs that work for long
 // before they have something to write.

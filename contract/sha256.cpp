@@ -2,10 +2,8 @@
 
 #include <fcntl.h>
 #include <sodium.h>
-#include <unistd.h>
 
 #include <array>
-#include <cerrno>
 #include <stdexcept>
 
 #include "contract/durable_file.h"
@@ -52,13 +50,10 @@ std::string sha256_of_open(int file, const std::filesystem::path& path) {
   require_library();
   crypto_hash_sha256_state state;
   crypto_hash_sha256_init(&state);
-  std::array<unsigned char, 65536> chunk;  // NOLINT(cppcoreguidelines-pro-type-member-init): read() fills it
-  for (;;) {
-    const ssize_t count = ::read(file, chunk.data(), chunk.size());
-    if (count < 0 && errno != EINTR) fail_to("cannot read", path);
-    if (count == 0) break;
-    if (count > 0) crypto_hash_sha256_update(&state, chunk.data(), static_cast<std::size_t>(count));
-  }
+  read_pieces(file, path, [&](std::string_view piece) {
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): bytes are bytes
+    crypto_hash_sha256_update(&state, reinterpret_cast<const unsigned char*>(piece.data()), piece.size());
+  });
   Digest digest{};
   crypto_hash_sha256_final(&state, digest.data());
   return hexadecimal(digest);

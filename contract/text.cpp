@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cstddef>
 #include <utility>
-#include <vector>
 
 namespace peclet {
 namespace {
@@ -95,6 +93,24 @@ void drop_part_of_word(std::vector<std::string>& shown) {
   if (blank != shown.rbegin() + most) shown.erase(blank.base(), shown.end());
 }
 
+// Optimal string alignment: Levenshtein's distance with neighbouring letters that are swapped as one mistake.
+std::size_t mistakes_between(std::string_view one, std::string_view other) {
+  std::vector<std::size_t> before_last, last(other.size() + 1), now(other.size() + 1);
+  for (std::size_t j = 0; j <= other.size(); ++j) last[j] = j;
+  for (std::size_t i = 1; i <= one.size(); ++i) {
+    now[0] = i;
+    for (std::size_t j = 1; j <= other.size(); ++j) {
+      const std::size_t replaced = last[j - 1] + (one[i - 1] == other[j - 1] ? 0 : 1);
+      now[j] = std::min({replaced, last[j] + 1, now[j - 1] + 1});
+      const bool swapped = i > 1 && j > 1 && one[i - 1] == other[j - 2] && one[i - 2] == other[j - 1];
+      if (swapped) now[j] = std::min(now[j], before_last[j - 2] + 1);
+    }
+    before_last = last;
+    last = now;
+  }
+  return last[other.size()];
+}
+
 }  // namespace
 
 std::string printable(std::string_view text, std::size_t longest) {
@@ -132,28 +148,6 @@ std::string printable_lines(std::string_view text) {
     text.remove_prefix(end + 1);
   }
 }
-
-namespace {
-
-// Optimal string alignment: Levenshtein's distance with neighbouring letters that are swapped as one mistake.
-std::size_t mistakes_between(std::string_view one, std::string_view other) {
-  std::vector<std::size_t> before_last, last(other.size() + 1), now(other.size() + 1);
-  for (std::size_t j = 0; j <= other.size(); ++j) last[j] = j;
-  for (std::size_t i = 1; i <= one.size(); ++i) {
-    now[0] = i;
-    for (std::size_t j = 1; j <= other.size(); ++j) {
-      const std::size_t replaced = last[j - 1] + (one[i - 1] == other[j - 1] ? 0 : 1);
-      now[j] = std::min({replaced, last[j] + 1, now[j - 1] + 1});
-      const bool swapped = i > 1 && j > 1 && one[i - 1] == other[j - 2] && one[i - 2] == other[j - 1];
-      if (swapped) now[j] = std::min(now[j], before_last[j - 2] + 1);
-    }
-    before_last = last;
-    last = now;
-  }
-  return last[other.size()];
-}
-
-}  // namespace
 
 std::string nearest_name(std::string_view typed, const std::vector<std::string>& names) {
   std::string nearest;

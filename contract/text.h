@@ -12,32 +12,22 @@
 
 namespace peclet {
 
-// Text from outside, made fit to be shown: a terminal obeys some characters, and nobody reads a megabyte.
-//
-// `text` with what cannot be shown on one line written as an escape: control characters (\n, \u001b), marks
-// that turn the direction of writing (\u202e), and bytes that are no UTF-8 (\xff). Beyond `longest`
+// Returns `text` with what cannot be shown on one line written as an escape: control characters (\n, \u001b),
+// marks that turn the direction of writing (\u202e), and bytes that are no UTF-8 (\xff). Beyond `longest`
 // characters its middle becomes "...", between words where it can, so that both ends can be recognised.
 std::string printable(std::string_view text, std::size_t longest = std::string_view::npos);
 
 // The same of every line of `text`, which stays a line of its own.
 std::string printable_lines(std::string_view text);
 
-// What somebody may have meant who mistyped a name.
-//
-// The name that `typed` becomes with the fewest wrong, missing, added or swapped letters; the first of
-// several;
-// "" when each needs more of them than a third of its letters (at least one), so that nothing far-fetched is
-// offered.
+// Returns the name that `typed` becomes with the fewest wrong, missing, added or swapped letters, the first
+// of several; "" when each needs more of them than a third of its letters (at least one), so that nothing
+// far-fetched is offered.
 std::string nearest_name(std::string_view typed, const std::vector<std::string>& names);
 
 // "; did you mean NAME?", or nothing when there is no such name.
 std::string suggestion(std::string_view typed, const std::vector<std::string>& names);
 
-// Lines, words and numbers of texts as people and their programs save them.
-//
-// A text may begin with a byte-order mark, its lines may end as on Windows, and a number may have a plus
-// sign.
-//
 // Returns the text without the byte-order mark of UTF-8 that it may begin with.
 std::string_view without_byte_order_mark(std::string_view text);
 

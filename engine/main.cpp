@@ -20,7 +20,6 @@
 #include "engine/pictures/picture.h"
 #include "engine/realisation/job.h"
 #include "engine/realisation/result.h"
-#include "engine/realisation/serve.h"
 #include "engine/scene/composition.h"
 #include "engine/scene/measured_sizes.h"
 #include "engine/snapshots/conversion.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/flow/steady_shear.h"
+#include "engine/flow/shear.h"
 
 namespace peclet::engine {
 namespace {

@@ -6,11 +6,9 @@
 #include <algorithm>
 
 #include "engine/flow/controlled_shear.h"
-#include "engine/flow/oscillatory_shear.h"
-#include "engine/flow/planar_extension.h"
+#include "engine/flow/extension.h"
 #include "engine/flow/segments.h"
-#include "engine/flow/steady_shear.h"
-#include "engine/flow/uniaxial_extension.h"
+#include "engine/flow/shear.h"
 #include "engine/flow/waves.h"
 
 namespace peclet::engine {
@@ -37,7 +35,7 @@ const FlowKind& flow_kind_of(const SceneDocument& scene) {
   const FlowKind& flow = other == all.end() ? all.front() : *other;
   const auto refuse = [&](const std::string& key) {
     if (key == flow.key || !scene.has(key) || std::ranges::count(flow.beside, key) > 0) return;
-    scene.refuse(key, "must be left out together with " + flow.key);
+    scene.refuse(key, "must be left out together with {}", flow.key);
   };
   for (const FlowKind& kind : all) refuse(kind.key);
   for (const char* key : {"/flow/waves", "/peclet"}) refuse(key);
@@ -65,12 +63,11 @@ void check_duration(const SceneDocument& scene, const FlowKind& flow, const std:
   const Json& limits = scene.at(pointer);
   for (const char* unit : {"cycles", "stress_times"}) {
     if (limits.contains(unit) && flow.unit != unit) {
-      scene.refuse(pointer + '/' + unit, "must be left out without " + flows_with(unit));
+      scene.refuse(pointer + '/' + unit, "must be left out without {}", flows_with(unit));
     }
   }
   if (limits.contains("strain") && !flow.without_strain.empty()) {
-    scene.refuse(pointer + "/strain",
-                 fmt::format("must be left out with {}, {}", flow.key, flow.without_strain));
+    scene.refuse(pointer + "/strain", "must be left out with {}, {}", flow.key, flow.without_strain);
   }
 }
 

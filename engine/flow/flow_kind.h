@@ -1,5 +1,5 @@
 // A kind of flow: how a scene asks for it, and what of a scene goes together with it. One function for each,
-// declared beside the deformation that it reads; all of them are listed in flows.cpp.
+// declared beside the deformation that it reads; all of them are listed in flow_kind.cpp.
 #pragma once
 
 #include <limits>
@@ -34,9 +34,8 @@ struct FlowKind {
   std::vector<std::string> refused_observables{};
 };
 
-// All flows: the one list of them, and what a scene may say of any.
-//
-// The first is the flow of a scene that asks for no other: shear at a rate, or a fluid at rest.
+// Returns all flows. The first is the flow of a scene that asks for no other: shear at a rate, or a fluid at
+// rest.
 const std::vector<FlowKind>& flow_kinds();
 
 // Returns the keys of the flows that have this unit of durations: "/flow/oscillation or /flow/cross_shear".

@@ -1,6 +1,8 @@
 // The values of a scene whose keys are valid, and the faults of their meaning.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <string>
 #include <utility>
 
@@ -25,11 +27,17 @@ class SceneDocument {
     return has(pointer) ? number(pointer) : fallback;
   }
 
-  [[noreturn]] void refuse(const std::string& pointer, const std::string& allowed) const {
-    throw InputError(file_, pointer, shortened(at(pointer)), allowed);
+  // What is allowed is a format with its arguments.
+  template <class... Arguments>
+  [[noreturn]] void refuse(const std::string& pointer, fmt::format_string<Arguments...> allowed,
+                           Arguments&&... arguments) const {
+    throw InputError(file_, pointer, shortened(at(pointer)),
+                     fmt::format(allowed, std::forward<Arguments>(arguments)...));
   }
-  [[noreturn]] void miss(const std::string& pointer, const std::string& allowed) const {
-    throw InputError(file_, pointer, "missing", allowed);
+  template <class... Arguments>
+  [[noreturn]] void miss(const std::string& pointer, fmt::format_string<Arguments...> allowed,
+                         Arguments&&... arguments) const {
+    throw InputError(file_, pointer, "missing", fmt::format(allowed, std::forward<Arguments>(arguments)...));
   }
 
  private:

@@ -13,7 +13,7 @@
 #include "engine/kernels/pair_access.h"
 #include "engine/kernels/pair_recipes.h"
 #include "engine/observables/structure.h"
-#include "engine/scene/lubrication_block.h"
+#include "engine/scene/law_blocks.h"
 #include "engine/terms/drag.h"
 
 namespace peclet::engine {

@@ -17,17 +17,13 @@
 
 namespace peclet::engine {
 
-// Sums of stresses over particles, and velocities relative to the uniform flow.
-//
-// The sum of of_particle(i) over all particles, with the same bits for any number of threads.
+// Returns the sum of of_particle(i) over all particles, with the same bits for any number of threads.
 template <class OfParticle>
 SymmetricTensor sum_over_particles(const System& system, int threads, OfParticle&& of_particle) {
   const std::vector<ParticleBlock>& blocks = system.list.blocks();
   std::vector<SymmetricTensor> sums(blocks.size());
-  for_each_range(blocks.size(), threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) {
-      for (std::size_t i = blocks[b].begin; i < blocks[b].end; ++i) sums[b] += of_particle(i);
-    }
+  for_each_index(blocks.size(), threads, [&](std::size_t b) {
+    for (std::size_t i = blocks[b].begin; i < blocks[b].end; ++i) sums[b] += of_particle(i);
   });
   SymmetricTensor total;
   for (const SymmetricTensor& sum : sums) total += sum;

@@ -1,8 +1,6 @@
 // Li 2023, equations 3.55 to 3.58 and 2.7.
 #include "engine/integrators/derived_groups.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -75,11 +73,10 @@ double largest_relative_error(const std::vector<double>& shares, const std::vect
   return largest;
 }
 
-MixtureGroups mixture_groups(const Scene& scene) {
+void add_mixture_groups(const Scene& scene, DerivedGroups& groups) {
   const Particles& particles = scene.particles;
   const Mixture& mixture = *particles.mixture;
   const std::vector<double> shares = volume_shares(particles, species_numbers(particles));
-  MixtureGroups groups;
   groups.volume_fraction = scene.volume_fraction;
   const auto grains = shares.begin() + static_cast<std::ptrdiff_t>(mixture.colloid_species);
   groups.alpha = std::accumulate(grains, shares.end(), 0.0);
@@ -88,23 +85,129 @@ MixtureGroups mixture_groups(const Scene& scene) {
     groups.peclet_mean = peclet_number(scene.physics, mixture.mean_radius());
     groups.peclet_grains = peclet_number(scene.physics, mixture.grain_radius);
   }
-  return groups;
 }
 
-SizeMoments size_moments(const Particles& particles) {
+void add_size_moments(const Particles& particles, DerivedGroups& groups) {
   const std::vector<std::size_t> number = species_numbers(particles);
   const auto count = static_cast<double>(particles.count);
-  SizeMoments moments;
+  double mean = 0, variance = 0;
   for (std::size_t s = 0; s < number.size(); ++s) {
-    moments.mean_radius += static_cast<double>(number[s]) / count * particles.species[s].radius;
+    mean += static_cast<double>(number[s]) / count * particles.species[s].radius;
   }
-  double variance = 0;
   for (std::size_t s = 0; s < number.size(); ++s) {
-    const double from_mean = particles.species[s].radius - moments.mean_radius;
+    const double from_mean = particles.species[s].radius - mean;
     variance += static_cast<double>(number[s]) / count * from_mean * from_mean;
   }
-  moments.relative_width = std::sqrt(variance) / moments.mean_radius;
-  return moments;
+  groups.mean_radius = mean;
+  groups.relative_width = std::sqrt(variance) / mean;
+}
+
+// The groups in the order in which people look for them. Those `only_with` another one are absent without it.
+struct NamedGroup {
+  using Value = std::optional<double> DerivedGroups::*;
+  const char *name, *words, *symbol, *unit;
+  Value value, only_with = nullptr;
+};
+using Groups = DerivedGroups;
+constexpr NamedGroup named_groups[] = {
+    {"volume_fraction", "", "φ", "1", &Groups::volume_fraction, &Groups::alpha},
+    {"alpha", "share of grains as made", "α_made", "1", &Groups::alpha, &Groups::alpha},
+    {"largest_share_error", "share error", "", "1", &Groups::largest_share_error, &Groups::alpha},
+    {"mean_radius", "", "⟨a⟩", "length", &Groups::mean_radius, &Groups::mean_radius},
+    {"relative_width", "", "", "1", &Groups::relative_width, &Groups::mean_radius},
+    {"peclet", "Péclet number", "Pe", "1", &Groups::peclet},
+    {"peclet_mean", "Péclet number of the mean radius", "Pe_cg", "1", &Groups::peclet_mean, &Groups::alpha},
+    {"peclet_grains", "Péclet number of the grains", "Pe_g", "1", &Groups::peclet_grains, &Groups::alpha},
+    {"stokes", "Stokes number", "St", "1", &Groups::stokes},
+    {"largest_stokes", "largest Stokes number", "St_max", "1", &Groups::largest_stokes},
+    {"relative_stiffness", "", "k̂", "1", &Groups::relative_stiffness},
+    {"contact_time", "", "τ_C", "time", &Groups::contact_time},
+    {"inertial_time", "", "τ_I", "time", &Groups::inertial_time},
+    {"brownian_time", "Brownian time", "τ_B", "time", &Groups::brownian_time},
+    {"shear_time", "", "τ_S", "time", &Groups::shear_time},
+    {"largest_inertia_over_brownian", "", "(τ_I/τ_B)_max", "1", &Groups::largest_inertia_over_brownian},
+    {"flow_over_rest", "flow/rest", "", "1", &Groups::flow_over_rest}};
+
+bool has(const std::vector<Warning>& warnings, const std::string& code) {
+  return std::ranges::any_of(warnings, [&](const Warning& warning) { return warning.code == code; });
+}
+
+// Where inertia is small for the radius of reference, but not for all sizes.
+void warn_of_other_sizes(const Scene& scene, const DerivedGroups& groups, std::vector<Warning>& warnings) {
+  const auto compare = [&](const char* code, const char* beside, const char* symbol,
+                           const std::optional<double>& largest, double bound) {
+    if (!largest || !reaches(*largest, bound) || has(warnings, code)) return;
+    warn(warnings, code,
+         "inertia is small beside {} for the radius {:.4g}, but not for all sizes: {} is up "
+         "to {:.4g}, the bound is {}; a smaller density cures it, or densities by size "
+         "(/particles/density_rule \"equal-inertia\")",
+         beside, scene.particles.reference_radius, symbol, *largest, bound);
+  };
+  compare("inertia-shear", "shear", "St", groups.largest_stokes, largest_inertia_over_shear);
+  compare("inertia-thermal", "Brownian motion", "tau_I / tau_B", groups.largest_inertia_over_brownian,
+          largest_inertia_over_brownian);
+}
+
+// Spheres follow a flow that comes and goes within their inertial time, however small its amplitude.
+void warn_of_oscillation(const Scene& scene, std::vector<Warning>& warnings) {
+  const std::optional<double> period = scene.physics.flow.period();
+  if (!period || has(warnings, "inertia-shear")) return;
+  const double frequency = 2 * std::numbers::pi / *period;
+  const std::optional<double> largest = largest_of_sizes(scene.particles, [&](double rho, double radius) {
+    return rho * radius * radius / scene.physics.viscosity * frequency;
+  });
+  if (!largest || !reaches(*largest, largest_inertia_over_shear)) return;
+  warn(warnings, "inertia-shear",
+       "inertia is not small beside the oscillation: rho a^2 w / eta is up to {:.4g}, the bound is "
+       "{}; moduli depend on the particles' mass, a smaller density or frequency cures it",
+       *largest, largest_inertia_over_shear);
+}
+
+// Whole numbers of few grains miss their shares.
+void warn_of_composition(const Scene& scene, const DerivedGroups& groups, std::vector<Warning>& warnings) {
+  constexpr double largest_error = 0.1;
+  if (!groups.alpha || *groups.largest_share_error <= largest_error) return;
+  const Particles& particles = scene.particles;
+  const std::vector<std::size_t> number = species_numbers(particles);
+  const std::vector<double> shares = volume_shares(particles, number),
+                            wanted = wanted_volume_shares(particles);
+  std::size_t worst = 0;
+  for (std::size_t s = 1; s < shares.size(); ++s) {
+    const auto error = [&](std::size_t k) { return std::abs(shares[k] / wanted[k] - 1); };
+    if (error(s) > error(worst)) worst = s;
+  }
+  warn(warnings, "composition",
+       "whole numbers of spheres miss the shares: {} of radius {} have {:.4f} of the "
+       "volume, {:.4f} was asked for; alpha is {:.4f} for {:.4f}; a larger "
+       "/particles/count cures it",
+       number[worst], particles.species[worst].radius, shares[worst], wanted[worst], *groups.alpha,
+       particles.mixture->alpha);
+}
+
+void warn_of_patience(const Scene& scene, std::vector<Warning>& warnings) {
+  const ControlledShear* const flow = scene.physics.flow.deformation().at_stress();
+  if (flow == nullptr || notices_jams(scene)) return;
+  warn(warnings, "patience",
+       "the window of {:.4g} stress times is not longer than the {:.4g} after which a flow that "
+       "stands still counts as jammed: flowing and viscosity_of_those_flowing have no value; a "
+       "longer /duration/production or a smaller /flow/jammed_viscosity cures it",
+       time_of(scene.production, scene) / flow->stress_time(), flow->patience() / flow->stress_time());
+}
+
+// Volume fraction that random packings reach: phi = 0.634 + 0.0658 d + 0.0857 S d^2, d the standard deviation
+// of the radius over its mean and S its skewness (Desmond & Weeks, Phys. Rev. E 90, 022204, 2014).
+double densest_random_packing(const Particles& particles) {
+  const std::vector<std::size_t> number = species_numbers(particles);
+  const auto moment = [&](double centre, int power) {
+    double sum = 0;
+    for (std::size_t s = 0; s < number.size(); ++s) {
+      sum += static_cast<double>(number[s]) * std::pow(particles.species[s].radius - centre, power);
+    }
+    return sum / static_cast<double>(particles.count);
+  };
+  const double mean = moment(0, 1), variance = moment(mean, 2), width = std::sqrt(variance) / mean;
+  const double skewness = variance > 0 ? moment(mean, 3) / std::pow(variance, 1.5) : 0;
+  return 0.634 + 0.0658 * width + 0.0857 * skewness * width * width;
 }
 
 }  // namespace
@@ -143,141 +246,28 @@ DerivedGroups derived_groups(const Scene& scene) {
       return rho * physics.thermal_energy / (physics.viscosity * physics.viscosity * radius);
     });
   }
-  if (scene.particles.mixture) groups.mixture = mixture_groups(scene);
-  if (scene.particles.distributed) groups.sizes = size_moments(scene.particles);
+  if (scene.particles.mixture) add_mixture_groups(scene, groups);
+  if (scene.particles.distributed) add_size_moments(scene.particles, groups);
   return groups;
 }
 
 Json to_json(const DerivedGroups& groups) {
-  const auto number = [](const std::optional<double>& group) { return group ? Json(*group) : Json(nullptr); };
-  Json json = {{"peclet", number(groups.peclet)},
-               {"stokes", number(groups.stokes)},
-               {"relative_stiffness", number(groups.relative_stiffness)},
-               {"contact_time", number(groups.contact_time)},
-               {"inertial_time", number(groups.inertial_time)},
-               {"brownian_time", number(groups.brownian_time)},
-               {"shear_time", number(groups.shear_time)},
-               {"flow_over_rest", number(groups.flow_over_rest)},
-               {"largest_stokes", number(groups.largest_stokes)},
-               {"largest_inertia_over_brownian", number(groups.largest_inertia_over_brownian)}};
-  if (groups.mixture) {
-    json["volume_fraction"] = groups.mixture->volume_fraction;
-    json["alpha"] = groups.mixture->alpha;
-    json["largest_share_error"] = groups.mixture->largest_share_error;
-    json["peclet_mean"] = number(groups.mixture->peclet_mean);
-    json["peclet_grains"] = number(groups.mixture->peclet_grains);
-  }
-  if (groups.sizes) {
-    json["mean_radius"] = groups.sizes->mean_radius;
-    json["relative_width"] = groups.sizes->relative_width;
+  Json json = Json::object();
+  for (const NamedGroup& group : named_groups) {
+    if (group.only_with == nullptr || groups.*group.only_with)
+      json[group.name] = or_null(groups.*group.value);
   }
   return json;
 }
 
 Json names_of_groups() {
-  struct Named {
-    const char *name, *words, *symbol, *unit;
-  };
-  constexpr Named all[] = {{"volume_fraction", "", "φ", "1"},
-                           {"alpha", "share of grains as made", "α_made", "1"},
-                           {"largest_share_error", "share error", "", "1"},
-                           {"mean_radius", "", "⟨a⟩", "length"},
-                           {"relative_width", "", "", "1"},
-                           {"peclet", "Péclet number", "Pe", "1"},
-                           {"peclet_mean", "Péclet number of the mean radius", "Pe_cg", "1"},
-                           {"peclet_grains", "Péclet number of the grains", "Pe_g", "1"},
-                           {"stokes", "Stokes number", "St", "1"},
-                           {"largest_stokes", "largest Stokes number", "St_max", "1"},
-                           {"relative_stiffness", "", "k̂", "1"},
-                           {"contact_time", "", "τ_C", "time"},
-                           {"inertial_time", "", "τ_I", "time"},
-                           {"brownian_time", "Brownian time", "τ_B", "time"},
-                           {"shear_time", "", "τ_S", "time"},
-                           {"largest_inertia_over_brownian", "", "(τ_I/τ_B)_max", "1"},
-                           {"flow_over_rest", "flow/rest", "", "1"}};
   Json names = Json::array();
-  for (const auto& [name, words, symbol, unit] : all) {
-    names.push_back({{"name", name}, {"symbol", symbol}, {"unit", unit}});
-    if (*words != '\0') names.back()["words"] = words;
+  for (const NamedGroup& group : named_groups) {
+    names.push_back({{"name", group.name}, {"symbol", group.symbol}, {"unit", group.unit}});
+    if (*group.words != '\0') names.back()["words"] = group.words;
   }
   return names;
 }
-
-namespace {
-
-bool has(const std::vector<Warning>& warnings, const std::string& code) {
-  return std::ranges::any_of(warnings, [&](const Warning& warning) { return warning.code == code; });
-}
-
-// Where inertia is small for the radius of reference, but not for all sizes.
-void warn_of_other_sizes(const Scene& scene, const DerivedGroups& groups, std::vector<Warning>& warnings) {
-  const auto warn = [&](const char* code, const char* beside, const char* symbol,
-                        const std::optional<double>& largest, double bound) {
-    if (!largest || !reaches(*largest, bound) || has(warnings, code)) return;
-    warnings.push_back(
-        {code,
-         fmt::format("inertia is small beside {} for the radius {:.4g}, but not for all sizes: {} is up "
-                     "to {:.4g}, the bound is {}; a smaller density cures it, or densities by size "
-                     "(/particles/density_rule \"equal-inertia\")",
-                     beside, scene.particles.reference_radius, symbol, *largest, bound)});
-  };
-  warn("inertia-shear", "shear", "St", groups.largest_stokes, largest_inertia_over_shear);
-  warn("inertia-thermal", "Brownian motion", "tau_I / tau_B", groups.largest_inertia_over_brownian,
-       largest_inertia_over_brownian);
-}
-
-// Spheres follow a flow that comes and goes within their inertial time, however small its amplitude.
-void warn_of_oscillation(const Scene& scene, std::vector<Warning>& warnings) {
-  const std::optional<double> period = scene.physics.flow.period();
-  if (!period || has(warnings, "inertia-shear")) return;
-  const double frequency = 2 * std::numbers::pi / *period;
-  const std::optional<double> largest = largest_of_sizes(scene.particles, [&](double rho, double radius) {
-    return rho * radius * radius / scene.physics.viscosity * frequency;
-  });
-  if (!largest || !reaches(*largest, largest_inertia_over_shear)) return;
-  warnings.push_back(
-      {"inertia-shear",
-       fmt::format(
-           "inertia is not small beside the oscillation: rho a^2 w / eta is up to {:.4g}, the bound is "
-           "{}; moduli depend on the particles' mass, a smaller density or frequency cures it",
-           *largest, largest_inertia_over_shear)});
-}
-
-// Whole numbers of few grains miss their shares.
-void warn_of_composition(const Scene& scene, const DerivedGroups& groups, std::vector<Warning>& warnings) {
-  constexpr double largest_error = 0.1;
-  if (!groups.mixture || groups.mixture->largest_share_error <= largest_error) return;
-  const Particles& particles = scene.particles;
-  const std::vector<std::size_t> number = species_numbers(particles);
-  const std::vector<double> shares = volume_shares(particles, number),
-                            wanted = wanted_volume_shares(particles);
-  std::size_t worst = 0;
-  for (std::size_t s = 1; s < shares.size(); ++s) {
-    const auto error = [&](std::size_t k) { return std::abs(shares[k] / wanted[k] - 1); };
-    if (error(s) > error(worst)) worst = s;
-  }
-  warnings.push_back(
-      {"composition",
-       fmt::format("whole numbers of spheres miss the shares: {} of radius {} have {:.4f} of the "
-                   "volume, {:.4f} was asked for; alpha is {:.4f} for {:.4f}; a larger "
-                   "/particles/count cures it",
-                   number[worst], particles.species[worst].radius, shares[worst], wanted[worst],
-                   groups.mixture->alpha, particles.mixture->alpha)});
-}
-
-void warn_of_patience(const Scene& scene, std::vector<Warning>& warnings) {
-  const ControlledShear* const flow = scene.physics.flow.deformation().at_stress();
-  if (flow == nullptr || notices_jams(scene)) return;
-  warnings.push_back(
-      {"patience",
-       fmt::format("the window of {:.4g} stress times is not longer than the {:.4g} after which a flow that "
-                   "stands still counts as jammed: flowing and viscosity_of_those_flowing have no value; a "
-                   "longer /duration/production or a smaller /flow/jammed_viscosity cures it",
-                   time_of(scene.production, scene) / flow->stress_time(),
-                   flow->patience() / flow->stress_time())});
-}
-
-}  // namespace
 
 bool notices_jams(const Scene& scene) {
   const ControlledShear* const flow = scene.physics.flow.deformation().at_stress();
@@ -290,23 +280,21 @@ std::vector<Warning> scene_warnings(const Scene& scene) {
   if (groups.shear_time) {
     const double ratio = *groups.inertial_time / *groups.shear_time;
     if (reaches(ratio, largest_inertia_over_shear)) {
-      warnings.push_back(
-          {"inertia-shear",
-           fmt::format("inertia is not small beside shear: St = tau_I / tau_S = {:.4g} (tau_I = {:.4g}, "
-                       "tau_S = {:.4g}), the bound is {}; the result depends on the particles' mass, a "
-                       "smaller density or shear rate cures it",
-                       ratio, *groups.inertial_time, *groups.shear_time, largest_inertia_over_shear)});
+      warn(warnings, "inertia-shear",
+           "inertia is not small beside shear: St = tau_I / tau_S = {:.4g} (tau_I = {:.4g}, "
+           "tau_S = {:.4g}), the bound is {}; the result depends on the particles' mass, a "
+           "smaller density or shear rate cures it",
+           ratio, *groups.inertial_time, *groups.shear_time, largest_inertia_over_shear);
     }
   }
   if (groups.brownian_time) {
     const double ratio = *groups.inertial_time / *groups.brownian_time;
     if (reaches(ratio, largest_inertia_over_brownian)) {
-      warnings.push_back(
-          {"inertia-thermal",
-           fmt::format("inertia is not small beside Brownian motion: tau_I / tau_B = {:.4g} (tau_I = "
-                       "{:.4g}, tau_B = {:.4g}), the bound is {}; particles coast between collisions, "
-                       "a smaller density or temperature cures it",
-                       ratio, *groups.inertial_time, *groups.brownian_time, largest_inertia_over_brownian)});
+      warn(warnings, "inertia-thermal",
+           "inertia is not small beside Brownian motion: tau_I / tau_B = {:.4g} (tau_I = "
+           "{:.4g}, tau_B = {:.4g}), the bound is {}; particles coast between collisions, "
+           "a smaller density or temperature cures it",
+           ratio, *groups.inertial_time, *groups.brownian_time, largest_inertia_over_brownian);
     }
   }
   warn_of_oscillation(scene, warnings);
@@ -319,38 +307,17 @@ std::vector<Warning> scene_warnings(const Scene& scene) {
   if (scene.method == Method::implicit_steps && scene.timestep &&
       (noise || friction || scene.physics.flow.varies())) {
     if (const double excess = *scene.timestep / automatic_timestep(scene); excess > 1) {
-      warnings.push_back(
-          {"timestep",
-           fmt::format("the step is {:.3g} times the automatic one; with {} nothing else tells its "
-                       "error: see results/speed-accuracy and results/stability",
-                       excess,
-                       noise      ? "noise"
-                       : friction ? "friction"
-                                  : "waves")});
+      warn(warnings, "timestep",
+           "the step is {:.3g} times the automatic one; with {} nothing else tells its "
+           "error: see results/speed-accuracy and results/stability",
+           excess,
+           noise      ? "noise"
+           : friction ? "friction"
+                      : "waves");
     }
   }
   return warnings;
 }
-
-namespace {
-
-// Volume fraction that random packings reach: phi = 0.634 + 0.0658 d + 0.0857 S d^2, d the standard deviation
-// of the radius over its mean and S its skewness (Desmond & Weeks, Phys. Rev. E 90, 022204, 2014).
-double densest_random_packing(const Particles& particles) {
-  const std::vector<std::size_t> number = species_numbers(particles);
-  const auto moment = [&](double centre, int power) {
-    double sum = 0;
-    for (std::size_t s = 0; s < number.size(); ++s) {
-      sum += static_cast<double>(number[s]) * std::pow(particles.species[s].radius - centre, power);
-    }
-    return sum / static_cast<double>(particles.count);
-  };
-  const double mean = moment(0, 1), variance = moment(mean, 2), width = std::sqrt(variance) / mean;
-  const double skewness = variance > 0 ? moment(mean, 3) / std::pow(variance, 1.5) : 0;
-  return 0.634 + 0.0658 * width + 0.0857 * skewness * width * width;
-}
-
-}  // namespace
 
 std::vector<Warning> warnings_before_run(const Scene& scene) {
   // At phi = 0.40 contacts overlap by 0.6, 0.4 and 0.2 % of a radius in the mean at 10^3, 5 10^3 and 2 10^4;
@@ -359,20 +326,19 @@ std::vector<Warning> warnings_before_run(const Scene& scene) {
   std::vector<Warning> warnings;
   if (const double densest = densest_random_packing(scene.particles);
       !scene.start && scene.volume_fraction > densest) {
-    warnings.push_back(
-        {"packing", fmt::format("random packings of these spheres reach a volume fraction of about "
-                                "{:.3f} (Desmond & Weeks 2014); at {:.4g} seeds are likely to end "
-                                "with the cause packing",
-                                densest, scene.volume_fraction)});
+    warn(warnings, "packing",
+         "random packings of these spheres reach a volume fraction of about "
+         "{:.3f} (Desmond & Weeks 2014); at {:.4g} seeds are likely to end "
+         "with the cause packing",
+         densest, scene.volume_fraction);
   }
   if (const std::optional<double> stiffness = derived_groups(scene).relative_stiffness;
       stiffness && *stiffness < stiff) {
-    warnings.push_back(
-        {"soft",
-         fmt::format("spheres are soft: normal_stiffness / (viscosity a rate) = {:.4g}, below {:g} contacts "
-                     "overlap visibly; dense suspensions then end with the cause overlap, others flow as "
-                     "softer ones; a larger normal_stiffness cures it",
-                     *stiffness, stiff)});
+    warn(warnings, "soft",
+         "spheres are soft: normal_stiffness / (viscosity a rate) = {:.4g}, below {:g} contacts "
+         "overlap visibly; dense suspensions then end with the cause overlap, others flow as "
+         "softer ones; a larger normal_stiffness cures it",
+         *stiffness, stiff);
   }
   return warnings;
 }

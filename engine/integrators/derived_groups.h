@@ -1,26 +1,16 @@
 // Time scales and dimensionless groups of a scene, and what they warn of.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "contract/json.h"
 #include "engine/scene/scene.h"
 
 namespace peclet::engine {
-
-// Of a mixture with whole numbers of spheres.
-struct MixtureGroups {
-  double volume_fraction = 0;      // as asked for, which the box meets
-  double alpha = 0;                // volume of the grains over that of all spheres
-  double largest_share_error = 0;  // of a species' share of the volume, relative to the wanted one
-  std::optional<double> peclet_mean, peclet_grains;  // with the a_cg and a_g of Mixture
-};
-
-// Of all spheres by number: mean and standard deviation over mean of their radii.
-struct SizeMoments {
-  double mean_radius = 0, relative_width = 0;
-};
 
 // Dimensionless groups and time scales, a = reference_radius: tau_C = sqrt(rho a^3 / k_n), tau_I = rho a^2 /
 // eta, tau_B = eta a^3 / kT, tau_S = 1 / rate, Pe = 6 pi eta a^3 rate / kT, St = tau_I / tau_S, k_hat = k_n /
@@ -32,8 +22,13 @@ struct DerivedGroups {
   std::optional<double> contact_time, inertial_time, brownian_time, shear_time;
   std::optional<double> flow_over_rest;
   std::optional<double> largest_stokes, largest_inertia_over_brownian;
-  std::optional<MixtureGroups> mixture;
-  std::optional<SizeMoments> sizes;  // where sizes come from a distribution
+  // Of a mixture with whole numbers of spheres: the volume fraction as asked for, which the box meets; the
+  // volume of the grains over that of all spheres; the largest error of a species' share of the volume,
+  // relative to the wanted one; Peclet numbers with the a_cg and a_g of Mixture.
+  std::optional<double> volume_fraction, alpha, largest_share_error, peclet_mean, peclet_grains;
+  // Where sizes come from a distribution: mean, and standard deviation over mean, of the radii of all
+  // spheres.
+  std::optional<double> mean_radius, relative_width;
 };
 
 // Nearly at rest, below Pe = 0.1: the processor time of a mean in the flow over that of the same relative
@@ -50,11 +45,20 @@ inline constexpr double nearly_at_rest = 0.1;
 // window outlasts the patience of the flow.
 bool notices_jams(const Scene& scene);
 
+inline Json or_null(const std::optional<double>& number) { return number ? Json(*number) : Json(); }
+
 DerivedGroups derived_groups(const Scene& scene);
 Json to_json(const DerivedGroups& groups);
 // What people call each member of to_json(), in the order in which they look for them: a list of objects with
 // name, symbol and unit, of some with words.
 Json names_of_groups();
+
+// Adds a warning, whose message is a format with its arguments.
+template <class... Arguments>
+void warn(std::vector<Warning>& warnings, const char* code, fmt::format_string<Arguments...> message,
+          Arguments&&... arguments) {
+  warnings.push_back({code, fmt::format(message, std::forward<Arguments>(arguments)...)});
+}
 
 // What the author should know before anything runs: inertia that is not small, a step beyond the automatic
 // one, a window in which no jam is noticed.

@@ -65,8 +65,8 @@ StepReport joined(const StepReport& first, const StepReport& second) {
 Implicit::Implicit(const Physics& physics, const ParticleState& particles, double timestep, double tolerance,
                    std::uint64_t seed, int threads, InstructionSet set, double drag_share,
                    StepResistance::Part part)
-    : timestep_(timestep),
-      field_(without_noise(physics), particles, timestep, seed, threads, set, 0, part),
+    : Integrator(ForceField(without_noise(physics), particles, timestep, seed, threads, set, 0, part),
+                 timestep),
       solver_(physics, particles, timestep, tolerance, threads, set, drag_share),
       loads_(particles.count(), threads),
       physics_(physics),
@@ -81,16 +81,6 @@ void Implicit::divide_steps(double longest_way) {
 // A comparison with half steps costs as much as three steps or a little more.
 Integrator::Intervals Implicit::intervals() const {
   return {.sampling = 4, .energy = 500, .stability = 5000, .comparison = 100, .compared_steps = 1};
-}
-
-void Implicit::start(System& system) {
-  const SpringKinds kinds = spring_kinds(field_.terms());
-  if (system.springs.kinds() != kinds) {
-    system.springs = SpringField(kinds, system.list.pairs().size());
-  }
-  system.clock.count_in(timestep_);
-  rebuild_neighbours(system, field_.threads());
-  displacement_bound_ = 0;
 }
 
 StepReport Implicit::advance_open(System& system) {
@@ -114,8 +104,7 @@ StepReport Implicit::advance_part(System& system) {
   if (!found && !list_is_new) {
     // Once more from the origin, with a new list.
     return_to_origin(system);
-    rebuild_neighbours(system, field_.threads());
-    displacement_bound_ = 0;
+    rebuild_list(system);
     origin_.mark(system, field_.threads());
     found = find_velocities(system);
   }
@@ -196,8 +185,7 @@ void Implicit::follow_list(System& system, double way) {
   if (displacement_bound_ + next >= allowed) {
     displacement_bound_ = system.list.largest_displacement(system.particles, system.box, field_.threads());
     if (displacement_bound_ + next >= allowed) {
-      rebuild_neighbours(system, field_.threads());
-      displacement_bound_ = 0;
+      rebuild_list(system);
     }
   }
 }
@@ -224,10 +212,8 @@ bool Implicit::move_half_a_step(System& system) {
 // To where the present velocities lead from the origin in that time.
 void Implicit::move(System& system, double time) {
   ParticleState& particles = system.particles;
-  for_each_range(particles.count(), field_.threads(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      particles.position.row(i) = origin_.position().row(i) + time * particles.velocity.row(i);
-    }
+  for_each_index(particles.count(), field_.threads(), [&](std::size_t i) {
+    particles.position.row(i) = origin_.position().row(i) + time * particles.velocity.row(i);
   });
   system.box.deform(physics_.flow.deformation().displacement_gradient(system.clock.time() + time));
 }
@@ -240,10 +226,8 @@ double Implicit::displacement(const System& system) const {
       gradient == simple_shear(gradient.column[1].x) ? largest_square<true> : largest_square<false>;
   const std::vector<ParticleBlock>& blocks = system.list.blocks();
   std::vector<double> squared(blocks.size());
-  for_each_range(blocks.size(), field_.threads(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) {
-      squared[b] = largest(gradient, origin_.position(), system.particles.velocity, blocks[b]);
-    }
+  for_each_index(blocks.size(), field_.threads(), [&](std::size_t b) {
+    squared[b] = largest(gradient, origin_.position(), system.particles.velocity, blocks[b]);
   });
   // NaN is larger than any.
   const auto is_less = [](double a, double b) { return !std::isnan(a) && !(a >= b); };
@@ -276,22 +260,6 @@ std::unique_ptr<Implicit> Implicit::with_timestep(double timestep, const Particl
   other->longest_way_ = longest_way_;
   other->divisions_left_ = divisions_left_;
   return other;
-}
-
-void Implicit::mark(const System& system) {
-  mark_.mark_with_list(system, field_.threads());
-  marked_bound_ = displacement_bound_;
-}
-
-void Implicit::return_to_mark(System& system) {
-  mark_.return_to(system, field_.threads());
-  displacement_bound_ = marked_bound_;
-}
-
-void Implicit::save(ArchiveWriter& archive) const { archive.put(displacement_bound_); }
-
-void Implicit::load(const System& /*system*/, ArchiveReader& archive) {
-  displacement_bound_ = archive.get<double>();
 }
 
 std::unique_ptr<Implicit> implicit_steps(const Physics& physics, const ParticleState& particles,

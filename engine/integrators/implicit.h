@@ -18,18 +18,12 @@ namespace peclet::engine {
 
 class Implicit : public Integrator {
  public:
-  double timestep() const final { return timestep_; }
   Intervals intervals() const final;
-  void start(System& system) final;
   StepReport advance_open(System& system) final;
   void complete(System& /*system*/) final {}
   double stability_share(const System& /*system*/) const final { return 0; }
   std::optional<double> spurious_energy(const System& /*system*/) const final { return std::nullopt; }
   HalfSteps compare_half_steps(const System& system, int steps) const final;
-  void mark(const System& system) override;
-  void return_to_mark(System& system) override;
-  void save(ArchiveWriter& archive) const override;
-  void load(const System& system, ArchiveReader& archive) override;
 
   // From now on steps are divided, into parts of 2^-deepest_division of them at the least, in which a
   // particle would move farther than this relative to the flow. Before, none is.
@@ -37,6 +31,7 @@ class Implicit : public Integrator {
   static constexpr int deepest_division = 10;
 
  protected:
+  // The forces are without noise, at the distances as they are, with that part of the resistance.
   Implicit(const Physics& physics, const ParticleState& particles, double timestep, double tolerance,
            std::uint64_t seed, int threads, InstructionSet set, double drag_share = 1,
            StepResistance::Part part = StepResistance::Part::whole);
@@ -54,8 +49,6 @@ class Implicit : public Integrator {
   // To where the present velocities lead. Returns whether the list holds there.
   bool move_half_a_step(System& system);
 
-  double timestep_;
-  ForceField field_;  // without noise, at the distances as they are, with that part of the resistance
   VelocitySolver solver_;
   StepOrigin origin_;  // once velocities have gained what the flow gains in half a step
   Loads loads_;
@@ -74,9 +67,6 @@ class Implicit : public Integrator {
   Physics physics_;
   std::uint64_t seed_;
   InstructionSet set_;
-  double displacement_bound_ = 0;  // of all particles since the list was built
-  StepOrigin mark_;
-  double marked_bound_ = 0;
   double longest_way_ = 0;
   int divisions_left_ = 0;
   std::unique_ptr<Implicit> half_;  // makes the halves of a step; nothing in it outlives a step

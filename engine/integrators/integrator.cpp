@@ -15,11 +15,9 @@ void follow_flow(System& system, const Matrix3& gradient, double time, int threa
   const Matrix3 gain = change + time * (gradient * gradient);
   const Vector3 spin = spin_of(change);
   ParticleState& particles = system.particles;
-  for_each_range(particles.count(), threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      particles.velocity.add(i, gain * particles.position[i]);
-      particles.angular_velocity.add(i, spin);
-    }
+  for_each_index(particles.count(), threads, [&](std::size_t i) {
+    particles.velocity.add(i, gain * particles.position[i]);
+    particles.angular_velocity.add(i, spin);
   });
   system.box.set_velocity_gradient(gradient);
 }
@@ -28,12 +26,10 @@ namespace {
 
 // Springs, cell and clock, and the rows of places and motion.
 void copy_state(const System& from, System& to, int threads) {
-  for_each_range(from.particles.position.size(), threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      to.particles.position.row(i) = from.particles.position.row(i);
-      to.particles.velocity.row(i) = from.particles.velocity.row(i);
-      to.particles.angular_velocity.row(i) = from.particles.angular_velocity.row(i);
-    }
+  for_each_index(from.particles.position.size(), threads, [&](std::size_t i) {
+    to.particles.position.row(i) = from.particles.position.row(i);
+    to.particles.velocity.row(i) = from.particles.velocity.row(i);
+    to.particles.angular_velocity.row(i) = from.particles.angular_velocity.row(i);
   });
   to.springs = from.springs;
   to.box = from.box;
@@ -69,6 +65,30 @@ void StepOrigin::return_to(System& system, int threads) const {
     system.list = marked_.list;
   }
   copy_state(marked_, system, threads);
+}
+
+void Integrator::start(System& system) {
+  const SpringKinds kinds = spring_kinds(field_.terms());
+  if (system.springs.kinds() != kinds) {
+    system.springs = SpringField(kinds, system.list.pairs().size());
+  }
+  system.clock.count_in(timestep_);
+  rebuild_list(system);
+}
+
+void Integrator::rebuild_list(System& system) {
+  rebuild_neighbours(system, field_.threads());
+  displacement_bound_ = 0;
+}
+
+void Integrator::mark(const System& system) {
+  mark_.mark_with_list(system, field_.threads());
+  marked_bound_ = displacement_bound_;
+}
+
+void Integrator::return_to_mark(System& system) {
+  mark_.return_to(system, field_.threads());
+  displacement_bound_ = marked_bound_;
 }
 
 }  // namespace peclet::engine

@@ -3,8 +3,7 @@
 
 #include <optional>
 
-#include "engine/kernels/pair_pass.h"
-#include "engine/state/system.h"
+#include "engine/kernels/force_field.h"
 
 namespace peclet::engine {
 
@@ -22,13 +21,34 @@ struct StepReport {
   bool broke_off = false;  // the step was not made: not even its smallest part has velocities
 };
 
+// The state that a step starts from, and the way back to it.
+class StepOrigin {
+ public:
+  // Copies what every step changes: places, motion, springs, cell and clock. The way back leads to them as
+  // long as the list of neighbours is the same.
+  void mark(const System& system, int threads);
+  // Copies the list as well, if it has been rebuilt since it was last copied. The way back then leads across
+  // rebuilds.
+  void mark_with_list(const System& system, int threads);
+  // Makes the system what it was at the mark, bit by bit. Requires a mark.
+  void return_to(System& system, int threads) const;
+
+  const VectorField& position() const { return marked_.particles.position; }
+  const VectorField& velocity() const { return marked_.particles.velocity; }
+  const VectorField& spin() const { return marked_.particles.angular_velocity; }
+  const SpringField& springs() const { return marked_.springs; }
+
+ private:
+  System marked_;
+};
+
 // Owns the forces between steps; the system belongs to the caller. After start() or load(), each advance()
 // takes the system from one step to the next: positions, velocities, springs, box, list and step counter.
 class Integrator {
  public:
   virtual ~Integrator() = default;
 
-  virtual double timestep() const = 0;
+  double timestep() const { return timestep_; }
 
   // Steps between looks at what is not accumulated at every step: seldom enough to cost little of a run.
   struct Intervals {
@@ -46,7 +66,8 @@ class Integrator {
     weight_ = weight;
   }
 
-  virtual void start(System& system) = 0;
+  // Begins with this system: its springs, its clock and a new list.
+  virtual void start(System& system);
   StepReport advance(System& system) {
     const StepReport report = advance_open(system);
     complete(system);
@@ -75,19 +96,30 @@ class Integrator {
 
   // Marks the state before a step, to which return_to_mark() leads back any number of times. Requires a
   // complete step.
-  virtual void mark(const System& system) = 0;
-  virtual void return_to_mark(System& system) = 0;
+  virtual void mark(const System& system);
+  virtual void return_to_mark(System& system);
 
   // What the integrator keeps between steps besides the system.
-  virtual void save(ArchiveWriter& archive) const = 0;
-  virtual void load(const System& system, ArchiveReader& archive) = 0;
+  virtual void save(ArchiveWriter& archive) const { archive.put(displacement_bound_); }
+  virtual void load(ArchiveReader& archive) { archive.get_all(displacement_bound_); }
 
  protected:
+  Integrator(ForceField field, double timestep) : field_(std::move(field)), timestep_(timestep) {}
+
+  void rebuild_list(System& system);
   bool watches_motion() const { return watches_motion_; }
   PairWatcher* watcher() const { return watcher_; }
   double weight() const { return weight_; }
 
+  ForceField field_;
+  double timestep_;
+  // An upper bound of the displacements since the list was built. A step raises it by its largest one; the
+  // true value replaces it only when it reaches what the list allows.
+  double displacement_bound_ = 0;
+
  private:
+  StepOrigin mark_;
+  double marked_bound_ = 0;
   bool watches_motion_ = false;
   PairWatcher* watcher_ = nullptr;
   double weight_ = 1;
@@ -107,26 +139,5 @@ bool keeps_flow(const System& system, const Matrix3& gradient);
 // Gives the cell this velocity gradient, and to velocities and spins what the flow has gained: by the change
 // of the gradient, and by `time` in it.
 void follow_flow(System& system, const Matrix3& gradient, double time, int threads);
-
-// The state that a step starts from, and the way back to it.
-class StepOrigin {
- public:
-  // Copies what every step changes: places, motion, springs, cell and clock. The way back leads to them as
-  // long as the list of neighbours is the same.
-  void mark(const System& system, int threads);
-  // Copies the list as well, if it has been rebuilt since it was last copied. The way back then leads across
-  // rebuilds.
-  void mark_with_list(const System& system, int threads);
-  // Makes the system what it was at the mark, bit by bit. Requires a mark.
-  void return_to(System& system, int threads) const;
-
-  const VectorField& position() const { return marked_.particles.position; }
-  const VectorField& velocity() const { return marked_.particles.velocity; }
-  const VectorField& spin() const { return marked_.particles.angular_velocity; }
-  const SpringField& springs() const { return marked_.springs; }
-
- private:
-  System marked_;
-};
 
 }  // namespace peclet::engine

@@ -44,11 +44,9 @@ Midpoint::Midpoint(const Physics& physics, const ParticleState& particles, doubl
 
 std::optional<StepReport> Midpoint::find_velocities(System& system) {
   ParticleState& particles = system.particles;
-  for_each_range(particles.count(), field_.threads(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      particles.velocity.row(i) += velocity_change_.row(particles.id[i]);
-      particles.angular_velocity.row(i) += spin_change_.row(particles.id[i]);
-    }
+  for_each_index(particles.count(), field_.threads(), [&](std::size_t i) {
+    particles.velocity.row(i) += velocity_change_.row(particles.id[i]);
+    particles.angular_velocity.row(i) += spin_change_.row(particles.id[i]);
   });
   const Iterations& iterations = system.springs.kinds() == SpringKinds::none ? without_springs : with_springs;
   StepReport report;
@@ -97,11 +95,9 @@ SymmetricTensor Midpoint::stress_of_motion(const System& system) const {
 
 void Midpoint::keep_change(const System& system) {
   const ParticleState& particles = system.particles;
-  for_each_range(particles.count(), field_.threads(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      velocity_change_.row(particles.id[i]) = particles.velocity.row(i) - origin_.velocity().row(i);
-      spin_change_.row(particles.id[i]) = particles.angular_velocity.row(i) - origin_.spin().row(i);
-    }
+  for_each_index(particles.count(), field_.threads(), [&](std::size_t i) {
+    velocity_change_.row(particles.id[i]) = particles.velocity.row(i) - origin_.velocity().row(i);
+    spin_change_.row(particles.id[i]) = particles.angular_velocity.row(i) - origin_.spin().row(i);
   });
 }
 
@@ -123,15 +119,13 @@ void Midpoint::return_to_mark(System& system) {
 }
 
 void Midpoint::save(ArchiveWriter& archive) const {
-  archive.put(velocity_change_);
-  archive.put(spin_change_);
+  archive.put_all(velocity_change_, spin_change_);
   Implicit::save(archive);
 }
 
-void Midpoint::load(const System& system, ArchiveReader& archive) {
-  velocity_change_ = archive.get_field(system.particles.count());
-  spin_change_ = archive.get_field(system.particles.count());
-  Implicit::load(system, archive);
+void Midpoint::load(ArchiveReader& archive) {
+  archive.get_all(velocity_change_, spin_change_);
+  Implicit::load(archive);
 }
 
 }  // namespace peclet::engine

@@ -22,7 +22,7 @@ class Midpoint final : public Implicit {
   void mark(const System& system) override;
   void return_to_mark(System& system) override;
   void save(ArchiveWriter& archive) const override;
-  void load(const System& system, ArchiveReader& archive) override;
+  void load(ArchiveReader& archive) override;
 
  private:
   std::optional<StepReport> find_velocities(System& system) override;

@@ -1,8 +1,5 @@
 #include "engine/integrators/noisy_midpoint.h"
 
-#include <algorithm>
-
-#include "engine/integrators/acted_stress.h"
 #include "engine/state/threads.h"
 #include "engine/terms/drag.h"
 #include "engine/terms/lubrication.h"
@@ -127,14 +124,12 @@ SymmetricTensor NoisyMidpoint::motion(const System& system, std::size_t i) const
 void NoisyMidpoint::leave_half_of_the_drag(const System& system) {
   const ParticleState& particles = system.particles;
   const double viscosity = field_.physics().viscosity;
-  for_each_range(particles.count(), field_.threads(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const double radius = particles.radius[i];
-      const double half = 0.5 * translational_drag(viscosity, radius);
-      const double half_turning = 0.5 * rotational_drag(viscosity, radius);
-      loads_.force.row(i) += half * (particles.velocity.row(i) - origin_.velocity().row(i));
-      loads_.torque.row(i) += half_turning * (particles.angular_velocity.row(i) - origin_.spin().row(i));
-    }
+  for_each_index(particles.count(), field_.threads(), [&](std::size_t i) {
+    const double radius = particles.radius[i];
+    const double half = 0.5 * translational_drag(viscosity, radius);
+    const double half_turning = 0.5 * rotational_drag(viscosity, radius);
+    loads_.force.row(i) += half * (particles.velocity.row(i) - origin_.velocity().row(i));
+    loads_.torque.row(i) += half_turning * (particles.angular_velocity.row(i) - origin_.spin().row(i));
   });
 }
 

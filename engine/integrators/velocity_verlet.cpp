@@ -7,7 +7,6 @@
 #include <tuple>
 
 #include "engine/integrators/acted_stress.h"
-#include "engine/integrators/integrator.h"
 #include "engine/integrators/spectral_bound.h"
 #include "engine/integrators/spurious_energy.h"
 #include "engine/state/threads.h"
@@ -26,8 +25,7 @@ double largest(const Speeds& speeds) {
 }  // namespace
 
 VelocityVerlet::VelocityVerlet(ForceField field, const ParticleState& particles, double timestep)
-    : field_(std::move(field)),
-      timestep_(timestep),
+    : Integrator(std::move(field), timestep),
       force_(particles.count(), field_.threads()),
       torque_(particles.count(), field_.threads()) {
   kicks_.resize(distinct_radii(particles.radius).size());
@@ -43,13 +41,7 @@ Integrator::Intervals VelocityVerlet::intervals() const {
 }
 
 void VelocityVerlet::start(System& system) {
-  const SpringKinds kinds = spring_kinds(field_.terms());
-  if (system.springs.kinds() != kinds) {
-    system.springs = SpringField(kinds, system.list.pairs().size());
-  }
-  system.clock.count_in(timestep_);
-  rebuild_neighbours(system, field_.threads());
-  displacement_bound_ = 0;
+  Integrator::start(system);
   field_.evaluate(system, force_, torque_);
   open_ = false;
 }
@@ -161,11 +153,9 @@ void VelocityVerlet::complete(System& system) {
   }
   const OneBodyInput input = kick_input(system);
   const std::vector<ParticleBlock>& blocks = system.list.blocks();
-  for_each_range(blocks.size(), field_.threads(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) {
-      field_.add_incoming(system, blocks[b], force_, torque_);
-      field_.one_body().kick(input, blocks[b].begin, blocks[b].end);
-    }
+  for_each_index(blocks.size(), field_.threads(), [&](std::size_t b) {
+    field_.add_incoming(system, blocks[b], force_, torque_);
+    field_.one_body().kick(input, blocks[b].begin, blocks[b].end);
   });
   open_ = false;
 }
@@ -220,23 +210,20 @@ bool VelocityVerlet::keep_list(System& system, double speed) {
   if (displacement_bound_ < allowed) {
     return false;
   }
-  rebuild_neighbours(system, field_.threads());
-  displacement_bound_ = 0;
+  rebuild_list(system);
   return true;
 }
 
 void VelocityVerlet::mark(const System& system) {
-  mark_.mark_with_list(system, field_.threads());
+  Integrator::mark(system);
   marked_force_ = force_;
   marked_torque_ = torque_;
-  marked_bound_ = displacement_bound_;
 }
 
 void VelocityVerlet::return_to_mark(System& system) {
-  mark_.return_to(system, field_.threads());
+  Integrator::return_to_mark(system);
   force_ = marked_force_;
   torque_ = marked_torque_;
-  displacement_bound_ = marked_bound_;
   open_ = false;
 }
 
@@ -244,15 +231,13 @@ void VelocityVerlet::save(ArchiveWriter& archive) const {
   if (open_) {
     throw std::logic_error("a step must be complete to be saved");
   }
-  archive.put(force_);
-  archive.put(torque_);
-  archive.put(displacement_bound_);
+  archive.put_all(force_, torque_);
+  Integrator::save(archive);
 }
 
-void VelocityVerlet::load(const System& system, ArchiveReader& archive) {
-  force_ = archive.get_field(system.particles.count());
-  torque_ = archive.get_field(system.particles.count());
-  displacement_bound_ = archive.get<double>();
+void VelocityVerlet::load(ArchiveReader& archive) {
+  archive.get_all(force_, torque_);
+  Integrator::load(archive);
   open_ = false;
 }
 

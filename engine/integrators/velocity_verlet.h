@@ -18,7 +18,6 @@ class VelocityVerlet final : public Integrator {
  public:
   VelocityVerlet(ForceField field, const ParticleState& particles, double timestep);
 
-  double timestep() const override { return timestep_; }
   Intervals intervals() const override;
   void start(System& system) override;
   StepReport advance_open(System& system) override;
@@ -29,7 +28,7 @@ class VelocityVerlet final : public Integrator {
   void mark(const System& system) override;
   void return_to_mark(System& system) override;
   void save(ArchiveWriter& archive) const override;
-  void load(const System& system, ArchiveReader& archive) override;
+  void load(ArchiveReader& archive) override;
 
  private:
   SymmetricTensor motion(const System& system, std::size_t particle) const;
@@ -39,18 +38,10 @@ class VelocityVerlet final : public Integrator {
   OneBodyInput kick_input(System& system);
   bool keep_list(System& system, double speed);
 
-  ForceField field_;
-  double timestep_;
   std::vector<OneBodyFactors> kicks_;  // half a step over mass and moment of inertia of each size class
   VectorField force_, torque_;
   bool open_ = false;  // the second kick of the last step is due, and so are its incoming forces
-  // An upper bound of the displacements since the list was built, raised by every step's largest one and
-  // replaced by the true value only when it reaches what the list allows.
-  double displacement_bound_ = 0;
-
-  StepOrigin mark_;
   VectorField marked_force_, marked_torque_;
-  double marked_bound_ = 0;
 };
 
 }  // namespace peclet::engine

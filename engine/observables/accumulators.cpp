@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <functional>
 #include <numeric>
-#include <string>
 
 namespace peclet::engine {
 

@@ -11,7 +11,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "contract/json.h"
@@ -20,10 +19,9 @@
 
 namespace peclet::engine {
 
-// A mean over the production window and over its blocks.
-//
-// Values are sums over weights. A number keeps its 32 blocks, lists of up to 64 elements the four quarters of
-// the window (which is what the test for transients compares), longer ones the window alone.
+// Means over the production window and over its blocks. Values are sums over weights. A number keeps its 32
+// blocks, lists of up to 64 elements the four quarters of the window (which is what the test for transients
+// compares), longer ones the window alone.
 constexpr std::size_t count_of_blocks = 32;
 constexpr std::size_t count_of_quarters = 4;
 constexpr std::size_t most_elements_with_blocks = 64;

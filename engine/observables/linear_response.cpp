@@ -165,14 +165,14 @@ class LinearResponse : public Observable {
   // B(t).
   Curve moments() const {
     Curve curve;
-    for (const SquaredSums::Value& value : sums_[0].values()) {
-      curve.time.push_back(lag_time(value.length, timestep_));
+    for (const LagMean& value : sums_[0].values()) {
+      curve.time.push_back(lag_time(value.lag, timestep_));
     }
     curve.value.assign(curve.time.size(), 0);
     for (const SquaredSums& sums : sums_) {
-      const std::vector<SquaredSums::Value> values = sums.values();
+      const std::vector<LagMean> values = sums.values();
       for (std::size_t k = 0; k < values.size(); ++k) {
-        curve.value[k] += 0.5 * factor_ / components * values[k].mean_square;
+        curve.value[k] += 0.5 * factor_ / components * values[k].mean;
       }
     }
     return curve;
@@ -235,16 +235,13 @@ class LinearResponse : public Observable {
 
   Correlation correlation() const {
     Correlation curves;
-    std::vector<MultipleTau::Value> mean = correlators_[0].values();
-    for (std::size_t c = 1; c < components; ++c) {
-      const std::vector<MultipleTau::Value> own = correlators_[c].values();
-      for (std::size_t k = 0; k < mean.size(); ++k) mean[k].correlation += own[k].correlation;
-    }
+    constexpr std::array<double, components> alike = {1, 1, 1, 1, 1};
+    const std::vector<LagMean> mean = weighted_sum(correlators_, alike);
     // The part that acts at once, and half of the first step: trapezia leave out half of their last step.
     const double at_once = 0.5 * timestep_ * factor_ * squares_ / static_cast<double>(components * taken_);
     double integral = 0, before = 0, last = 0;
     for (std::size_t k = 0; k < mean.size(); ++k) {
-      const double value = factor_ / components * mean[k].correlation;
+      const double value = factor_ / components * mean[k].mean;
       const double now = lag_time(mean[k].lag + 1, timestep_);
       integral += k == 0 ? 0.5 * timestep_ * value : 0.5 * (now - before) * (value + last);
       before = now;
@@ -269,7 +266,7 @@ class LinearResponse : public Observable {
 MakeFromPlan read_response(const SceneDocument& document, const Scene& scene) {
   require_rest(document, scene, "linear_response");
   if (const std::string reason = lacking_equilibrium(scene.physics); !reason.empty()) {
-    document.refuse("/observables", "must not list linear_response with " + reason);
+    document.refuse("/observables", "must not list linear_response with {}", reason);
   }
   return maker<LinearResponse>();
 }

@@ -3,15 +3,45 @@
 #include <algorithm>
 
 namespace peclet::engine {
+namespace {
+
+// Lags of a level are multiples of its spacing. The first level begins at `least` of them, later ones where
+// the level before them ends.
+std::size_t first_lag(std::size_t level, std::size_t least) { return level == 0 ? least : LagSums::kept / 2; }
+
+template <class Level>
+std::vector<LagMean> means_of(const std::vector<Level>& levels, LagSums Level::*sums, std::size_t least) {
+  std::vector<LagMean> means;
+  for (std::size_t l = 0; l < levels.size(); ++l) {
+    const LagSums& own = levels[l].*sums;
+    for (std::size_t k = first_lag(l, least); k < LagSums::kept; ++k) {
+      if (own.count[k] > 0) {
+        means.push_back({std::uint64_t{k} << l, own.sum[k] / static_cast<double>(own.count[k])});
+      }
+    }
+  }
+  return means;
+}
+
+// Returns the lags that so many samples meet.
+std::vector<std::uint64_t> lags_of(std::size_t levels, std::uint64_t samples, std::size_t least) {
+  std::vector<std::uint64_t> lags;
+  for (std::size_t l = 0; l < levels; ++l) {
+    const std::uint64_t end = std::min<std::uint64_t>(LagSums::kept, (samples >> l) + least);
+    for (std::size_t k = first_lag(l, least); k < end; ++k) lags.push_back(std::uint64_t{k} << l);
+  }
+  return lags;
+}
+
+}  // namespace
 
 void MultipleTau::add(double value, double partner) {
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     Level& level = levels_[l];
     level.last[level.pushed % kept] = partner;
     ++level.pushed;
-    for (std::size_t k = first_lag(l); k < kept && k < level.pushed; ++k) {
-      level.products[k] += value * level.last[(level.pushed - 1 - k) % kept];
-      ++level.count[k];
+    for (std::size_t k = first_lag(l, 0); k < kept && k < level.pushed; ++k) {
+      level.products.add(k, value * level.last[(level.pushed - 1 - k) % kept]);
     }
     level.sum += value;
     level.partner_sum += partner;
@@ -22,27 +52,21 @@ void MultipleTau::add(double value, double partner) {
   }
 }
 
-std::vector<MultipleTau::Value> MultipleTau::values() const {
-  std::vector<Value> values;
-  for (std::size_t l = 0; l < levels_.size(); ++l) {
-    for (std::size_t k = first_lag(l); k < kept; ++k) {
-      const Level& level = levels_[l];
-      if (level.count[k] == 0) continue;
-      values.push_back({std::uint64_t{k} << l, level.products[k] / static_cast<double>(level.count[k])});
-    }
-  }
-  return values;
-}
+std::vector<LagMean> MultipleTau::values() const { return means_of(levels_, &Level::products, 0); }
 
 std::vector<std::uint64_t> MultipleTau::lags(std::size_t levels, std::uint64_t samples) {
-  std::vector<std::uint64_t> lags;
-  for (std::size_t l = 0; l < levels; ++l) {
-    const std::uint64_t pushed = samples >> l;  // block is 2
-    for (std::size_t k = first_lag(l); k < std::min<std::uint64_t>(kept, pushed); ++k) {
-      lags.push_back(std::uint64_t{k} << l);
-    }
+  return lags_of(levels, samples, 0);
+}
+
+std::vector<LagMean> weighted_sum(const std::vector<MultipleTau>& correlators,
+                                  std::span<const double> weights) {
+  std::vector<LagMean> sum = correlators[0].values();
+  for (LagMean& value : sum) value.mean *= weights[0];
+  for (std::size_t c = 1; c < correlators.size(); ++c) {
+    const std::vector<LagMean> own = correlators[c].values();
+    for (std::size_t k = 0; k < sum.size(); ++k) sum[k].mean += weights[c] * own[k].mean;
   }
-  return lags;
+  return sum;
 }
 
 void SquaredSums::add(double value) {
@@ -51,35 +75,18 @@ void SquaredSums::add(double value) {
   for (std::size_t l = 0; l < levels_.size() && entries_ % (std::uint64_t{1} << l) == 0; ++l) {
     Level& level = levels_[l];
     const std::uint64_t now = entries_ >> l;
-    for (std::size_t m = first_length(l); m < kept && m <= now; ++m) {
+    for (std::size_t m = first_lag(l, 1); m < kept && m <= now; ++m) {
       const double over_window = sum_ - level.last[(now - m) % kept];
-      level.squares[m] += over_window * over_window;
-      ++level.count[m];
+      level.squares.add(m, over_window * over_window);
     }
     level.last[now % kept] = sum_;
   }
 }
 
-std::vector<SquaredSums::Value> SquaredSums::values() const {
-  std::vector<Value> values;
-  for (std::size_t l = 0; l < levels_.size(); ++l) {
-    for (std::size_t m = first_length(l); m < kept; ++m) {
-      const Level& level = levels_[l];
-      if (level.count[m] == 0) continue;
-      values.push_back({std::uint64_t{m} << l, level.squares[m] / static_cast<double>(level.count[m])});
-    }
-  }
-  return values;
-}
+std::vector<LagMean> SquaredSums::values() const { return means_of(levels_, &Level::squares, 1); }
 
 std::vector<std::uint64_t> SquaredSums::lengths(std::size_t levels, std::uint64_t entries) {
-  std::vector<std::uint64_t> lengths;
-  for (std::size_t l = 0; l < levels; ++l) {
-    for (std::size_t m = first_length(l); m <= std::min<std::uint64_t>(kept - 1, entries >> l); ++m) {
-      lengths.push_back(std::uint64_t{m} << l);
-    }
-  }
-  return lengths;
+  return lags_of(levels, entries, 1);
 }
 
 }  // namespace peclet::engine

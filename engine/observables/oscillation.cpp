@@ -108,7 +108,7 @@ ObservableKind oscillation() {
           .numbers = names,
           .read = [](const SceneDocument& document, const Scene& scene) {
             if (!scene.physics.flow.period()) {
-              document.refuse("/observables", "must not list oscillation without " + flows_with("cycles"));
+              document.refuse("/observables", "must not list oscillation without {}", flows_with("cycles"));
             }
             require_stress_of_forces(document, scene, "oscillation");
             return maker<Oscillation>();

@@ -188,8 +188,8 @@ MakeFromPlan read_distribution(const SceneDocument& document, const Scene&) {
   const double bins = settings.range / settings.bin;
   if (std::abs(bins - std::round(bins)) > 1e-9 * bins || bins < 1 || bins > most_bins) {
     document.refuse("/pair_distribution/bin",
-                    fmt::format("must divide /pair_distribution/range, which is {}, into 1 to {} equal parts",
-                                shortened(document.at("/pair_distribution/range")), most_bins));
+                    "must divide /pair_distribution/range, which is {}, into 1 to {} equal parts",
+                    shortened(document.at("/pair_distribution/range")), most_bins);
   }
   return maker<PairDistribution>(settings);
 }

@@ -1,6 +1,5 @@
 #include "engine/observables/production.h"
 
-#include <algorithm>
 #include <numeric>
 
 namespace peclet::engine {

@@ -65,17 +65,11 @@ class StressCorrelation : public Observable {
   };
 
   Curves curves() const {
-    std::vector<MultipleTau::Value> sum = correlators_[0].values();
-    for (MultipleTau::Value& value : sum) value.correlation *= weights[0];
-    for (std::size_t c = 1; c < correlators_.size(); ++c) {
-      const std::vector<MultipleTau::Value> own = correlators_[c].values();
-      for (std::size_t k = 0; k < sum.size(); ++k) sum[k].correlation += weights[c] * own[k].correlation;
-    }
     Curves curves;
     double before = 0, modulus_before = 0, integral = 0;
-    for (const MultipleTau::Value& value : sum) {
+    for (const LagMean& value : weighted_sum(correlators_, weights)) {
       const double now = time_ * static_cast<double>(value.lag);
-      const double g = volume_ / thermal_energy_ * value.correlation;
+      const double g = volume_ / thermal_energy_ * value.mean;
       integral += 0.5 * (now - before) * (g + modulus_before);
       before = now;
       modulus_before = g;

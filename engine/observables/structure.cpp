@@ -1,7 +1,6 @@
 #include "engine/observables/structure.h"
 
 #include "engine/flow/deformation.h"
-#include "engine/kernels/pair_access.h"
 #include "engine/terms/drag.h"
 
 namespace peclet::engine {

@@ -13,8 +13,6 @@
 
 namespace peclet::engine {
 
-// The pairs of a configuration within a distance, whatever the range of their forces is.
-//
 // Calls visit(i, j, separation) for every sphere i and each image of another sphere j that is closer than
 // `range`, and for some that are further away: every pair from both ends. `separation` leads from i to j. The
 // order depends on the configuration alone.
@@ -32,8 +30,6 @@ void for_each_near_pair(const System& system, double range, const Visit& visit) 
   }
 }
 
-// The pairs of a configuration that touch, and what their springs do.
-//
 // A spring that is cut at each step is as long as it may be but for what the step itself changes.
 constexpr double sliding_from = 0.99;
 
@@ -74,8 +70,6 @@ void for_each_touching_pair(const System& system, const std::vector<PairKind>& k
   }
 }
 
-// What a configuration shows by itself; sampled, not accumulated at every step.
-//
 // Sigma^B = -(kT / V) sum_i (a_i / Delta_i) sum_{j: h < Delta_i} n n with Delta_i = 0.05 a_i: every pair is
 // seen from both sides, overlapping ones included. Li, Royer & Ness (2023) eqs. 25, 26. Zero without
 // temperature.

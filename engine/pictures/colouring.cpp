@@ -7,7 +7,6 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
-#include <vector>
 
 #include "contract/errors.h"
 
@@ -28,64 +27,24 @@ constexpr std::array<std::uint32_t, 52> viridis_table = {
 constexpr std::array<std::uint32_t, count_of_species_colours> species_table = {
     0x77aadd, 0xee8866, 0xeedd88, 0x44bb99, 0xffaabb, 0x99ddff, 0xbbcc33, 0xaaaa00};
 
-}  // namespace
-
-float linear_of(double encoded) {
-  return static_cast<float>(encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4));
-}
-
-Colour colour_of(std::uint32_t rgb) {
-  const auto part = [rgb](int shift) { return linear_of(((rgb >> shift) & 0xff) / 255.0); };
-  return {part(16), part(8), part(0)};
-}
-
-std::uint8_t encoded(float linear) {
-  // So fine that the darkest steps, a 3295th of white, are told apart.
-  static const std::vector<std::uint8_t> table = [] {
-    std::vector<std::uint8_t> all(65536);
-    for (std::size_t k = 0; k < all.size(); ++k) {
-      const double x = static_cast<double>(k) / 65535;
-      all[k] = static_cast<std::uint8_t>(
-          std::lround(255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055)));
-    }
-    return all;
-  }();
-  return table[static_cast<std::size_t>(std::lround(65535 * std::clamp(linear, 0.0F, 1.0F)))];
-}
-
-Colour viridis(double place) {
-  const double at = std::clamp(place, 0.0, 1.0) * (viridis_table.size() - 1);
-  const auto below = std::min(static_cast<std::size_t>(at), viridis_table.size() - 2);
-  const double share = at - static_cast<double>(below);
-  const auto part = [&](int shift) {
-    const double low = (viridis_table[below] >> shift) & 0xff,
-                 high = (viridis_table[below + 1] >> shift) & 0xff;
-    return linear_of((low + share * (high - low)) / 255);
-  };
-  return {part(16), part(8), part(0)};
-}
-
-Colour colour_of_species(std::size_t species) { return colour_of(species_table.at(species)); }
-
-namespace {
-
 void require(bool is_there, const std::string& file, const char* what, const char* cure) {
   if (!is_there)
     throw InputError(file, "", "", fmt::format("has no {}, which --colour asks for{}", what, cure));
 }
 
+Colouring on_scale(const ColourScale& scale, const std::vector<double>& values) {
+  Colouring all;
+  all.scale = {scale};
+  for (const double value : values) all.of_spheres.push_back(scale.at(value));
+  return all;
+}
+
 // For more species than there are colours: their radii on a scale, or their places where all are alike.
 Colouring by_radius(const Snapshot& snapshot) {
   const auto [low, high] = std::minmax_element(snapshot.radius.begin(), snapshot.radius.end());
-  Colouring all;
-  all.scale = {ColourScale{"radius", *low, *high}};
-  const bool has_sizes = *low < *high;
-  if (!has_sizes) all.scale = {{"species", 0, static_cast<double>(snapshot.species_names.size() - 1)}};
-  for (std::size_t i = 0; i < snapshot.count(); ++i) {
-    all.of_spheres.push_back(
-        all.scale.front().at(has_sizes ? snapshot.radius[i] : static_cast<double>(snapshot.species[i])));
-  }
-  return all;
+  if (*low < *high) return on_scale({"radius", *low, *high}, snapshot.radius);
+  return on_scale({"species", 0, static_cast<double>(snapshot.species_names.size() - 1)},
+                  {snapshot.species.begin(), snapshot.species.end()});
 }
 
 Colouring by_species(const Snapshot& snapshot) {
@@ -125,6 +84,43 @@ std::pair<std::string, std::vector<double>> speeds(const Snapshot& snapshot) {
 }
 
 }  // namespace
+
+float linear_of(double encoded) {
+  return static_cast<float>(encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4));
+}
+
+Colour colour_of(std::uint32_t rgb) {
+  const auto part = [rgb](int shift) { return linear_of(((rgb >> shift) & 0xff) / 255.0); };
+  return {part(16), part(8), part(0)};
+}
+
+std::uint8_t encoded(float linear) {
+  // So fine that the darkest steps, a 3295th of white, are told apart.
+  static const std::vector<std::uint8_t> table = [] {
+    std::vector<std::uint8_t> all(65536);
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      const double x = static_cast<double>(k) / 65535;
+      all[k] = static_cast<std::uint8_t>(
+          std::lround(255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055)));
+    }
+    return all;
+  }();
+  return table[static_cast<std::size_t>(std::lround(65535 * std::clamp(linear, 0.0F, 1.0F)))];
+}
+
+Colour viridis(double place) {
+  const double at = std::clamp(place, 0.0, 1.0) * (viridis_table.size() - 1);
+  const auto below = std::min(static_cast<std::size_t>(at), viridis_table.size() - 2);
+  const double share = at - static_cast<double>(below);
+  const auto part = [&](int shift) {
+    const double low = (viridis_table[below] >> shift) & 0xff,
+                 high = (viridis_table[below + 1] >> shift) & 0xff;
+    return linear_of((low + share * (high - low)) / 255);
+  };
+  return {part(16), part(8), part(0)};
+}
+
+Colour colour_of_species(std::size_t species) { return colour_of(species_table.at(species)); }
 
 const std::vector<std::string>& names_of_colourings() {
   static const std::vector<std::string> names = {"species", "speed", "contacts", "stress"};
@@ -178,10 +174,7 @@ Colouring colouring_of(const Snapshot& snapshot, const std::string& name, const 
   } else {
     throw std::logic_error("no such colouring: " + name);
   }
-  Colouring all;
-  all.scale = {scale_over(title, values)};
-  for (const double value : values) all.of_spheres.push_back(all.scale.front().at(value));
-  return all;
+  return on_scale(scale_over(title, values), values);
 }
 
 }  // namespace peclet::engine

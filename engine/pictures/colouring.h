@@ -10,9 +10,7 @@
 
 namespace peclet::engine {
 
-// Colours of pictures. Light adds up in linear numbers; files hold sRGB (IEC 61966-2-1).
-//
-// Linear red, green and blue, 1 each for white.
+// Linear red, green and blue, 1 each for white; files hold sRGB (IEC 61966-2-1).
 struct Colour {
   float red = 0, green = 0, blue = 0;
 

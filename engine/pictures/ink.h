@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "engine/pictures/colouring.h"
-#include "engine/pictures/png.h"
 
 namespace peclet::engine {
 
@@ -117,6 +116,16 @@ constexpr std::array<const char*, 95> hershey_simplex = {
     R"(KYPBRCSDTFTHSJRKQMQOSQ RRCSESGRIQJPLPNQPURQTPVPXQZR[S]S_Ra RSSQUQWRYSZT\T^S`RaPb)",
     R"(F^IUISJPLONOPPTSVTXTZS[Q RISJQLPNPPQTTVUXUZT[Q[O)",
 };
+
+// A finished picture: red, green and blue of sRGB, row after row from the top.
+struct Image {
+  std::size_t width = 0, height = 0;
+  std::vector<std::uint8_t> rgb;
+};
+
+// Returns the PNG file (ISO/IEC 15948) of an image. Requires 3 width height numbers, and sides of 1 to 2^31
+// - 1.
+std::string png(const Image& image);
 
 // A picture in linear light, row after row from the top. Places are in pixels; the first one is [0, 1) x [0,
 // 1).

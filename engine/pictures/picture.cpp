@@ -9,9 +9,6 @@
 
 #include "contract/errors.h"
 #include "contract/named_files.h"
-#include "engine/pictures/colouring.h"
-#include "engine/pictures/renderer.h"
-#include "engine/snapshots/snapshot.h"
 #include "engine/state/periodic_cell.h"
 
 namespace peclet::engine {
@@ -53,47 +50,6 @@ void draw_names(Canvas& canvas, const Layout& layout, const std::vector<NamedCol
   }
 }
 
-}  // namespace
-
-Layout::Layout(std::size_t w, std::size_t h)
-    : width(static_cast<double>(w)),
-      height(static_cast<double>(h)),
-      margin(0.03 * height),
-      letters(0.0195 * height) {
-  const double side = std::min(14 * letters, 0.3 * width);
-  spheres = {margin, margin, width - margin - side, height - margin};
-  legend = {width - side, margin, width - margin, height - margin};
-}
-
-void draw_legend(Canvas& canvas, const Layout& layout, const Colouring& colouring) {
-  for (const ColourScale& scale : colouring.scale) draw_scale(canvas, layout, scale);
-  if (!colouring.names.empty()) draw_names(canvas, layout, colouring.names);
-}
-
-void draw_axes(Canvas& canvas, const Layout& layout, const Camera& camera, const std::string& text) {
-  const double length = 3 * layout.letters;
-  const Spot origin = {layout.legend.left + 1.5 * layout.letters,
-                       layout.height - layout.margin - 1.5 * layout.letters};
-  const std::array<std::pair<const char*, Vector3>, 3> axes = {
-      {{"x", {1, 0, 0}}, {"y", {0, 1, 0}}, {"z", {0, 0, 1}}}};
-  for (const auto& [name, direction] : axes) {
-    const Vector3 seen = camera.turned(direction);
-    const double size = std::hypot(seen.x, seen.y);
-    if (size < 0.1) continue;  // along the line of sight
-    const Spot end = {origin.x + length * seen.x, origin.y - length * seen.y};
-    draw_line(canvas, origin, end, 0.12 * layout.letters, ink());
-    const double beyond = 1 + 0.3 / size;
-    const double half = 0.5 * width_of_text(name, layout.letters);
-    draw_text(canvas,
-              {origin.x + beyond * length * seen.x - half,
-               origin.y - beyond * length * seen.y + 0.4 * layout.letters},
-              layout.letters, name, ink());
-  }
-  draw_text(canvas, {layout.legend.left, layout.margin + layout.letters}, layout.letters, text, ink());
-}
-
-namespace {
-
 constexpr std::size_t least_side = 64, most_side = 10000;
 
 // Reads "1600x1200": two numbers and what stands between them.
@@ -131,10 +87,6 @@ void add_cell(const Snapshot& snapshot, double thickness, Stage& stage) {
 Vector3 into_cell(const Snapshot& snapshot, const CellFrame& cell, const Vector3& place) {
   const Vector3 cells = cell.fractional(place - snapshot.corner);
   return place - snapshot.lattice * Vector3{std::floor(cells.x), std::floor(cells.y), std::floor(cells.z)};
-}
-
-CellFrame cell_of(const Snapshot& snapshot) {
-  return PeriodicCell::with_edges(snapshot.lattice, Matrix3{}).frame();
 }
 
 // From the first sphere to the nearest image of the second. A sheared cell is compact: the lattice planes
@@ -180,6 +132,43 @@ ColourScale add_chains(const Snapshot& snapshot, const CellFrame& cell, Stage& s
 
 }  // namespace
 
+Layout::Layout(std::size_t w, std::size_t h)
+    : width(static_cast<double>(w)),
+      height(static_cast<double>(h)),
+      margin(0.03 * height),
+      letters(0.0195 * height) {
+  const double side = std::min(14 * letters, 0.3 * width);
+  spheres = {margin, margin, width - margin - side, height - margin};
+  legend = {width - side, margin, width - margin, height - margin};
+}
+
+void draw_legend(Canvas& canvas, const Layout& layout, const Colouring& colouring) {
+  for (const ColourScale& scale : colouring.scale) draw_scale(canvas, layout, scale);
+  if (!colouring.names.empty()) draw_names(canvas, layout, colouring.names);
+}
+
+void draw_axes(Canvas& canvas, const Layout& layout, const Camera& camera, const std::string& text) {
+  const double length = 3 * layout.letters;
+  const Spot origin = {layout.legend.left + 1.5 * layout.letters,
+                       layout.height - layout.margin - 1.5 * layout.letters};
+  const std::array<std::pair<const char*, Vector3>, 3> axes = {
+      {{"x", {1, 0, 0}}, {"y", {0, 1, 0}}, {"z", {0, 0, 1}}}};
+  for (const auto& [name, direction] : axes) {
+    const Vector3 seen = camera.turned(direction);
+    const double size = std::hypot(seen.x, seen.y);
+    if (size < 0.1) continue;  // along the line of sight
+    const Spot end = {origin.x + length * seen.x, origin.y - length * seen.y};
+    draw_line(canvas, origin, end, 0.12 * layout.letters, ink());
+    const double beyond = 1 + 0.3 / size;
+    const double half = 0.5 * width_of_text(name, layout.letters);
+    draw_text(canvas,
+              {origin.x + beyond * length * seen.x - half,
+               origin.y - beyond * length * seen.y + 0.4 * layout.letters},
+              layout.letters, name, ink());
+  }
+  draw_text(canvas, {layout.legend.left, layout.margin + layout.letters}, layout.letters, text, ink());
+}
+
 View view_named(const std::string& name) {
   if (name == "corner") return {24, 18};
   if (name == "x") return {90, 0};
@@ -199,7 +188,7 @@ Image picture_of(const Snapshot& given, const PictureOptions& options) {
   const View view = view_named(options.view);
   Snapshot snapshot = given;
   Colouring colouring = colouring_of(snapshot, options.colour, options.file);
-  const CellFrame cell = cell_of(snapshot);
+  const CellFrame cell = PeriodicCell::with_edges(snapshot.lattice, Matrix3{}).frame();
   for (Vector3& place : snapshot.position) place = into_cell(snapshot, cell, place);
   Stage stage;
   if (options.chains) {

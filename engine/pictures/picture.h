@@ -5,15 +5,12 @@
 
 #include "engine/pictures/colouring.h"
 #include "engine/pictures/ink.h"
-#include "engine/pictures/png.h"
 #include "engine/pictures/renderer.h"
 #include "engine/snapshots/snapshot.h"
 
 namespace peclet::engine {
 
-// Beside the spheres: what colours mean, the moment, and which way is which.
-//
-// Pixels; everything else follows from the height of the picture.
+// The parts of a picture in pixels; everything else follows from the height of the picture.
 struct Layout {
   Layout(std::size_t width, std::size_t height);
 

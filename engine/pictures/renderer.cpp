@@ -23,144 +23,59 @@ void for_each_bound(const Stage& stage, const Visit& visit) {
   }
 }
 
-}  // namespace
-
-Camera::Camera(const Stage& stage, const View& view, const Frame& frame) {
-  constexpr double degree = std::numbers::pi / 180, distance = 6;
-  const double a = view.azimuth * degree, e = view.elevation * degree;
-  const Vector3 towards_eye = {std::cos(e) * std::sin(a), std::sin(e), std::cos(e) * std::cos(a)};
-  forward_ = -towards_eye;
-  right_ = {std::cos(a), 0, -std::sin(a)};
-  up_ = cross(right_, forward_);
-  constexpr double far = std::numeric_limits<double>::infinity();
-  Vector3 low = {far, far, far}, high = {-far, -far, -far};
-  for_each_bound(stage, [&](const Vector3& c, double r) {
-    low = {std::min(low.x, c.x - r), std::min(low.y, c.y - r), std::min(low.z, c.z - r)};
-    high = {std::max(high.x, c.x + r), std::max(high.y, c.y + r), std::max(high.z, c.z + r)};
-  });
-  eye_ = 0.5 * (low + high) + (distance * 0.5 * norm(high - low)) * towards_eye;
-  Reach all{far, -far, far, -far};
-  for_each_bound(stage, [&](const Vector3& c, double r) {
-    const Reach one = reach_of(seen(c), r);
-    all = {std::min(all.low_u, one.low_u), std::max(all.high_u, one.high_u), std::min(all.low_v, one.low_v),
-           std::max(all.high_v, one.high_v)};
-  });
-  scale_ = std::min((frame.right - frame.left) / (all.high_u - all.low_u),
-                    (frame.bottom - frame.top) / (all.high_v - all.low_v));
-  left_ = 0.5 * (frame.left + frame.right) - scale_ * 0.5 * (all.low_u + all.high_u);
-  top_ = 0.5 * (frame.top + frame.bottom) + scale_ * 0.5 * (all.low_v + all.high_v);
-}
-
-Vector3 Camera::turned(const Vector3& d) const { return {dot(right_, d), dot(up_, d), dot(forward_, d)}; }
-Vector3 Camera::seen(const Vector3& place) const { return turned(place - eye_); }
-
-Stage Camera::seen(const Stage& stage) const {
-  Stage all = stage;
-  for (Ball& ball : all.balls) ball.centre = seen(ball.centre);
-  for (Ball& ball : all.glass) ball.centre = seen(ball.centre);
-  for (Rod& rod : all.rods) {
-    rod.from = seen(rod.from);
-    rod.to = seen(rod.to);
-  }
-  return all;
-}
-
-// Tangents from the eye: (c_x c_z -+ r sqrt(c_x^2 + c_z^2 - r^2)) / (c_z^2 - r^2).
-Reach reach_of(const Vector3& c, double r) {
-  const double below = c.z * c.z - r * r;
-  const double u = r * std::sqrt(c.x * c.x + below), v = r * std::sqrt(c.y * c.y + below);
-  return {(c.x * c.z - u) / below, (c.x * c.z + u) / below, (c.y * c.z - v) / below, (c.y * c.z + v) / below};
-}
-
-Light::Light(const Camera& camera, const Stage& seen) : glass_(colour_of(0x8fa3b8)) {
-  constexpr Vector3 towards_lamp = {-0.45, 0.75, -0.6};  // over the eye's left shoulder
-  lamp_ = (1 / norm(towards_lamp)) * towards_lamp;
-  up_ = camera.turned({0, 1, 0});
-  double near = std::numeric_limits<double>::infinity(), far = -near;
-  const auto take = [&](double z) {
-    near = std::min(near, z);
-    far = std::max(far, z);
-  };
-  for (const Ball& ball : seen.balls) take(ball.centre.z);
-  for (const Ball& ball : seen.glass) take(ball.centre.z);
-  near_ = near;
-  depth_ = std::max(far - near, std::numeric_limits<double>::min());
-}
-
-Colour Light::on(const Colour& surface, const Vector3& place, const Vector3& normal, double free_sky) const {
-  const Vector3 to_eye = (-1 / norm(place)) * place;
-  const double facing = std::max(0.0, dot(normal, to_eye));
-  const double sky = (0.50 + 0.28 * dot(normal, up_)) * free_sky;
-  // The lamp is wide: it reaches around the edge, and gaps between spheres are in its shade, too.
-  const double lamp = std::max(0.0, (dot(normal, lamp_) + 0.25) / 1.25) * (0.25 + 0.75 * free_sky);
-  const Vector3 half = lamp_ + to_eye;
-  const double gloss = std::pow(std::max(0.0, dot(normal, half) / norm(half)), 60) * 0.16 * free_sky;
-  const double rim = 0.72 + 0.28 * std::sqrt(facing);
-  Colour colour = static_cast<float>((sky + 0.62 * lamp) * rim) * surface;
-  colour = colour + static_cast<float>(gloss) * white;
-  const double air = 0.34 * std::clamp((place.z - near_) / depth_, 0.0, 1.0);
-  return mixed(colour, white, static_cast<float>(air));
-}
-
-double Light::veil(double cosine) {
-  const double rim = 1 - cosine;
-  return 0.008 + 0.30 * rim * rim * rim * rim;
-}
-
-namespace {
-
 // Gaps over the larger radius beyond which a neighbour's cap is too small to be seen.
 constexpr double listed_within = 1.2;
 
 using Box = std::array<std::int64_t, 3>;
 
-}  // namespace
-
-Occlusion::Occlusion(const std::vector<Ball>& balls) {
-  double largest = 0;
-  for (const Ball& ball : balls) largest = std::max(largest, ball.radius);
-  const double edge = (2 + listed_within) * largest;
-  const auto box_of = [edge](const Vector3& c) {
-    const auto part = [edge](double x) { return static_cast<std::int64_t>(std::floor(x / edge)); };
-    return Box{part(c.x), part(c.y), part(c.z)};
-  };
-  std::map<Box, std::vector<std::uint32_t>> boxes;
-  for (std::uint32_t i = 0; i < balls.size(); ++i) boxes[box_of(balls[i].centre)].push_back(i);
-  for (std::uint32_t i = 0; i < balls.size(); ++i) {
-    begin_.push_back(static_cast<std::uint32_t>(neighbours_.size()));
-    const Ball& ball = balls[i];
-    const Box middle = box_of(ball.centre);
-    for (int place = 0; place < 27; ++place) {
-      const auto found =
-          boxes.find({middle[0] + place % 3 - 1, middle[1] + place / 3 % 3 - 1, middle[2] + place / 9 - 1});
-      if (found == boxes.end()) continue;
-      for (const std::uint32_t j : found->second) {
-        const double gap = norm(balls[j].centre - ball.centre) - ball.radius - balls[j].radius;
-        if (j == i || gap > listed_within * std::max(ball.radius, balls[j].radius)) continue;
-        neighbours_.push_back({balls[j].centre, balls[j].radius * balls[j].radius});
-      }
-    }
+// Light on surfaces: a bright sky, a lamp from the upper left, and air that takes colour with the distance.
+class Light {
+ public:
+  // Of a stage as the camera sees it.
+  Light(const Camera& camera, const Stage& seen) : glass_(colour_of(0x8fa3b8)) {
+    constexpr Vector3 towards_lamp = {-0.45, 0.75, -0.6};  // over the eye's left shoulder
+    lamp_ = (1 / norm(towards_lamp)) * towards_lamp;
+    up_ = camera.turned({0, 1, 0});
+    double near = std::numeric_limits<double>::infinity(), far = -near;
+    const auto take = [&](double z) {
+      near = std::min(near, z);
+      far = std::max(far, z);
+    };
+    for (const Ball& ball : seen.balls) take(ball.centre.z);
+    for (const Ball& ball : seen.glass) take(ball.centre.z);
+    near_ = near;
+    depth_ = std::max(far - near, std::numeric_limits<double>::min());
   }
-  begin_.push_back(static_cast<std::uint32_t>(neighbours_.size()));
-}
 
-double Occlusion::free_sky(std::uint32_t ball, const Vector3& place, const Vector3& normal) const {
-  double free = 1;
-  for (std::uint32_t k = begin_[ball]; k < begin_[ball + 1]; ++k) {
-    const Vector3 apart = neighbours_[k].centre - place;
-    const double square = dot(apart, apart), cap = neighbours_[k].square / square;
-    const double cosine = dot(normal, apart) / std::sqrt(square);
-    // Where the horizon cuts the cap, between +-sine, a parabola joins what is whole to nothing.
-    const double sine = std::sqrt(std::min(cap, 1.0));
-    const double seen = cosine >= sine    ? cosine
-                        : cosine <= -sine ? 0
-                                          : (cosine + sine) * (cosine + sine) / (4 * sine);
-    free *= 1 - std::min(1.0, seen * cap);
+  // What reaches the eye from a place of that normal, of whose sky a share is free.
+  Colour on(const Colour& surface, const Vector3& place, const Vector3& normal, double free_sky) const {
+    const Vector3 to_eye = (-1 / norm(place)) * place;
+    const double facing = std::max(0.0, dot(normal, to_eye));
+    const double sky = (0.50 + 0.28 * dot(normal, up_)) * free_sky;
+    // The lamp is wide: it reaches around the edge, and gaps between spheres are in its shade, too.
+    const double lamp = std::max(0.0, (dot(normal, lamp_) + 0.25) / 1.25) * (0.25 + 0.75 * free_sky);
+    const Vector3 half = lamp_ + to_eye;
+    const double gloss = std::pow(std::max(0.0, dot(normal, half) / norm(half)), 60) * 0.16 * free_sky;
+    const double rim = 0.72 + 0.28 * std::sqrt(facing);
+    Colour colour = static_cast<float>((sky + 0.62 * lamp) * rim) * surface;
+    colour = colour + static_cast<float>(gloss) * white;
+    const double air = 0.34 * std::clamp((place.z - near_) / depth_, 0.0, 1.0);
+    return mixed(colour, white, static_cast<float>(air));
   }
-  return free;
-}
 
-namespace {
+  // The colour of glass, and the share of the light behind it that it takes where ray and surface have that
+  // cosine: more towards the rim.
+  const Colour& glass() const { return glass_; }
+  static double veil(double cosine) {
+    const double rim = 1 - cosine;
+    return 0.008 + 0.30 * rim * rim * rim * rim;
+  }
+
+ private:
+  Vector3 lamp_, up_;
+  double near_ = 0, depth_ = 1;
+  Colour glass_;
+};
 
 constexpr std::size_t rays = 3;           // along each side of a pixel
 constexpr std::size_t rows_of_band = 16;  // of pixels: what is drawn of them stays in the cache
@@ -360,14 +275,103 @@ class Rendering {
 
 }  // namespace
 
+Camera::Camera(const Stage& stage, const View& view, const Frame& frame) {
+  constexpr double degree = std::numbers::pi / 180, distance = 6;
+  const double a = view.azimuth * degree, e = view.elevation * degree;
+  const Vector3 towards_eye = {std::cos(e) * std::sin(a), std::sin(e), std::cos(e) * std::cos(a)};
+  forward_ = -towards_eye;
+  right_ = {std::cos(a), 0, -std::sin(a)};
+  up_ = cross(right_, forward_);
+  constexpr double far = std::numeric_limits<double>::infinity();
+  Vector3 low = {far, far, far}, high = {-far, -far, -far};
+  for_each_bound(stage, [&](const Vector3& c, double r) {
+    low = {std::min(low.x, c.x - r), std::min(low.y, c.y - r), std::min(low.z, c.z - r)};
+    high = {std::max(high.x, c.x + r), std::max(high.y, c.y + r), std::max(high.z, c.z + r)};
+  });
+  eye_ = 0.5 * (low + high) + (distance * 0.5 * norm(high - low)) * towards_eye;
+  Reach all{far, -far, far, -far};
+  for_each_bound(stage, [&](const Vector3& c, double r) {
+    const Reach one = reach_of(seen(c), r);
+    all = {std::min(all.low_u, one.low_u), std::max(all.high_u, one.high_u), std::min(all.low_v, one.low_v),
+           std::max(all.high_v, one.high_v)};
+  });
+  scale_ = std::min((frame.right - frame.left) / (all.high_u - all.low_u),
+                    (frame.bottom - frame.top) / (all.high_v - all.low_v));
+  left_ = 0.5 * (frame.left + frame.right) - scale_ * 0.5 * (all.low_u + all.high_u);
+  top_ = 0.5 * (frame.top + frame.bottom) + scale_ * 0.5 * (all.low_v + all.high_v);
+}
+
+Vector3 Camera::turned(const Vector3& d) const { return {dot(right_, d), dot(up_, d), dot(forward_, d)}; }
+Vector3 Camera::seen(const Vector3& place) const { return turned(place - eye_); }
+
+Stage Camera::seen(const Stage& stage) const {
+  Stage all = stage;
+  for (Ball& ball : all.balls) ball.centre = seen(ball.centre);
+  for (Ball& ball : all.glass) ball.centre = seen(ball.centre);
+  for (Rod& rod : all.rods) {
+    rod.from = seen(rod.from);
+    rod.to = seen(rod.to);
+  }
+  return all;
+}
+
+// Tangents from the eye: (c_x c_z -+ r sqrt(c_x^2 + c_z^2 - r^2)) / (c_z^2 - r^2).
+Reach reach_of(const Vector3& c, double r) {
+  const double below = c.z * c.z - r * r;
+  const double u = r * std::sqrt(c.x * c.x + below), v = r * std::sqrt(c.y * c.y + below);
+  return {(c.x * c.z - u) / below, (c.x * c.z + u) / below, (c.y * c.z - v) / below, (c.y * c.z + v) / below};
+}
+
+Occlusion::Occlusion(const std::vector<Ball>& balls) {
+  double largest = 0;
+  for (const Ball& ball : balls) largest = std::max(largest, ball.radius);
+  const double edge = (2 + listed_within) * largest;
+  const auto box_of = [edge](const Vector3& c) {
+    const auto part = [edge](double x) { return static_cast<std::int64_t>(std::floor(x / edge)); };
+    return Box{part(c.x), part(c.y), part(c.z)};
+  };
+  std::map<Box, std::vector<std::uint32_t>> boxes;
+  for (std::uint32_t i = 0; i < balls.size(); ++i) boxes[box_of(balls[i].centre)].push_back(i);
+  for (std::uint32_t i = 0; i < balls.size(); ++i) {
+    begin_.push_back(static_cast<std::uint32_t>(neighbours_.size()));
+    const Ball& ball = balls[i];
+    const Box middle = box_of(ball.centre);
+    for (int place = 0; place < 27; ++place) {
+      const auto found =
+          boxes.find({middle[0] + place % 3 - 1, middle[1] + place / 3 % 3 - 1, middle[2] + place / 9 - 1});
+      if (found == boxes.end()) continue;
+      for (const std::uint32_t j : found->second) {
+        const double gap = norm(balls[j].centre - ball.centre) - ball.radius - balls[j].radius;
+        if (j == i || gap > listed_within * std::max(ball.radius, balls[j].radius)) continue;
+        neighbours_.push_back({balls[j].centre, balls[j].radius * balls[j].radius});
+      }
+    }
+  }
+  begin_.push_back(static_cast<std::uint32_t>(neighbours_.size()));
+}
+
+double Occlusion::free_sky(std::uint32_t ball, const Vector3& place, const Vector3& normal) const {
+  double free = 1;
+  for (std::uint32_t k = begin_[ball]; k < begin_[ball + 1]; ++k) {
+    const Vector3 apart = neighbours_[k].centre - place;
+    const double square = dot(apart, apart), cap = neighbours_[k].square / square;
+    const double cosine = dot(normal, apart) / std::sqrt(square);
+    // Where the horizon cuts the cap, between +-sine, a parabola joins what is whole to nothing.
+    const double sine = std::sqrt(std::min(cap, 1.0));
+    const double seen = cosine >= sine    ? cosine
+                        : cosine <= -sine ? 0
+                                          : (cosine + sine) * (cosine + sine) / (4 * sine);
+    free *= 1 - std::min(1.0, seen * cap);
+  }
+  return free;
+}
+
 void render(Canvas& canvas, const Stage& stage, const Camera& camera, int threads) {
   const Rendering rendering(canvas, stage, camera);
   const std::size_t bands = (canvas.height + rows_of_band - 1) / rows_of_band;
-  for_each_range(bands, threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t band = begin; band < end; ++band) {
-      const std::size_t first = band * rows_of_band;
-      rendering.draw(first, std::min(rows_of_band, canvas.height - first));
-    }
+  for_each_index(bands, threads, [&](std::size_t band) {
+    const std::size_t first = band * rows_of_band;
+    rendering.draw(first, std::min(rows_of_band, canvas.height - first));
   });
 }
 

@@ -1,7 +1,6 @@
 // The stage in light: spheres and rods by scanline, each pixel from nine rays.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -32,8 +31,6 @@ struct Stage {
   std::vector<Ball> glass;
 };
 
-// From places to pixels, in weak perspective.
-//
 // The part of a picture, in pixels, into which everything is to fit.
 struct Frame {
   double left, top, right, bottom;
@@ -72,29 +69,7 @@ struct Reach {
 };
 Reach reach_of(const Vector3& centre, double radius);
 
-// Light on surfaces: a bright sky, a lamp from the upper left, and air that takes colour with the distance.
-class Light {
- public:
-  // Of a stage as the camera sees it.
-  Light(const Camera& camera, const Stage& seen);
-
-  // What reaches the eye from a place of that normal, of whose sky a share is free.
-  Colour on(const Colour& surface, const Vector3& place, const Vector3& normal, double free_sky) const;
-
-  // The colour of glass, and the share of the light behind it that it takes where ray and surface have that
-  // cosine: more towards the rim.
-  const Colour& glass() const { return glass_; }
-  static double veil(double cosine);
-
- private:
-  Vector3 lamp_, up_;
-  double near_ = 0, depth_ = 1;
-  Colour glass_;
-};
-
-// How much of the sky the balls around a place leave free: the soft shade in gaps.
-//
-// The neighbours of each ball, so near that they take some of its sky.
+// The neighbours of each ball, so near that they take some of its sky: the soft shade in gaps.
 class Occlusion {
  public:
   explicit Occlusion(const std::vector<Ball>& balls);

@@ -1,7 +1,5 @@
 #include "engine/realisation/checkpoint.h"
 
-#include <stdexcept>
-
 #include "contract/durable_file.h"
 #include "contract/guarded_file.h"
 #include "contract/sha256.h"
@@ -41,10 +39,7 @@ std::string_view checked_payload(std::string_view bytes) {
 
 CheckpointIdentity get_identity(ArchiveReader& payload) {
   CheckpointIdentity found;
-  found.scene_sha256 = payload.get_string();
-  found.seed = payload.get<std::uint64_t>();
-  found.binary_sha256 = payload.get_string();
-  found.motion_sha256 = payload.get_string();
+  payload.get_all(found.scene_sha256, found.seed, found.binary_sha256, found.motion_sha256);
   return found;
 }
 
@@ -57,9 +52,7 @@ void with_payload(const std::filesystem::path& path, std::size_t particles, cons
     use(payload);
   } catch (const UnsuitableFile& error) {
     throw CheckpointError(error.what());
-  } catch (const std::runtime_error& error) {  // also what may not be read
-    throw CheckpointError(path.string() + ": " + error.what());
-  } catch (const std::invalid_argument& error) {  // a cell that is smaller than the range of the forces
+  } catch (const std::exception& error) {  // also of a cell that is smaller than the range of the forces
     throw CheckpointError(path.string() + ": " + error.what());
   }
 }
@@ -87,11 +80,8 @@ std::string motion_of(const Scene& scene, const Schedule& schedule) {
 void write_checkpoint(const std::filesystem::path& path, const CheckpointIdentity& identity,
                       const Spent& spent, const Simulation& simulation) {
   ArchiveWriter payload;
-  payload.put(identity.scene_sha256);
-  payload.put(identity.seed);
-  payload.put(identity.binary_sha256);
-  payload.put(identity.motion_sha256);
-  payload.put(spent);
+  payload.put_all(identity.scene_sha256, identity.seed, identity.binary_sha256, identity.motion_sha256,
+                  spent);
   simulation.save(payload);
   ArchiveWriter file;
   file.put(version);

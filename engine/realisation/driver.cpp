@@ -33,18 +33,6 @@ class GivenRate final : public Driver {
   ImposedFlow flow_;
 };
 
-}  // namespace
-
-std::unique_ptr<Driver> make_driver(Scene& scene, double timestep, std::uint64_t seed) {
-  const ControlledShear* const given = scene.physics.flow.deformation().at_stress();
-  if (given == nullptr) return std::make_unique<GivenRate>(scene.physics.flow);
-  const auto own = std::make_shared<ControlledShear>(*given);
-  scene.physics.flow = ImposedFlow(own);
-  return std::make_unique<StressControl>(scene, own, timestep, seed);
-}
-
-namespace {
-
 // Of the stress: a step that misses it by more is made again, so many times at most.
 constexpr double tolerance = 0.01;
 constexpr int most_attempts = 6;
@@ -65,6 +53,14 @@ double time_of_response(double timestep, double usual_rate) {
 }
 
 }  // namespace
+
+std::unique_ptr<Driver> make_driver(Scene& scene, double timestep, std::uint64_t seed) {
+  const ControlledShear* const given = scene.physics.flow.deformation().at_stress();
+  if (given == nullptr) return std::make_unique<GivenRate>(scene.physics.flow);
+  const auto own = std::make_shared<ControlledShear>(*given);
+  scene.physics.flow = ImposedFlow(own);
+  return std::make_unique<StressControl>(scene, own, timestep, seed);
+}
 
 StressControl::StressControl(const Scene& scene, std::shared_ptr<ControlledShear> shear, double timestep,
                              std::uint64_t seed)
@@ -194,17 +190,13 @@ Strains StressControl::strains(const System& system, const Schedule& schedule) c
 }
 
 void StressControl::save(ArchiveWriter& archive) const {
-  for (const double number :
-       {rate_, slope_, deficit_, inertia_, strain_waited_from_, time_waited_from_, strain_at_window_}) {
-    archive.put(number);
-  }
+  archive.put_all(rate_, slope_, deficit_, inertia_, strain_waited_from_, time_waited_from_,
+                  strain_at_window_);
 }
 
 void StressControl::load(const System& system, ArchiveReader& archive) {
-  for (double* number : {&rate_, &slope_, &deficit_, &inertia_, &strain_waited_from_, &time_waited_from_,
-                         &strain_at_window_}) {
-    *number = archive.get<double>();
-  }
+  archive.get_all(rate_, slope_, deficit_, inertia_, strain_waited_from_, time_waited_from_,
+                  strain_at_window_);
   shear_->go_on(system.clock.time(), system.box.strain(), rate_);
 }
 

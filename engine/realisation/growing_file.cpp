@@ -5,34 +5,18 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <iterator>
 #include <numeric>
 #include <system_error>
 #include <vector>
 
-#include "contract/durable_file.h"
 #include "contract/guarded_file.h"
 #include "contract/sha256.h"
 #include "engine/realisation/checkpoint.h"
+#include "engine/snapshots/conversion.h"
 
 namespace peclet::engine {
 namespace {
-
-// Fewer bytes than `count` only where the file ends.
-std::string read_from(int file, std::uint64_t place, std::uint64_t count, const std::filesystem::path& path) {
-  std::string bytes(count, '\0');
-  std::size_t filled = 0;
-  while (filled < count) {
-    const ssize_t more =
-        ::pread(file, bytes.data() + filled, count - filled, static_cast<off_t>(place + filled));
-    if (more < 0 && errno != EINTR) fail_to("cannot read", path);
-    if (more == 0) break;
-    if (more > 0) filled += static_cast<std::size_t>(more);
-  }
-  bytes.resize(filled);
-  return bytes;
-}
 
 Descriptor opened(const std::filesystem::path& path, bool has_name) {
   Descriptor file = open_regular(path, O_RDWR | O_CREAT | (has_name ? 0 : O_EXCL));
@@ -54,11 +38,7 @@ void GrowingFile::take(gsd::Frames& frames) const {
   frames.hand_over();
 }
 
-void GrowingFile::synchronise() const {
-  while (::fsync(file_.number()) != 0) {
-    if (errno != EINTR) fail_to("cannot synchronise", path_);
-  }
-}
+void GrowingFile::synchronise() const { peclet::synchronise(file_.number(), path_); }
 
 void GrowingFile::finish(const gsd::Frames& frames, const std::filesystem::path& target) const {
   if (const std::string wrong = fault(frames); !wrong.empty()) throw IntegrityError(wrong);
@@ -94,20 +74,17 @@ std::string GrowingFile::fault(const gsd::Frames& frames) const {
   for (std::size_t k = 0; k < frames.whole().size(); ++k) {
     const gsd::FrameBytes& frame = frames.whole()[k];
     if (frame.end > frames.written()) break;
-    const std::string bytes = read_from(file_.number(), frame.begin, frame.end - frame.begin, path_);
-    if (bytes.size() < frame.end - frame.begin) return fmt::format("{}: has no frame {}", path_.string(), k);
+    std::string bytes(frame.end - frame.begin, '\0');
+    if (read_at(file_.number(), frame.begin, std::as_writable_bytes(std::span(bytes)), path_) <
+        bytes.size()) {
+      return fmt::format("{}: has no frame {}", path_.string(), k);
+    }
     if (!std::ranges::equal(sha256(bytes), frame.sha256)) {
       return fmt::format("{}: frame {} is damaged: its checksum does not match", path_.string(), k);
     }
   }
   return "";
 }
-
-namespace {
-
-std::string spaced(const Vector3& vector) { return fmt::format("{} {} {}", vector.x, vector.y, vector.z); }
-
-}  // namespace
 
 std::string extended_xyz(const System& system) {
   const ParticleState& particles = system.particles;

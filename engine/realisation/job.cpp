@@ -9,13 +9,12 @@
 #include <cmath>
 #include <ctime>
 
-#include "contract/durable_file.h"
 #include "contract/errors.h"
 #include "contract/guarded_file.h"
 #include "contract/key_table.h"
 #include "contract/provenance.h"
 #include "contract/sha256.h"
-#include "engine/observables/scene_reading.h"
+#include "engine/observables/observable.h"
 #include "engine/realisation/growing_file.h"
 #include "engine/realisation/packing.h"
 #include "engine/realisation/placed_spheres.h"
@@ -96,23 +95,25 @@ class Job {
     std::string state;
     if (!save_state(*ending, state)) return std::nullopt;
     Json result = make_result(job_.header, scene_, *simulation_, *ending, state, meter_.spent());
-    const auto leave_final = [&](const fs::path& path) {
-      write_durably(path, extended_xyz(simulation_->system()));
-    };
-    const auto leave_trajectory = [&](const fs::path& path) {
-      frames_file_->take(*simulation_->frames());
-      frames_file_->finish(*simulation_->frames(), path);
-    };
     if (scene_.final_configuration && is_measured(ending->cause)) {
-      if (!leave("final.xyz", leave_final, result)) return std::nullopt;
+      const auto write = [&](const fs::path& path) {
+        write_durably(path, extended_xyz(simulation_->system()));
+      };
+      if (!leave("final.xyz", write, result)) return std::nullopt;
     }
-    const auto leave_checkpoint = [&](const fs::path& path) {
-      write_checkpoint(path, identity_, meter_.spent(), *simulation_);
-    };
     if (scene_.final_checkpoint && ending->cause == Ending::Cause::completed) {
-      if (!leave("final.checkpoint", leave_checkpoint, result)) return std::nullopt;
+      const auto write = [&](const fs::path& path) {
+        write_checkpoint(path, identity_, meter_.spent(), *simulation_);
+      };
+      if (!leave("final.checkpoint", write, result)) return std::nullopt;
     }
-    if (frames_file_ && !leave("trajectory.gsd", leave_trajectory, result)) return std::nullopt;
+    if (frames_file_) {
+      const auto write = [&](const fs::path& path) {
+        frames_file_->take(*simulation_->frames());
+        frames_file_->finish(*simulation_->frames(), path);
+      };
+      if (!leave("trajectory.gsd", write, result)) return std::nullopt;
+    }
     return result;
   }
 

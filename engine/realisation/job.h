@@ -50,4 +50,8 @@ struct JobEvents {
 // there was no room. Throws InputError, CheckpointError, std::system_error.
 std::optional<Json> run_job(const JobSpecification& job, const JobEvents& events);
 
+// Speaks frames on `descriptor` until the peer closes it or says stop; schema/README.md lists the messages.
+// Returns the exit code.
+int serve(int descriptor);
+
 }  // namespace peclet::engine

@@ -164,6 +164,17 @@ double reached_volume_fraction(ParticleState particles, const PeriodicCell& box,
   return free;
 }
 
+// Returns of(species) of each sphere, species by species.
+template <class Of>
+std::vector<double> of_each_sphere(const Particles& particles, const Of& of) {
+  const std::vector<std::size_t> number = species_numbers(particles);
+  std::vector<double> values;
+  for (std::size_t s = 0; s < number.size(); ++s) {
+    values.insert(values.end(), number[s], of(particles.species[s]));
+  }
+  return values;
+}
+
 }  // namespace
 
 PackingError::PackingError(double wanted, double reached)
@@ -173,29 +184,15 @@ PackingError::PackingError(double wanted, double reached)
       reached_(reached) {}
 
 std::vector<double> species_radii(const Particles& particles) {
-  const std::vector<std::size_t> number = species_numbers(particles);
-  std::vector<double> radius;
-  for (std::size_t s = 0; s < number.size(); ++s) {
-    radius.insert(radius.end(), number[s], particles.species[s].radius);
-  }
-  return radius;
+  return of_each_sphere(particles, [](const Species& species) { return species.radius; });
 }
 
 std::vector<double> species_densities(const Particles& particles) {
-  const std::vector<std::size_t> number = species_numbers(particles);
-  std::vector<double> density;
-  for (std::size_t s = 0; s < number.size(); ++s) {
-    density.insert(density.end(), number[s], density_of(particles, particles.species[s]));
-  }
-  return density;
+  return of_each_sphere(particles, [&](const Species& species) { return density_of(particles, species); });
 }
 
 double cube_edge(const std::vector<double>& radius, double volume_fraction) {
-  double volume = 0;
-  for (const double a : radius) {
-    volume += 4.0 / 3.0 * std::numbers::pi * a * a * a;
-  }
-  return std::cbrt(volume / volume_fraction);
+  return std::cbrt(solid_volume(radius) / volume_fraction);
 }
 
 double cube_edge(const Particles& particles, double volume_fraction) {

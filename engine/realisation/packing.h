@@ -40,8 +40,6 @@ void place_randomly(
     ParticleState& particles, const PeriodicCell& box, std::uint64_t seed,
     const std::function<void()>& made_step = [] {});
 
-// The start of a realisation: a packing whose repulsion is about to throw it apart.
-//
 // Lets repulsion and contacts move the spheres, without flow, noise and friction, until an automatic implicit
 // step moves none of them by more than a twentieth of the smallest radius. A step that moves one further is
 // taken back and made a quarter as long; the step after a good one is twice as long. After two hundred steps

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
-#include <numbers>
 #include <system_error>
 #include <vector>
 
@@ -16,7 +15,6 @@
 #include "contract/sha256.h"
 #include "contract/text.h"
 #include "engine/realisation/packing.h"
-#include "engine/scene/start_block.h"
 #include "engine/snapshots/snapshot.h"
 
 namespace peclet::engine {
@@ -63,10 +61,9 @@ class Placing {
     if (!start_.is_list) return;
     const auto lines = static_cast<std::int64_t>(lines_of_list().size());
     if (lines >= seeds) return;
-    refuse(
-        "/start/list", start_.path,
-        fmt::format("must have a line for each of the {} seeds that /realisations/maximum allows; it has {}",
-                    seeds, lines));
+    refuse("/start/list", start_.path,
+           "must have a line for each of the {} seeds that /realisations/maximum allows; it has {}", seeds,
+           lines);
   }
 
   // Throws InputError if two lines of the list have one hash.
@@ -76,18 +73,18 @@ class Placing {
     for (std::size_t seed = 0; seed < lines.size(); ++seed) {
       const auto [first, is_new] = seeds.emplace(lines[seed].substr(0, 64), seed);
       if (is_new || !is_hash(first->first)) continue;
-      refuse(
-          "/start/list", lines[seed],
-          fmt::format("must have another file for each seed without noise, but seed {} begins at a file of "
-                      "the same hash as seed {}: both would be one realisation",
-                      seed, first->second));
+      refuse("/start/list", lines[seed],
+             "must have another file for each seed without noise, but seed {} begins at a file of "
+             "the same hash as seed {}: both would be one realisation",
+             seed, first->second);
     }
   }
 
  private:
+  template <class... Arguments>
   [[noreturn]] void refuse(const std::string& pointer, const std::string& value,
-                           const std::string& rule) const {
-    throw InputError(file_, pointer, value, rule);
+                           fmt::format_string<Arguments...> rule, Arguments&&... arguments) const {
+    throw InputError(file_, pointer, value, fmt::format(rule, std::forward<Arguments>(arguments)...));
   }
 
   void require_hash(const std::string& path, const std::string& expected, const std::string& pointer) const {
@@ -96,7 +93,7 @@ class Placing {
       refuse(start_.pointer(), path, "must be a file that is there");
     const std::string found = sha256_of_file(path);
     if (found != expected) {
-      refuse(pointer, expected, fmt::format("must be that of {}, which is now {}", path, found));
+      refuse(pointer, expected, "must be that of {}, which is now {}", path, found);
     }
   }
 
@@ -114,8 +111,7 @@ class Placing {
   std::string listed(std::uint64_t seed) const {
     const std::vector<std::string> lines = lines_of_list();
     if (seed >= lines.size()) {
-      refuse("/start/list", start_.path,
-             fmt::format("must have a line for seed {}, the {}th", seed, seed + 1));
+      refuse("/start/list", start_.path, "must have a line for seed {}, the {}th", seed, seed + 1);
     }
     const std::string& line = lines[seed];
     const bool is_good = line.size() > 67 && is_hash(line.substr(0, 64)) && line[64] == ' ' &&
@@ -136,20 +132,17 @@ class Placing {
     const auto is_zero = [&](double x) { return is_near(x, 0, box.x); };
     if (!(is_zero(a.y) && is_zero(a.z) && is_zero(b.z) && is_zero(c.x) && is_zero(c.y))) {
       refuse(pointer, fraction,
-             fmt::format("must be of a box sheared along x, and the start has a cell with the edges ({:.6g}, "
-                         "{:.6g}, {:.6g}), ({:.6g}, {:.6g}, {:.6g}) and ({:.6g}, {:.6g}, {:.6g})",
-                         a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z));
+             "must be of a box sheared along x, and the start has a cell with the edges ({:.6g}, "
+             "{:.6g}, {:.6g}), ({:.6g}, {:.6g}, {:.6g}) and ({:.6g}, {:.6g}, {:.6g})",
+             a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z);
     }
     if (!is_near(a.x, box.x, box.x) || !is_near(b.y, box.y, box.y) || !is_near(c.z, box.z, box.z)) {
-      double solid = 0;
-      for (const double radius : species_radii(scene_.particles)) {
-        solid += 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
-      }
+      const double solid = solid_volume(species_radii(scene_.particles));
       refuse(pointer, fraction,
-             fmt::format("makes a box of {:.9g} by {:.9g} by {:.9g}, and the cell of the start is {:.9g} by "
-                         "{:.9g} by {:.9g}: must be as long within {:g} of each; in that cell the volume "
-                         "fraction is {:.8g}",
-                         box.x, box.y, box.z, a.x, b.y, c.z, rounding, solid / (a.x * b.y * c.z)));
+             "makes a box of {:.9g} by {:.9g} by {:.9g}, and the cell of the start is {:.9g} by "
+             "{:.9g} by {:.9g}: must be as long within {:g} of each; in that cell the volume "
+             "fraction is {:.8g}",
+             box.x, box.y, box.z, a.x, b.y, c.z, rounding, solid / (a.x * b.y * c.z));
     }
     return PeriodicCell(box, scene_.physics.flow.deformation().velocity_gradient(0), b.x);
   }
@@ -158,7 +151,7 @@ class Placing {
     const std::vector<double> radius = species_radii(scene_.particles);
     if (snapshot.count() != radius.size()) {
       refuse("/particles/count", std::to_string(radius.size()),
-             fmt::format("must be {}, the number of spheres of the start", snapshot.count()));
+             "must be {}, the number of spheres of the start", snapshot.count());
     }
     if (!snapshot.has_sizes) {
       refuse(start_.pointer(), start_.path,
@@ -168,11 +161,11 @@ class Placing {
     for (std::size_t i = 0; i < radius.size(); ++i) {
       if (is_near(snapshot.radius[i], radius[i], radius[i])) continue;
       refuse("/particles/species", fmt::format("sphere {} of radius {}", i, radius[i]),
-             fmt::format("must be as in the start, where its radius is {:.8g}{}", snapshot.radius[i],
-                         are_the_same(snapshot.radius, radius)
-                             ? ": the start has the same radii in another order, and they must follow each "
-                               "other as the species do, from the first one on"
-                             : ""));
+             "must be as in the start, where its radius is {:.8g}{}", snapshot.radius[i],
+             are_the_same(snapshot.radius, radius)
+                 ? ": the start has the same radii in another order, and they must follow each "
+                   "other as the species do, from the first one on"
+                 : "");
     }
     return radius;
   }

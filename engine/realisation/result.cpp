@@ -4,10 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "contract/provenance.h"
 #include "contract/sha256.h"
@@ -50,8 +47,6 @@ std::optional<double> half_step_difference(const StepErrors& errors) {
   return whole / halved - 1;
 }
 
-Json or_null(const std::optional<double>& number) { return number ? Json(*number) : Json(); }
-
 // Beyond this the equations of implicit steps cannot be called solved. In results/speed-accuracy, with
 // friction at phi = 0.45, it is 0.005 at the automatic step and 0.028 at four times that, whose viscosity is
 // 6 % off.
@@ -79,14 +74,6 @@ Json ending_json(const Ending& ending, const std::string& saved_state) {
           {"step", ending.step},
           {"message", ending.message},
           {"state", saved_state.empty() ? Json() : Json(saved_state)}};
-}
-
-Json warnings_json(const std::vector<Warning>& warnings) {
-  Json list = Json::array();
-  for (const Warning& warning : warnings) {
-    list.push_back({{"code", warning.code}, {"message", warning.message}});
-  }
-  return list;
 }
 
 Json common_part(const ResultHeader& header, const Scene& scene, const Schedule& schedule,
@@ -173,145 +160,6 @@ void add_measurements(const Scene& scene, const Simulation& simulation, const En
   for (const Quantity& quantity : quantities) result["quantities"][quantity.name] = to_json(quantity);
 }
 
-}  // namespace
-
-Json make_result(const ResultHeader& header, const Scene& scene, const Simulation& simulation,
-                 const Ending& ending, const std::string& saved_state, const Spent& spent) {
-  Json result = common_part(header, scene, simulation.schedule(), simulation.system().step,
-                            simulation.strains(), spent);
-  std::vector<Warning> warnings = scene_warnings(scene);
-  if (const double overlap = sum_of(simulation.production().blocks()).mean_overlap(); overlap > 0.001) {
-    warnings.push_back(
-        {"overlap",
-         fmt::format("contacts overlapped by {:.3g} of a radius in the mean, more than 0.001: they are "
-                     "too soft for this stress, and spheres take up less than their volume fraction",
-                     overlap)});
-  }
-  const std::optional<double> imbalance = energy_imbalance(scene, simulation);
-  if (imbalance && std::abs(*imbalance) > scene.guard.energy_imbalance) {
-    warnings.push_back(
-        {"timestep",
-         fmt::format("the step makes {:.3g} times the energy that the flow puts in, more than {:.3g}: "
-                     "the stress may depend on the step, choose a smaller one",
-                     *imbalance, scene.guard.energy_imbalance)});
-  }
-  const std::optional<double> difference = half_step_difference(simulation.step_errors());
-  if (difference && std::abs(*difference) > scene.guard.half_step_difference) {
-    warnings.push_back(
-        {"timestep",
-         fmt::format("half steps change the stress by {:.3g} of it, more than {:.3g}: choose a smaller "
-                     "step",
-                     -*difference, scene.guard.half_step_difference)});
-  }
-  const Json solver = solver_json(scene, simulation);
-  if (!solver.is_null() && solver["mean_residual"] > largest_mean_residual) {
-    warnings.push_back(
-        {"solver",
-         fmt::format("the equations of the steps are left with a residual of {:.3g} of the motion, more "
-                     "than {:.3g}: choose a smaller step",
-                     solver["mean_residual"].get<double>(), largest_mean_residual)});
-  }
-  if (!solver.is_null()) {
-    const auto steps = static_cast<double>(sum_of(simulation.production().blocks()).steps);
-    const double share = solver["divided_steps"].get<double>() / steps;
-    if (share > largest_share_divided) {
-      warnings.push_back(
-          {"timestep",
-           fmt::format("{:.2g} of the steps were divided, down to 1/{}, because "
-                       "spheres would have leapt, more than {}: choose a smaller step",
-                       share, 1 << solver["deepest_division"].get<int>(), largest_share_divided)});
-    }
-  }
-  if (ending.cause == Ending::Cause::jammed) {
-    warnings.push_back({"jammed", ending.message + "; its rate is 0, and it has no viscosity"});
-  }
-  result["warnings"] = warnings_json(warnings);
-  result["gate"] = {{"largest_stability_share", simulation.step_errors().largest_stability_share},
-                    {"energy_imbalance", or_null(imbalance)},
-                    {"half_step_difference", or_null(difference)},
-                    {"solver", solver}};
-  result["ending"] = ending_json(ending, saved_state);
-  result["largest_overlap"] = simulation.largest_overlap();
-  ArchiveWriter state;
-  save(simulation.system(), state);
-  result["final_state_sha256"] = sha256(state.bytes());
-  if (is_measured(ending.cause)) {
-    add_measurements(scene, simulation, ending, result);
-  }
-  return result;
-}
-
-Json make_unpacked_result(const ResultHeader& header, const Scene& scene, const Schedule& schedule,
-                          const std::string& message, const Spent& spent) {
-  Json result = common_part(header, scene, schedule, 0, {}, spent);
-  result["warnings"] = warnings_json(scene_warnings(scene));
-  result["gate"] = nullptr;
-  result["ending"] = ending_json({Ending::Cause::packing, 0, message}, "");
-  result["largest_overlap"] = nullptr;
-  result["final_state_sha256"] = nullptr;
-  return result;
-}
-
-std::vector<std::string> names_of_targets(const Scene& scene, const Schedule& schedule) {
-  const Vector3 box = box_lengths(scene, cube_edge(scene.particles, scene.volume_fraction));
-  const auto observables = make_observables(scene, {schedule.timestep, schedule.production, box}, "scene");
-  std::vector<std::string> names;
-  for (const Quantity& quantity : quantities_of(StressMeans(scene), observables)) {
-    for (std::string& name : targets_in(quantity)) names.push_back(std::move(name));
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-Json target_hints(const Scene& scene) {
-  constexpr std::pair<const char*, const char*> called[] = {{"eta_r", "relative_viscosity"},
-                                                            {"eta", "relative_viscosity"},
-                                                            {"viscosity", "relative_viscosity"},
-                                                            {"N1", "first_normal_difference"},
-                                                            {"N_1", "first_normal_difference"},
-                                                            {"N2", "second_normal_difference"},
-                                                            {"N_2", "second_normal_difference"},
-                                                            {"P", "pressure"},
-                                                            {"p", "pressure"},
-                                                            {"Z", "contacts_per_particle"},
-                                                            {"G'", "storage_modulus"},
-                                                            {"G''", "loss_modulus"},
-                                                            {"shear_stress", "stress/total/3"}};
-  Json hints = Json::object();
-  for (const ObservableKind& kind : observable_kinds()) {
-    if (scene.observables.contains(kind.name)) continue;
-    const std::string hint = fmt::format("needs \"observables\": [\"{}\"] in the scene", kind.name);
-    hints[kind.name] = hint;
-    for (const std::string& number : kind.numbers) hints[number] = hint;
-  }
-  for (const auto& [name, meant] : called) {
-    hints[name] = fmt::format("is called {}", meant);
-    if (hints.contains(meant))
-      hints[name] = fmt::format("is called {}, which {}", meant, hints[meant].get<std::string>());
-  }
-  if (scene.physics.flow.deformation().at_stress() != nullptr) {
-    for (const char* const name : {"relative_viscosity", "eta_r", "eta", "viscosity"})
-      hints[name] = "follows from the mean rate at a given stress: aim at shear_rate";
-  }
-  return hints;
-}
-
-const Json& engine_identity() {
-  static const Json identity = [] {
-    Json all = provenance();
-    // Besides the kernels, the C library picks its functions by what the processor has.
-    std::string set = name_of(chosen_instruction_set());
-#ifdef __x86_64__
-    set += __builtin_cpu_supports("fma") != 0 ? ", libm with fma" : "";
-#endif
-    all["instruction_set"] = set;
-    return all;
-  }();
-  return identity;
-}
-
-namespace {
-
 std::string line(const char* name, const std::string& text) { return fmt::format("{:<12}{}\n", name, text); }
 
 // The standard error of the mean of a series that is correlated; no error of blocks that are all equal.
@@ -388,6 +236,136 @@ std::string warnings(const Json& result) {
 }
 
 }  // namespace
+
+Json make_result(const ResultHeader& header, const Scene& scene, const Simulation& simulation,
+                 const Ending& ending, const std::string& saved_state, const Spent& spent) {
+  Json result = common_part(header, scene, simulation.schedule(), simulation.system().step,
+                            simulation.strains(), spent);
+  std::vector<Warning> warnings = scene_warnings(scene);
+  if (const double overlap = sum_of(simulation.production().blocks()).mean_overlap(); overlap > 0.001) {
+    warn(warnings, "overlap",
+         "contacts overlapped by {:.3g} of a radius in the mean, more than 0.001: they are "
+         "too soft for this stress, and spheres take up less than their volume fraction",
+         overlap);
+  }
+  const std::optional<double> imbalance = energy_imbalance(scene, simulation);
+  if (imbalance && std::abs(*imbalance) > scene.guard.energy_imbalance) {
+    warn(warnings, "timestep",
+         "the step makes {:.3g} times the energy that the flow puts in, more than {:.3g}: "
+         "the stress may depend on the step, choose a smaller one",
+         *imbalance, scene.guard.energy_imbalance);
+  }
+  const std::optional<double> difference = half_step_difference(simulation.step_errors());
+  if (difference && std::abs(*difference) > scene.guard.half_step_difference) {
+    warn(warnings, "timestep",
+         "half steps change the stress by {:.3g} of it, more than {:.3g}: choose a smaller "
+         "step",
+         -*difference, scene.guard.half_step_difference);
+  }
+  const Json solver = solver_json(scene, simulation);
+  if (!solver.is_null() && solver["mean_residual"] > largest_mean_residual) {
+    warn(warnings, "solver",
+         "the equations of the steps are left with a residual of {:.3g} of the motion, more "
+         "than {:.3g}: choose a smaller step",
+         solver["mean_residual"].get<double>(), largest_mean_residual);
+  }
+  if (!solver.is_null()) {
+    const auto steps = static_cast<double>(sum_of(simulation.production().blocks()).steps);
+    const double share = solver["divided_steps"].get<double>() / steps;
+    if (share > largest_share_divided) {
+      warn(warnings, "timestep",
+           "{:.2g} of the steps were divided, down to 1/{}, because "
+           "spheres would have leapt, more than {}: choose a smaller step",
+           share, 1 << solver["deepest_division"].get<int>(), largest_share_divided);
+    }
+  }
+  if (ending.cause == Ending::Cause::jammed) {
+    warnings.push_back({"jammed", ending.message + "; its rate is 0, and it has no viscosity"});
+  }
+  result["warnings"] = warnings;
+  result["gate"] = {{"largest_stability_share", simulation.step_errors().largest_stability_share},
+                    {"energy_imbalance", or_null(imbalance)},
+                    {"half_step_difference", or_null(difference)},
+                    {"solver", solver}};
+  result["ending"] = ending_json(ending, saved_state);
+  result["largest_overlap"] = simulation.largest_overlap();
+  ArchiveWriter state;
+  save(simulation.system(), state);
+  result["final_state_sha256"] = sha256(state.bytes());
+  if (is_measured(ending.cause)) {
+    add_measurements(scene, simulation, ending, result);
+  }
+  return result;
+}
+
+Json make_unpacked_result(const ResultHeader& header, const Scene& scene, const Schedule& schedule,
+                          const std::string& message, const Spent& spent) {
+  Json result = common_part(header, scene, schedule, 0, {}, spent);
+  result["warnings"] = scene_warnings(scene);
+  result["gate"] = nullptr;
+  result["ending"] = ending_json({Ending::Cause::packing, 0, message}, "");
+  result["largest_overlap"] = nullptr;
+  result["final_state_sha256"] = nullptr;
+  return result;
+}
+
+std::vector<std::string> names_of_targets(const Scene& scene, const Schedule& schedule) {
+  const Vector3 box = box_lengths(scene, cube_edge(scene.particles, scene.volume_fraction));
+  const auto observables = make_observables(scene, {schedule.timestep, schedule.production, box}, "scene");
+  std::vector<std::string> names;
+  for (const Quantity& quantity : quantities_of(StressMeans(scene), observables)) {
+    for (std::string& name : targets_in(quantity)) names.push_back(std::move(name));
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+Json target_hints(const Scene& scene) {
+  constexpr std::pair<const char*, const char*> called[] = {{"eta_r", "relative_viscosity"},
+                                                            {"eta", "relative_viscosity"},
+                                                            {"viscosity", "relative_viscosity"},
+                                                            {"N1", "first_normal_difference"},
+                                                            {"N_1", "first_normal_difference"},
+                                                            {"N2", "second_normal_difference"},
+                                                            {"N_2", "second_normal_difference"},
+                                                            {"P", "pressure"},
+                                                            {"p", "pressure"},
+                                                            {"Z", "contacts_per_particle"},
+                                                            {"G'", "storage_modulus"},
+                                                            {"G''", "loss_modulus"},
+                                                            {"shear_stress", "stress/total/3"}};
+  Json hints = Json::object();
+  for (const ObservableKind& kind : observable_kinds()) {
+    if (scene.observables.contains(kind.name)) continue;
+    const std::string hint = fmt::format("needs \"observables\": [\"{}\"] in the scene", kind.name);
+    hints[kind.name] = hint;
+    for (const std::string& number : kind.numbers) hints[number] = hint;
+  }
+  for (const auto& [name, meant] : called) {
+    hints[name] = fmt::format("is called {}", meant);
+    if (hints.contains(meant))
+      hints[name] = fmt::format("is called {}, which {}", meant, hints[meant].get<std::string>());
+  }
+  if (scene.physics.flow.deformation().at_stress() != nullptr) {
+    for (const char* const name : {"relative_viscosity", "eta_r", "eta", "viscosity"})
+      hints[name] = "follows from the mean rate at a given stress: aim at shear_rate";
+  }
+  return hints;
+}
+
+const Json& engine_identity() {
+  static const Json identity = [] {
+    Json all = provenance();
+    // Besides the kernels, the C library picks its functions by what the processor has.
+    std::string set = name_of(chosen_instruction_set());
+#ifdef __x86_64__
+    set += __builtin_cpu_supports("fma") != 0 ? ", libm with fma" : "";
+#endif
+    all["instruction_set"] = set;
+    return all;
+  }();
+  return identity;
+}
 
 std::string summary(const Json& result, const std::string& place) {
   const Json& cost = result.at("cost");

@@ -37,11 +37,9 @@ Json target_hints(const Scene& scene);
 // Provenance of this engine with the instruction set that its results depend on.
 const Json& engine_identity();
 
-// What a result says in ten lines, for whoever sits before the terminal.
-//
-// Of a realisation that is complete: its means, each with its standard error within this run (of the block
-// means, by their statistical inefficiency), its steps, warnings and cost, and `place`, where the result
-// lies. Ends with a newline.
+// Returns what the result of a complete realisation says in ten lines: its means, each with its standard
+// error within this run (of the block means, by their statistical inefficiency), its steps, warnings and
+// cost, and `place`, where the result lies. Ends with a newline.
 std::string summary(const Json& result, const std::string& place);
 
 // The text of a result: the keys that tell which run it is and the means first, the long lists of blocks

@@ -36,6 +36,31 @@ std::uint64_t steps_of(const Duration& duration, double from, const char* name, 
   return static_cast<std::uint64_t>(steps);
 }
 
+// Radii of which there is a sphere; a species without one is refused unless another one has its radius.
+std::vector<double> present_radii(const Particles& particles, const std::string& file) {
+  const std::vector<std::size_t> number = species_numbers(particles);
+  std::vector<double> present;
+  for (std::size_t s = 0; s < number.size(); ++s) {
+    if (number[s] > 0) present.push_back(particles.species[s].radius);
+  }
+  present = distinct_radii(present);
+  for (std::size_t s = 0; s < number.size(); ++s) {
+    const double radius = particles.species[s].radius;
+    if (!std::binary_search(present.begin(), present.end(), radius)) {
+      const std::size_t enough = smallest_count(particles);
+      throw InputError(
+          file, "/particles/count", std::to_string(particles.count),
+          fmt::format("must be large enough for one sphere of radius {}, whose share is that of {:.2g} "
+                      "spheres; {}{}",
+                      radius, exact_numbers(particles)[s],
+                      enough > 0 ? fmt::format("{} would do for all sizes", enough)
+                                 : fmt::format("not even {} would do for all sizes", most_particles),
+                      particles.distributed ? ", and `peclet-engine sizes` merges thin ones" : ""));
+    }
+  }
+  return present;
+}
+
 }  // namespace
 
 Schedule make_schedule(const Scene& scene, const std::string& file) {
@@ -68,23 +93,9 @@ Schedule make_schedule(const Scene& scene, const std::string& file) {
 }
 
 const char* name_of(Ending::Cause cause) {
-  switch (cause) {
-    case Ending::Cause::completed:
-      return "completed";
-    case Ending::Cause::jammed:
-      return "jammed";
-    case Ending::Cause::overlap:
-      return "overlap";
-    case Ending::Cause::displacement:
-      return "displacement";
-    case Ending::Cause::non_finite:
-      return "non-finite";
-    case Ending::Cause::packing:
-      return "packing";
-    case Ending::Cause::timestep:
-      return "timestep";
-  }
-  return "";
+  constexpr const char* names[] = {"completed",  "jammed",  "overlap", "displacement",
+                                   "non-finite", "packing", "timestep"};
+  return names[static_cast<std::size_t>(cause)];
 }
 
 std::optional<Ending> ending_of(const StepReport& report, const System& system, const Guard& guard,
@@ -110,35 +121,6 @@ std::optional<Ending> ending_of(const StepReport& report, const System& system, 
   }
   return std::nullopt;
 }
-
-namespace {
-
-// Radii of which there is a sphere; a species without one is refused unless another one has its radius.
-std::vector<double> present_radii(const Particles& particles, const std::string& file) {
-  const std::vector<std::size_t> number = species_numbers(particles);
-  std::vector<double> present;
-  for (std::size_t s = 0; s < number.size(); ++s) {
-    if (number[s] > 0) present.push_back(particles.species[s].radius);
-  }
-  present = distinct_radii(present);
-  for (std::size_t s = 0; s < number.size(); ++s) {
-    const double radius = particles.species[s].radius;
-    if (!std::binary_search(present.begin(), present.end(), radius)) {
-      const std::size_t enough = smallest_count(particles);
-      throw InputError(
-          file, "/particles/count", std::to_string(particles.count),
-          fmt::format("must be large enough for one sphere of radius {}, whose share is that of {:.2g} "
-                      "spheres; {}{}",
-                      radius, exact_numbers(particles)[s],
-                      enough > 0 ? fmt::format("{} would do for all sizes", enough)
-                                 : fmt::format("not even {} would do for all sizes", most_particles),
-                      particles.distributed ? ", and `peclet-engine sizes` merges thin ones" : ""));
-    }
-  }
-  return present;
-}
-
-}  // namespace
 
 void check_fit(const Scene& scene, const Schedule& schedule, const std::string& file) {
   const std::vector<double> sizes = present_radii(scene.particles, file);

@@ -11,8 +11,6 @@
 
 namespace peclet::engine {
 
-// How many steps a realisation takes, and of which size.
-//
 // Steps of the two phases; the step size is constant, so they are known before the first one.
 struct Schedule {
   double timestep = 0;
@@ -33,7 +31,6 @@ struct Ending {
   std::string message;
 };
 
-// "completed", "jammed", "overlap", "displacement", "non-finite", "packing", "timestep"
 const char* name_of(Ending::Cause cause);
 
 inline bool is_measured(Ending::Cause cause) { return has_results(name_of(cause)); }
@@ -43,11 +40,9 @@ inline bool is_measured(Ending::Cause cause) { return has_results(name_of(cause)
 std::optional<Ending> ending_of(const StepReport& report, const System& system, const Guard& guard,
                                 double smallest_radius);
 
-// Whether spheres, box and observables of a scene go together.
-//
-// What can be known without placing a sphere, in no more time and memory than a few milliseconds and bytes
-// for the largest scene. Throws InputError where a species has no sphere, where the box is smaller than the
-// range of the forces, and where an observable does not fit.
+// Checks whether spheres, box and observables of a scene go together, as far as that can be known without
+// placing a sphere: within milliseconds for the largest scene. Throws InputError where a species has no
+// sphere, where the box is smaller than the range of the forces, and where an observable does not fit.
 void check_fit(const Scene& scene, const Schedule& schedule, const std::string& file);
 
 }  // namespace peclet::engine

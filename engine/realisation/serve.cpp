@@ -1,6 +1,3 @@
-#include "engine/realisation/serve.h"
-
-#include <fmt/format.h>
 
 #include <chrono>
 #include <cstdio>
@@ -19,7 +16,7 @@
 #include "contract/key_table.h"
 #include "contract/sha256.h"
 #include "engine/integrators/derived_groups.h"
-#include "engine/observables/scene_reading.h"
+#include "engine/observables/observable.h"
 #include "engine/realisation/job.h"
 #include "engine/realisation/placed_spheres.h"
 #include "engine/realisation/result.h"
@@ -110,8 +107,7 @@ class Worker {
       answer["hints"] = target_hints(scene);
       answer["warnings"] = Json::array();
       for (const std::vector<Warning>& warnings : {scene_warnings(scene), warnings_before_run(scene)}) {
-        for (const Warning& warning : warnings)
-          answer["warnings"].push_back({{"code", warning.code}, {"message", warning.message}});
+        for (const Warning& warning : warnings) answer["warnings"].push_back(warning);
       }
     } catch (const InputError& error) {
       answer["type"] = "refused";

@@ -9,7 +9,6 @@
 #include "engine/integrators/implicit.h"
 #include "engine/integrators/velocity_verlet.h"
 #include "engine/kernels/pair_recipes.h"
-#include "engine/observables/observable.h"
 #include "engine/observables/structure.h"
 #include "engine/realisation/packing.h"
 #include "engine/realisation/schedule.h"
@@ -27,6 +26,9 @@ constexpr double skin_of_candidates = 0.5;
 // Of what the guard allows particles to move in one step: beyond that the step is divided. Noise moves some
 // of many particles that far where nothing leaps.
 constexpr double guarded_share = 1.0 / 3, guarded_share_of_noise = 2.0 / 3;
+
+// Steps and half steps are compared a few times in a run.
+constexpr std::uint64_t comparisons = 8;
 
 // The streaming flow's velocities, and those of equilibrium where there is a temperature.
 void set_initial_velocities(ParticleState& particles, const BackgroundFlow& flow, const Physics& physics,
@@ -49,12 +51,7 @@ void set_initial_velocities(ParticleState& particles, const BackgroundFlow& flow
 
 Simulation::Simulation(const Scene& scene, const Schedule& schedule, std::uint64_t seed, int threads,
                        const std::string& file)
-    : scene_(scene),
-      schedule_(schedule),
-      seed_(seed),
-      threads_(threads),
-      production_(schedule.production),
-      gate_(scene.physics, schedule) {
+    : scene_(scene), schedule_(schedule), seed_(seed), threads_(threads), production_(schedule.production) {
   driver_ = make_driver(scene_, schedule.timestep, seed);
   const Physics& physics = scene_.physics;
   check_fit(scene, schedule, file);
@@ -121,7 +118,7 @@ void Simulation::start(const System& placed, bool in_motion) {
 std::optional<Ending> Simulation::advance(std::uint64_t steps) {
   const std::uint64_t last = system_.step + steps;
   while (system_.step < std::min(last, schedule_.total())) {
-    if (std::optional<Ending> ending = gate_.check(*integrator_, system_)) {
+    if (std::optional<Ending> ending = check_stability()) {
       return ending;
     }
     const StepReport report = driver_->advance(*integrator_, system_, watchers_of_step());
@@ -164,10 +161,8 @@ void Simulation::observe(const StepReport& report) {
   const std::uint64_t index = system_.step - schedule_.equilibration - 1;
   production_.add_step(index, report.sums, report.motion, system_.box.velocity_gradient().column[1].x);
   largest_overlap_ = std::max(largest_overlap_, report.sums.largest_overlap);
-  gate_.observe(index, report, *integrator_, system_);
-  // A short window is sampled more often so that each block has its samples.
-  const std::uint64_t longest_interval = schedule_.production / count_of_blocks;
-  if (index % std::min(integrator_->intervals().sampling, longest_interval) == 0) {
+  note_errors(index, report);
+  if (index % at_most_a_block(integrator_->intervals().sampling) == 0) {
     integrator_->complete(system_);
     production_.add_sample(index, structural_brownian_stress(system_, kinds_, scene_.physics.thermal_energy),
                            varying_stresslet(system_.particles, system_.box, scene_.physics),
@@ -182,41 +177,75 @@ void Simulation::observe(const StepReport& report) {
   }
 }
 
+std::optional<Ending> Simulation::check_stability() {
+  if (system_.step % integrator_->intervals().stability != 0) return std::nullopt;
+  integrator_->complete(system_);
+  const double share = integrator_->stability_share(system_);
+  errors_.largest_stability_share = std::max(errors_.largest_stability_share, share);
+  if (share < 1) return std::nullopt;
+  // 2 l dt + w^2 dt^2 shrinks at least in proportion to dt.
+  const double step = integrator_->timestep();
+  return Ending{
+      Ending::Cause::timestep, system_.step,
+      fmt::format("the step {:.4g} is too large for the packing at strain {:.4g}, which allows {:.4g}", step,
+                  system_.box.strain(), step / share)};
+}
+
+void Simulation::note_errors(std::uint64_t index, const StepReport& report) {
+  errors_.solver_iterations += static_cast<std::uint64_t>(report.solver_iterations);
+  errors_.sum_of_solver_residuals += report.solver_residual;
+  errors_.largest_solver_residual = std::max(errors_.largest_solver_residual, report.solver_residual);
+  errors_.divided_steps += report.division > 0 ? 1 : 0;
+  errors_.deepest_division = std::max(errors_.deepest_division, static_cast<std::uint64_t>(report.division));
+  const Integrator::Intervals intervals = integrator_->intervals();
+  if (index % at_most_a_block(intervals.energy) == 0) {
+    integrator_->complete(system_);
+    if (const std::optional<double> energy = integrator_->spurious_energy(system_)) {
+      errors_.spurious_energy += *energy;
+      ++errors_.samples;
+    }
+  }
+  const bool is_smooth = scene_.physics.thermal_energy == 0 && scene_.physics.flow.is_steady();
+  const std::uint64_t between = std::max(schedule_.production / comparisons, intervals.comparison);
+  if (is_smooth && (index + 1) % between == 0) {
+    integrator_->complete(system_);
+    const Integrator::HalfSteps sample = integrator_->compare_half_steps(system_, intervals.compared_steps);
+    errors_.half_steps.whole += sample.whole;
+    errors_.half_steps.halved += sample.halved;
+  }
+}
+
 void Simulation::save(ArchiveWriter& archive) const {
   archive.put(edges_at_start_);
   engine::save(system_, archive);
   integrator_->save(archive);
   driver_->save(archive);
-  gate_.save(archive);
-  archive.put(schedule_.equilibration);
-  archive.put(largest_overlap_);
-  production_.save(archive);
+  archive.put(errors_);
+  archive.put_all(schedule_.equilibration, largest_overlap_, production_);
   for (const std::unique_ptr<Observable>& observable : observables_) observable->save(archive);
 }
 
 void Simulation::load_system(ArchiveReader& archive) {
-  edges_at_start_ = archive.get<Matrix3>();
+  archive.get_all(edges_at_start_);
   system_.box = PeriodicCell::with_edges(edges_at_start_, system_.box.velocity_gradient());
   engine::load(system_, archive);
 }
 
 void Simulation::load(ArchiveReader& archive) {
   load_system(archive);
-  integrator_->load(system_, archive);
+  integrator_->load(archive);
   driver_->load(system_, archive);
-  gate_.load(archive);
-  schedule_.equilibration = archive.get<std::uint64_t>();
-  largest_overlap_ = archive.get<double>();
-  production_.load(archive);
+  archive.get_all(errors_);
+  archive.get_all(schedule_.equilibration, largest_overlap_, production_);
   for (const std::unique_ptr<Observable>& observable : observables_) observable->load(archive);
 }
 
 void Simulation::load_motion(ArchiveReader& archive) {
   load_system(archive);
-  integrator_->load(system_, archive);
+  integrator_->load(archive);
   driver_->load(system_, archive);
   if (system_.step >= schedule_.equilibration) driver_->begin_window(system_);
-  gate_.load_before_window(archive);
+  errors_ = {.largest_stability_share = archive.get<StepErrors>().largest_stability_share};
 }
 
 }  // namespace peclet::engine

@@ -1,6 +1,7 @@
 // The time loop of one realisation.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -9,9 +10,21 @@
 #include "engine/observables/observable.h"
 #include "engine/observables/production.h"
 #include "engine/realisation/driver.h"
-#include "engine/realisation/step_gate.h"
 
 namespace peclet::engine {
+
+// What is known of the errors that the finite step makes.
+struct StepErrors {
+  double largest_stability_share = 0;  // of all checks
+  double spurious_energy = 0;          // summed over samples in the production window
+  std::uint64_t samples = 0;
+  Integrator::HalfSteps half_steps{};  // summed over samples in the production window, without noise
+  // Of all steps of the production window.
+  std::uint64_t solver_iterations = 0;
+  double sum_of_solver_residuals = 0, largest_solver_residual = 0;
+  std::uint64_t divided_steps = 0;
+  std::uint64_t deepest_division = 0;  // the smallest part was 2^-deepest_division of its step
+};
 
 class Simulation {
  public:
@@ -38,7 +51,7 @@ class Simulation {
   const Schedule& schedule() const { return schedule_; }
   const Production& production() const { return production_; }
   const std::vector<std::unique_ptr<Observable>>& observables() const { return observables_; }
-  const StepErrors& step_errors() const { return gate_.errors(); }
+  const StepErrors& step_errors() const { return errors_; }
   double largest_overlap() const { return largest_overlap_; }  // over the smaller radius, in production
 
   // Strains are summed over both directions; at a given stress they are net.
@@ -58,7 +71,16 @@ class Simulation {
   void begin();
   void load_system(ArchiveReader& archive);
   PairWatcher* watchers_of_step();
+  // Before each step: returns how the realisation ends where the packing has become too stiff for the step.
+  // Looks at the first step and every few thousand.
+  std::optional<Ending> check_stability();
   void observe(const StepReport& report);
+  // Returns the interval, shortened so that each block of a short window has its samples.
+  std::uint64_t at_most_a_block(std::uint64_t interval) const {
+    return std::min(interval, schedule_.production / count_of_blocks);
+  }
+  // Notes the energy that the step makes, and how far the stress of steps is from that of half steps.
+  void note_errors(std::uint64_t index, const StepReport& report);
 
   Scene scene_;
   Schedule schedule_;
@@ -72,7 +94,7 @@ class Simulation {
   Production production_;
   std::vector<std::unique_ptr<Observable>> observables_;  // that the scene asks for
   PairWatchers watchers_;                                 // of the step to come
-  StepGate gate_;
+  StepErrors errors_;
   double smallest_radius_;
   double largest_overlap_ = 0;
 };

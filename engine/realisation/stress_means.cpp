@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <span>
-#include <string>
-#include <utility>
 
 #include "engine/flow/controlled_shear.h"
 #include "engine/integrators/derived_groups.h"

@@ -3,7 +3,10 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
+
+#include "engine/flow/scene_document.h"
 
 namespace peclet::engine {
 
@@ -65,13 +68,23 @@ std::vector<double> volume_shares(const Particles& particles, const std::vector<
 // The volume shares that the scene asks for.
 std::vector<double> wanted_volume_shares(const Particles& particles);
 
-// How many spheres it takes for one of each size.
-//
-// Whether each radius has a sphere among the `count` of these particles.
+// Returns whether each radius has a sphere among the `count` of these particles.
 bool has_every_size(const Particles& particles);
 
 // Returns the number of spheres from which on the shares give each radius a whole one; 0 if it is larger than
 // `most_particles`. Rounding may give all of them one at fewer, but not at every larger count.
 std::size_t smallest_count(Particles particles);
+
+// Rows of the blocks /particles, /volume_fraction and /addition.
+std::string particle_keys();
+
+// Reads the sizes with their shares, densities and the radius of reference. Throws InputError where they do
+// not go together.
+Particles read_particles(const SceneDocument& scene);
+
+// As given, or with /addition that of the mixture in which the liquid and the other group stay what they were
+// at the base volume fraction phi_0: phi_0 / (phi_0 + (1 - phi_0) s), s the share of that other group among
+// the spheres. Throws InputError where it is too large.
+double read_volume_fraction(const SceneDocument& scene, const Particles& particles);
 
 }  // namespace peclet::engine

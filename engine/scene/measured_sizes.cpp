@@ -5,14 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <utility>
 
 #include "contract/errors.h"
 #include "contract/json.h"
 #include "contract/named_files.h"
 #include "contract/text.h"
 #include "engine/scene/composition.h"
-#include "engine/scene/size_distribution.h"
 
 namespace peclet::engine {
 namespace {
@@ -74,8 +72,7 @@ class Table {
 
   std::vector<MeasuredSize> read() {
     skip_header();
-    if (lines_.size() > most_sizes)
-      refuse(lines_[most_sizes], fmt::format("must be one of at most {}", most_sizes));
+    if (lines_.size() > most_sizes) refuse(lines_[most_sizes], "must be one of at most {}", most_sizes);
     std::vector<MeasuredSize> sizes;
     for (const Line& line : lines_) sizes.push_back(size_in(line));
     refuse_cumulative(sizes);
@@ -88,11 +85,16 @@ class Table {
   }
 
  private:
-  [[noreturn]] void refuse(const std::string& value, const std::string& rule) const {
-    throw InputError(file_, "", value, rule);
+  template <class... Arguments>
+  [[noreturn]] void refuse(const std::string& value, fmt::format_string<Arguments...> rule,
+                           Arguments&&... arguments) const {
+    throw InputError(file_, "", value, fmt::format(rule, std::forward<Arguments>(arguments)...));
   }
-  [[noreturn]] void refuse(const Line& line, const std::string& rule) const {
-    refuse(fmt::format("line {}: \"{}\"", line.number, line.text), rule);
+  template <class... Arguments>
+  [[noreturn]] void refuse(const Line& line, fmt::format_string<Arguments...> rule,
+                           Arguments&&... arguments) const {
+    refuse(fmt::format("line {}: \"{}\"", line.number, line.text), rule,
+           std::forward<Arguments>(arguments)...);
   }
 
   static bool begins_with_number(std::string_view line) {
@@ -119,27 +121,24 @@ class Table {
   MeasuredSize size_in(const Line& line) const {
     const std::vector<std::string_view> fields = fields_of(line.text, separator_);
     const bool is_named = columns_.first > 0;
-    if (!is_named && fields.size() != 2) {
-      refuse(line,
-             fields.size() < 2
-                 ? "must be a size and its share"
-                 : fmt::format(
-                       "has {} columns: --columns must name those of size and share, such as 1,2{}",
-                       fields.size(),
-                       separator_ == ',' ? ", and commas must not be those of decimal fractions, too" : ""));
+    if (!is_named && fields.size() < 2) refuse(line, "must be a size and its share");
+    if (!is_named && fields.size() > 2) {
+      refuse(line, "has {} columns: --columns must name those of size and share, such as 1,2{}",
+             fields.size(),
+             separator_ == ',' ? ", and commas must not be those of decimal fractions, too" : "");
     }
     const auto [of_size, of_share] = is_named ? columns_ : std::pair<std::size_t, std::size_t>{1, 2};
     if (std::max(of_size, of_share) > fields.size()) {
-      refuse(line, fmt::format("must have {} columns", std::max(of_size, of_share)));
+      refuse(line, "must have {} columns", std::max(of_size, of_share));
     }
     const auto size = number_of(fields[of_size - 1], separator_),
                share = number_of(fields[of_share - 1], separator_);
     constexpr double least = 1e-30, most = 1e30;  // of which cubes are numbers, too
-    if (!size || !(*size > 0)) refuse(line, fmt::format("must have a size > 0 in column {}", of_size));
+    if (!size || !(*size > 0)) refuse(line, "must have a size > 0 in column {}", of_size);
     if (*size < least || *size > most)
-      refuse(line, fmt::format("must have sizes from {:g} to {:g} in column {}", least, most, of_size));
-    if (!share || !(*share >= 0)) refuse(line, fmt::format("must have a share >= 0 in column {}", of_share));
-    if (*share > most) refuse(line, fmt::format("must have shares up to {:g} in column {}", most, of_share));
+      refuse(line, "must have sizes from {:g} to {:g} in column {}", least, most, of_size);
+    if (!share || !(*share >= 0)) refuse(line, "must have a share >= 0 in column {}", of_share);
+    if (*share > most) refuse(line, "must have shares up to {:g} in column {}", most, of_share);
     return {*size, *share};
   }
 
@@ -166,15 +165,6 @@ class Table {
   std::pair<std::size_t, std::size_t> columns_;
   char separator_ = ' ';
 };
-
-}  // namespace
-
-std::vector<MeasuredSize> measured_sizes(std::string_view text, const std::string& file,
-                                         std::pair<std::size_t, std::size_t> columns) {
-  return Table(text, file, columns).read();
-}
-
-namespace {
 
 constexpr std::size_t most_choices = 12;  // that are shown
 
@@ -245,6 +235,11 @@ std::string spheres_text(std::size_t count) {
 }
 
 }  // namespace
+
+std::vector<MeasuredSize> measured_sizes(std::string_view text, const std::string& file,
+                                         std::pair<std::size_t, std::size_t> columns) {
+  return Table(text, file, columns).read();
+}
 
 std::vector<SizeClass> with_one_size_less(std::vector<SizeClass> classes) {
   const auto thinnest = std::ranges::min_element(classes, {}, &SizeClass::number);

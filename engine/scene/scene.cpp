@@ -13,110 +13,84 @@
 #include "engine/flow/flow_kind.h"
 #include "engine/flow/waves.h"
 #include "engine/scene/law_blocks.h"
-#include "engine/scene/particles_block.h"
-#include "engine/scene/start_block.h"
 
 namespace peclet::engine {
 namespace {
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-// The checks of one document.
-class Reading : public SceneDocument {
- public:
-  using SceneDocument::SceneDocument;
-  explicit Reading(const SceneDocument& document) : SceneDocument(document) {}
+constexpr const char* start_keys = R"(
+/start? | object | Where the spheres begin: at a frame of a file with the same spheres and the same cell,
+    which may be sheared; absent: in a random packing. Strain and time count from there.
+/start/file | string | Absolute path of a trajectory (GSD) or a final configuration (extended XYZ), at which
+    every seed begins. In a campaign only with noise, which alone tells these seeds apart.
+/start/list | string; instead of file | Absolute path of a list of such files, as sha256sum writes it: seed k
+    begins at the file of line k + 1. Seeds beyond it fail.
+/start/sha256 | hash | SHA-256 of the file or the list, as sha256sum prints it: the point is that of this
+    content, and another one is refused.
+/start/frame | integer >= -1000000000 and <= 1000000000; default -1 | Frame of the file, from 0; -1 is the
+    last one, -2 the one before it.
+)";
 
-  Particles particles() const { return read_particles(*this); }
-  double volume_fraction(const Particles& particles) const { return read_volume_fraction(*this, particles); }
-  Physics physics() const;
-  void check_lubrication(const Particles& particles, const Physics& physics) const;
-  Duration duration(const std::string& pointer, const Physics& physics) const;
-  Duration phase(const std::string& pointer, const Physics& physics) const;
-  // That the production window, which begins then, ends, and in time.
-  void check_window(const Scene& scene, double begin) const;
-  std::optional<Start> start() const {
-    return has("/start") ? std::optional<Start>(read_start(*this)) : std::nullopt;
+// Requires the block start.
+Start read_start(const SceneDocument& scene) {
+  Start start;
+  start.is_list = scene.has("/start/list");
+  start.path = scene.at(start.pointer()).get<std::string>();
+  start.sha256 = scene.at("/start/sha256").get<std::string>();
+  start.frame = scene.at("/start/frame").get<std::int64_t>();
+  if (!start.path.starts_with('/')) {
+    scene.refuse(start.pointer(), "must be an absolute path: engines work in other folders");
   }
-};
+  return start;
+}
 
-Physics Reading::physics() const {
+// Reads the fluid and the laws of pairs.
+Physics read_laws(const SceneDocument& scene) {
   Physics physics;
-  physics.viscosity = number("/fluid/viscosity");
-  physics.thermal_energy = number_or("/fluid/thermal_energy", 0);
+  physics.viscosity = scene.number("/fluid/viscosity");
+  physics.thermal_energy = scene.number_or("/fluid/thermal_energy", 0);
   for (const LawBlock& law : law_blocks) {
-    if (has("/" + std::string(law.name))) law.read(*this, physics);
+    if (scene.has("/" + std::string(law.name))) law.read(scene, physics);
   }
   return physics;
 }
 
-void Reading::check_lubrication(const Particles& particles, const Physics& physics) const {
+void check_lubrication(const SceneDocument& scene, const Particles& particles, const Physics& physics) {
   if (!physics.lubrication) return;
   const auto by_radius = [](const Species& a, const Species& b) { return a.radius < b.radius; };
   const double smallest = std::ranges::min_element(particles.species, by_radius)->radius;
   if (const std::optional<std::string> fault = fault_of_outer_distance(*physics.lubrication, smallest)) {
-    refuse("/lubrication/outer_distance", *fault);
+    scene.refuse("/lubrication/outer_distance", "{}", *fault);
   }
 }
 
-Duration Reading::duration(const std::string& pointer, const Physics& physics) const {
-  const Json& limits = at(pointer);
-  if (limits.empty())
-    refuse(pointer, "must have at least one of strain, brownian_times, time, cycles, stress_times");
-  check_duration(*this, flow_kind_of(*this), pointer);
-  Duration duration;
-  if (physics.flow.rate() > 0) duration.strain = limits.value("strain", unlimited);
-  if (physics.thermal_energy > 0) duration.brownian_times = limits.value("brownian_times", unlimited);
-  duration.time = limits.value("time", unlimited);
-  if (limits.contains("stress_times")) {
-    const double unit = physics.flow.deformation().at_stress()->stress_time();
-    duration.time = std::min(duration.time, limits.at("stress_times").get<double>() * unit);
-  }
-  for (const auto& [name, limit] : limits.items()) {
-    // Over before it starts, whatever the flow.
-    if (limit == 0 && name != "cycles") duration = {unlimited, unlimited, 0};
-  }
-  const auto is_unlimited = [&] {
-    return duration.strain == unlimited && duration.brownian_times == unlimited && duration.time == unlimited;
-  };
-  if (limits.contains("cycles")) {
-    duration.least_time = limits.at("cycles").get<double>() * *physics.flow.period();
-    if (is_unlimited()) duration.time = duration.least_time;
-  }
-  if (is_unlimited()) {
-    refuse(pointer,
-           "would never end: strain needs a shear rate > 0, brownian_times a thermal energy > 0; give one of "
-           "them "
-           "that is reached, or time");
-  }
-  return duration;
-}
-
-// One of the two of a realisation: of whole cycles where moduli are measured.
-Duration Reading::phase(const std::string& pointer, const Physics& physics) const {
-  Duration duration = this->duration(pointer, physics);
-  const Json &list = at("/observables"), &limits = at(pointer);
-  const FlowKind& flow = flow_kind_of(*this);
+// Reads a phase of a realisation: of whole cycles where moduli are measured.
+Duration read_phase(const SceneDocument& scene, const std::string& pointer, const Physics& physics) {
+  Duration duration = read_duration(scene, pointer, physics);
+  const Json &list = scene.at("/observables"), &limits = scene.at(pointer);
+  const FlowKind& flow = flow_kind_of(scene);
   const bool has_moduli = flow.unit == "cycles" && std::count(list.begin(), list.end(), "oscillation") > 0;
   if (!flow.has_whole_cycles && !has_moduli) return duration;
   if (const double cycles = limits.value("cycles", 0.0); cycles != std::floor(cycles)) {
-    refuse(pointer + "/cycles", fmt::format("must be a whole number with {}",
-                                            flow.has_whole_cycles ? flow.key : "the observable oscillation"));
+    scene.refuse(pointer + "/cycles", "must be a whole number with {}",
+                 flow.has_whole_cycles ? flow.key : "the observable oscillation");
   }
   duration.period = *physics.flow.period();
   return duration;
 }
 
-void Reading::check_window(const Scene& scene, double begin) const {
+// Throws InputError unless the production window, which begins then, ends, and in time.
+void check_window(const SceneDocument& document, const Scene& scene, double begin) {
   const double end = begin + time_of(scene.production, scene, begin);
-  const FlowKind& flow = flow_kind_of(*this);
+  const FlowKind& flow = flow_kind_of(document);
   if (std::isinf(end)) {
-    refuse("/duration", fmt::format("would never end: the flow of {} does not make this strain", flow.key));
+    document.refuse("/duration", "would never end: the flow of {} does not make this strain", flow.key);
   }
   const double strain = end * scene.physics.flow.deformation().mean_rate();
   if (strain > flow.largest_strain * (1 + 1e-9)) {
-    refuse("/duration", fmt::format("must have a Hencky strain of at most {} in all with {}; it has {:.4g}",
-                                    flow.largest_strain, flow.key, strain));
+    document.refuse("/duration", "must have a Hencky strain of at most {} in all with {}; it has {:.4g}",
+                    flow.largest_strain, flow.key, strain);
   }
 }
 
@@ -132,6 +106,70 @@ void fill_method_and_guard(Json& document) {
     guard["largest_displacement"] = integrator["method"] == "implicit" ? 0.3 : 0.05;
   }
 }
+
+// Keys, from `begin` of their pointers on, of the flows that a scene has in the place of a shear rate.
+std::vector<std::string> flows_without_rate(std::size_t begin) {
+  std::vector<std::string> keys;
+  for (const FlowKind& kind : flow_kinds()) {
+    if (kind.beside.empty()) keys.push_back(kind.key.substr(begin));
+  }
+  return keys;
+}
+
+// Sets the temperature and returns the shear rate: of all pairs with rate / kT = Pe / (6 pi eta a^3) within
+// the limits the one with the larger values.
+double rate_from_peclet(const SceneDocument& scene, double radius, Physics& physics) {
+  for (const char* pointer : {"/flow/shear_rate", "/fluid/thermal_energy"}) {
+    if (scene.has(pointer)) scene.refuse(pointer, "must be left out together with /peclet, which sets it");
+  }
+  const double peclet = scene.number("/peclet");
+  const double scale = 6 * std::numbers::pi * physics.viscosity * radius * radius * radius;
+  double rate = scene.number("/limits/shear_rate");
+  const double largest_energy = scene.number("/limits/thermal_energy");
+  const double rate_at_largest_energy = peclet * largest_energy / scale;
+  if (rate_at_largest_energy <= rate) {
+    rate = rate_at_largest_energy;
+    physics.thermal_energy = largest_energy;
+  } else {
+    physics.thermal_energy = scale * rate / peclet;
+  }
+  const auto is_usable = [](double value) { return std::isnormal(value) && value > 0; };
+  if (!is_usable(rate) || !is_usable(physics.thermal_energy)) {
+    scene.refuse("/peclet", "leaves no shear rate and thermal energy above 0 within /limits");
+  }
+  return rate;
+}
+
+// {0}, {1}: rows of the durations, {2}: of the observables.
+constexpr const char* run_rows = R"(
+/integrator | object; default {{}} | How the equations of motion are solved.
+/integrator/method? | one of explicit, implicit | explicit: velocity Verlet; implicit: steps that solve for
+    the velocities. Unless given, implicit with lubrication and explicit without.
+/integrator/timestep | number > 0 or one of auto; in time; default "auto" | Time step; auto: half of the
+    largest stable explicit one, or the implicit one whose error has been measured, and not more than a 32nd
+    of the production window. An oscillation has a whole number of steps, 128 at least: the step is shortened
+    to that.
+/integrator/tolerance? | number > 0 and <= 0.005 | Residual of the equations of an implicit step, relative to
+    the motion, in the energy norm; unless given 0.002, with noise 0.004.
+/duration | object | How long a realisation runs.
+{0}{1}
+/observables | array of 1 or more; default ["stress"] | What is measured.
+{2}
+/files? | object | Files that a realisation leaves beside its result; absent: none.
+/files/final_configuration | true or false; default false | final.xyz: cell, centres, radii, velocities and
+    spins at the end of a completed realisation, as extended XYZ.
+/files/final_checkpoint? | true or false | final.checkpoint: all that a completed realisation needs to go on,
+    with `peclet-engine run --extend`.
+/guard | object; default {{}} | Limits that end a realisation as failed, or flag its result.
+/guard/largest_overlap | number > 0; default 0.05 | Overlap over the smaller radius of the pair.
+/guard/largest_displacement? | number > 0 | Displacement in one step, or in the smallest part of a divided
+    implicit one, relative to rate y, over the smallest radius; 0.05 with explicit and 0.3 with implicit steps
+    unless given.
+/guard/energy_imbalance | number > 0; default 0.3 | Energy that the finite step makes over the work of the
+    flow; beyond it the result has the warning timestep.
+/guard/half_step_difference | number > 0; default 0.03 | Relative difference of the stress between steps and
+    half steps, on samples; beyond it the result has the warning timestep.
+)";
 
 }  // namespace
 
@@ -167,21 +205,51 @@ Vector3 box_lengths(const Scene& scene, double cube_edge) {
 }
 
 Duration read_duration(const SceneDocument& document, const std::string& pointer, const Physics& physics) {
-  return Reading(document).duration(pointer, physics);
+  const Json& limits = document.at(pointer);
+  if (limits.empty())
+    document.refuse(pointer, "must have at least one of strain, brownian_times, time, cycles, stress_times");
+  check_duration(document, flow_kind_of(document), pointer);
+  Duration duration;
+  if (physics.flow.rate() > 0) duration.strain = limits.value("strain", unlimited);
+  if (physics.thermal_energy > 0) duration.brownian_times = limits.value("brownian_times", unlimited);
+  duration.time = limits.value("time", unlimited);
+  if (limits.contains("stress_times")) {
+    const double unit = physics.flow.deformation().at_stress()->stress_time();
+    duration.time = std::min(duration.time, limits.at("stress_times").get<double>() * unit);
+  }
+  for (const auto& [name, limit] : limits.items()) {
+    // Over before it starts, whatever the flow.
+    if (limit == 0 && name != "cycles") duration = {unlimited, unlimited, 0};
+  }
+  const auto is_unlimited = [&] {
+    return duration.strain == unlimited && duration.brownian_times == unlimited && duration.time == unlimited;
+  };
+  if (limits.contains("cycles")) {
+    duration.least_time = limits.at("cycles").get<double>() * *physics.flow.period();
+    if (is_unlimited()) duration.time = duration.least_time;
+  }
+  if (is_unlimited()) {
+    document.refuse(
+        pointer,
+        "would never end: strain needs a shear rate > 0, brownian_times a thermal energy > 0; give one of "
+        "them "
+        "that is reached, or time");
+  }
+  return duration;
 }
 
 Scene read_without_observables(const Json& document, const std::string& file) {
   Scene scene;
   scene.document = document;
   const Json& filled = scene.document;
-  const Reading reading(filled, file);
+  const SceneDocument reading(filled, file);
   fill_method_and_guard(scene.document);
 
-  scene.particles = reading.particles();
-  scene.volume_fraction = reading.volume_fraction(scene.particles);
+  scene.particles = read_particles(reading);
+  scene.volume_fraction = read_volume_fraction(reading, scene.particles);
   if (filled.contains("box")) scene.height = filled["box"]["height"].get<double>();
-  scene.physics = reading.physics();
-  reading.check_lubrication(scene.particles, scene.physics);
+  scene.physics = read_laws(reading);
+  check_lubrication(reading, scene.particles, scene.physics);
   set_flow(reading, scene.particles, scene.volume_fraction, scene.physics);
 
   const Json& integrator = filled["integrator"];
@@ -195,16 +263,16 @@ Scene read_without_observables(const Json& document, const std::string& file) {
   }
   const Json& timestep = filled["integrator"]["timestep"];
   if (timestep.is_number()) scene.timestep = timestep.get<double>();
-  scene.equilibration = reading.phase("/duration/equilibration", scene.physics);
-  scene.production = reading.phase("/duration/production", scene.physics);
+  scene.equilibration = read_phase(reading, "/duration/equilibration", scene.physics);
+  scene.production = read_phase(reading, "/duration/production", scene.physics);
   const double begin = time_of(scene.equilibration, scene);
   scene.physics.flow.measure_from(begin);
-  reading.check_window(scene, begin);
+  check_window(reading, scene, begin);
   scene.guard = {filled["guard"]["largest_overlap"].get<double>(),
                  filled["guard"]["largest_displacement"].get<double>(),
                  filled["guard"]["energy_imbalance"].get<double>(),
                  filled["guard"]["half_step_difference"].get<double>()};
-  scene.start = reading.start();
+  if (reading.has("/start")) scene.start = read_start(reading);
   scene.final_checkpoint = filled.value(Json::json_pointer("/files/final_checkpoint"), false);
   scene.final_configuration = filled.value(Json::json_pointer("/files/final_configuration"), false);
   return scene;
@@ -234,8 +302,8 @@ Physics read_physics(const Json& document, const std::string& file, const std::s
   }
   if (!filled.contains("fluid")) throw InputError(file, pointer + "/fluid", "missing", "must be an object");
   try {
-    const Reading reading(filled, "");
-    Physics physics = reading.physics();
+    const SceneDocument reading(filled, "");
+    Physics physics = read_laws(reading);
     physics.flow = read_flow({.scene = reading,
                               .shear_rate = reading.number_or("/flow/shear_rate", 0),
                               .viscosity = physics.viscosity});
@@ -248,43 +316,6 @@ Physics read_physics(const Json& document, const std::string& file, const std::s
     throw error.within(file, pointer);
   }
 }
-
-namespace {
-
-// Keys, from `begin` of their pointers on, of the flows that a scene has in the place of a shear rate.
-std::vector<std::string> flows_without_rate(std::size_t begin) {
-  std::vector<std::string> keys;
-  for (const FlowKind& kind : flow_kinds()) {
-    if (kind.beside.empty()) keys.push_back(kind.key.substr(begin));
-  }
-  return keys;
-}
-
-// Sets the temperature and returns the shear rate: of all pairs with rate / kT = Pe / (6 pi eta a^3) within
-// the limits the one with the larger values.
-double rate_from_peclet(const SceneDocument& scene, double radius, Physics& physics) {
-  for (const char* pointer : {"/flow/shear_rate", "/fluid/thermal_energy"}) {
-    if (scene.has(pointer)) scene.refuse(pointer, "must be left out together with /peclet, which sets it");
-  }
-  const double peclet = scene.number("/peclet");
-  const double scale = 6 * std::numbers::pi * physics.viscosity * radius * radius * radius;
-  double rate = scene.number("/limits/shear_rate");
-  const double largest_energy = scene.number("/limits/thermal_energy");
-  const double rate_at_largest_energy = peclet * largest_energy / scale;
-  if (rate_at_largest_energy <= rate) {
-    rate = rate_at_largest_energy;
-    physics.thermal_energy = largest_energy;
-  } else {
-    physics.thermal_energy = scale * rate / peclet;
-  }
-  const auto is_usable = [](double value) { return std::isnormal(value) && value > 0; };
-  if (!is_usable(rate) || !is_usable(physics.thermal_energy)) {
-    scene.refuse("/peclet", "leaves no shear rate and thermal energy above 0 within /limits");
-  }
-  return rate;
-}
-
-}  // namespace
 
 std::string flow_keys() {
   std::string keys = fmt::format(R"(
@@ -312,53 +343,16 @@ void set_flow(const SceneDocument& scene, const Particles& particles, double vol
   const FlowKind& flow = flow_kind_of(scene);
   for (const char* pointer : {"/box", "/start"}) {
     if (flow.own_cell.empty() || !scene.has(pointer)) continue;
-    scene.refuse(pointer, fmt::format("must be left out with {}, whose cell is {}", flow.key, flow.own_cell));
+    scene.refuse(pointer, "must be left out with {}, whose cell is {}", flow.key, flow.own_cell);
   }
   double rate = scene.number_or("/flow/shear_rate", 0);
   if (scene.has("/peclet")) rate = rate_from_peclet(scene, particles.reference_radius, physics);
   physics.flow = read_flow({scene, rate, physics.viscosity, physics.thermal_energy, volume_fraction});
   if (!scene.has(flow.key) && !scene.has("/peclet")) {
-    scene.miss(flow.key, fmt::format("must be a number >= 0, or {} or /peclet with /limits must be given",
-                                     fmt::join(flows_without_rate(0), ", ")));
+    scene.miss(flow.key, "must be a number >= 0, or {} or /peclet with /limits must be given",
+               fmt::join(flows_without_rate(0), ", "));
   }
 }
-
-// Every key of a scene: the one list behind validation, schema/scene.schema.json and the manual's page.
-
-namespace {
-
-// {0}, {1}: rows of the durations, {2}: of the observables.
-constexpr const char* run_rows = R"(
-/integrator | object; default {{}} | How the equations of motion are solved.
-/integrator/method? | one of explicit, implicit | explicit: velocity Verlet; implicit: steps that solve for
-    the velocities. Unless given, implicit with lubrication and explicit without.
-/integrator/timestep | number > 0 or one of auto; in time; default "auto" | Time step; auto: half of the
-    largest stable explicit one, or the implicit one whose error has been measured, and not more than a 32nd
-    of the production window. An oscillation has a whole number of steps, 128 at least: the step is shortened
-    to that.
-/integrator/tolerance? | number > 0 and <= 0.005 | Residual of the equations of an implicit step, relative to
-    the motion, in the energy norm; unless given 0.002, with noise 0.004.
-/duration | object | How long a realisation runs.
-{0}{1}
-/observables | array of 1 or more; default ["stress"] | What is measured.
-{2}
-/files? | object | Files that a realisation leaves beside its result; absent: none.
-/files/final_configuration | true or false; default false | final.xyz: cell, centres, radii, velocities and
-    spins at the end of a completed realisation, as extended XYZ.
-/files/final_checkpoint? | true or false | final.checkpoint: all that a completed realisation needs to go on,
-    with `peclet-engine run --extend`.
-/guard | object; default {{}} | Limits that end a realisation as failed, or flag its result.
-/guard/largest_overlap | number > 0; default 0.05 | Overlap over the smaller radius of the pair.
-/guard/largest_displacement? | number > 0 | Displacement in one step, or in the smallest part of a divided
-    implicit one, relative to rate y, over the smallest radius; 0.05 with explicit and 0.3 with implicit steps
-    unless given.
-/guard/energy_imbalance | number > 0; default 0.3 | Energy that the finite step makes over the work of the
-    flow; beyond it the result has the warning timestep.
-/guard/half_step_difference | number > 0; default 0.03 | Relative difference of the stress between steps and
-    half steps, on samples; beyond it the result has the warning timestep.
-)";
-
-}  // namespace
 
 KeyTable scene_keys_with(const std::string& keys_of_observables) {
   std::string all = particle_keys() + flow_keys();

@@ -3,7 +3,6 @@
 // A block that is absent is physics that is not computed; std::optional says so here.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -16,7 +15,7 @@
 #include "contract/json.h"
 #include "contract/key_table.h"
 #include "engine/flow/scene_document.h"
-#include "engine/flow/steady_shear.h"
+#include "engine/flow/shear.h"
 #include "engine/scene/composition.h"
 #include "engine/terms/contact.h"
 #include "engine/terms/laws.h"
@@ -72,6 +71,10 @@ struct Guard {
 struct Warning {
   std::string code;  // "inertia-shear", "inertia-thermal", "composition", "patience", "overlap" ...
   std::string message;
+
+  friend void to_json(Json& json, const Warning& warning) {
+    json = {{"code", warning.code}, {"message", warning.message}};
+  }
 };
 
 // How the equations of motion are solved.
@@ -116,7 +119,8 @@ Vector3 box_lengths(const Scene& scene, double cube_edge);
 // The time, from then on, after which the first of the limits is reached.
 double time_of(const Duration& duration, const Scene& scene, double from = 0);
 
-// All keys of a scene; the rows of its observables are given.
+// Returns every key of a scene, the one list behind validation, schema/scene.schema.json and the manual's
+// page. The rows of its observables are given.
 KeyTable scene_keys_with(const std::string& keys_of_observables);
 
 // Reads a document whose keys are valid, all but its observables. `file` names it in messages. Throws

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <string>
 #include <utility>
 
 namespace peclet::engine {
@@ -78,42 +77,6 @@ std::vector<Amount> amounts_of(const SizeDistribution& distribution) {
 
 double with_six_digits(double value) { return std::stod(fmt::format("{:.6g}", value)); }
 
-}  // namespace
-
-double largest_relative_width(SizeDistribution::Form form) {
-  if (form == SizeDistribution::Form::lognormal) return 1;
-  return form == SizeDistribution::Form::uniform ? 0.55 : 0.32;
-}
-
-std::vector<SizeClass> size_classes(const SizeDistribution& distribution) {
-  const std::vector<Amount> amounts = amounts_of(distribution);
-  Amount whole;
-  for (const Amount& amount : amounts) whole.add(amount, 1);
-  std::vector<Amount> classes(distribution.classes);
-  const auto count = static_cast<double>(classes.size());
-  double below = 0;  // the mean share of number and volume, in classes
-  for (const Amount& amount : amounts) {
-    const double width = count * (amount.number / whole.number + amount.volume / whole.volume) / 2;
-    double from = below;
-    const double to = below + width;
-    while (from < to) {
-      const std::size_t k = std::min(static_cast<std::size_t>(from), classes.size() - 1);
-      const double end = k + 1 < classes.size() ? std::min(to, static_cast<double>(k + 1)) : to;
-      classes[k].add(amount, (end - from) / width);
-      from = end;
-    }
-    below = to;
-  }
-  std::vector<SizeClass> sizes;
-  sizes.reserve(classes.size());
-  for (const Amount& one : classes) {
-    sizes.push_back({with_six_digits(std::cbrt(one.volume / one.number)), one.number / whole.number});
-  }
-  return sizes;
-}
-
-namespace {
-
 constexpr std::size_t usual_classes = 16;
 
 bool by_number(const SpeciesList& list) { return list.shares == Particles::Shares::number; }
@@ -141,8 +104,7 @@ class DistributionReading {
       distribution.classes = scene_.at(pointer_ + "/classes").get<std::size_t>();
     }
     if (const double most = largest_relative_width(distribution.form); distribution.relative_width > most) {
-      scene_.refuse(pointer_ + "/relative_width",
-                    fmt::format("must be at most {} with the form {}", most, form_));
+      scene_.refuse(pointer_ + "/relative_width", "must be at most {} with the form {}", most, form_);
     }
     return size_classes(distribution);
   }
@@ -153,8 +115,7 @@ class DistributionReading {
   std::vector<SizeClass> bins() const {
     const Json &radii = scene_.at(pointer_ + "/radii"), &shares = scene_.at(pointer_ + "/shares");
     if (shares.size() != radii.size()) {
-      scene_.refuse(pointer_ + "/shares",
-                    fmt::format("must have a share for each of the {} radii", radii.size()));
+      scene_.refuse(pointer_ + "/shares", "must have a share for each of the {} radii", radii.size());
     }
     std::vector<SizeClass> classes;
     for (std::size_t i = 0; i < radii.size(); ++i) {
@@ -218,6 +179,38 @@ constexpr const char* species_rows = R"(
 
 }  // namespace
 
+double largest_relative_width(SizeDistribution::Form form) {
+  if (form == SizeDistribution::Form::lognormal) return 1;
+  return form == SizeDistribution::Form::uniform ? 0.55 : 0.32;
+}
+
+std::vector<SizeClass> size_classes(const SizeDistribution& distribution) {
+  const std::vector<Amount> amounts = amounts_of(distribution);
+  Amount whole;
+  for (const Amount& amount : amounts) whole.add(amount, 1);
+  std::vector<Amount> classes(distribution.classes);
+  const auto count = static_cast<double>(classes.size());
+  double below = 0;  // the mean share of number and volume, in classes
+  for (const Amount& amount : amounts) {
+    const double width = count * (amount.number / whole.number + amount.volume / whole.volume) / 2;
+    double from = below;
+    const double to = below + width;
+    while (from < to) {
+      const std::size_t k = std::min(static_cast<std::size_t>(from), classes.size() - 1);
+      const double end = k + 1 < classes.size() ? std::min(to, static_cast<double>(k + 1)) : to;
+      classes[k].add(amount, (end - from) / width);
+      from = end;
+    }
+    below = to;
+  }
+  std::vector<SizeClass> sizes;
+  sizes.reserve(classes.size());
+  for (const Amount& one : classes) {
+    sizes.push_back({with_six_digits(std::cbrt(one.volume / one.number)), one.number / whole.number});
+  }
+  return sizes;
+}
+
 std::string species_keys() { return fmt::format(species_rows, most_species); }
 
 // Shares are relative: they are divided by their sum.
@@ -232,11 +225,11 @@ SpeciesList read_species(const SceneDocument& scene, const std::string& pointer)
   for (std::size_t i = 0; i < given.size(); ++i) {
     const std::string own = fmt::format("{}/{}", pointer, i);
     if (given[i].contains(other)) {
-      scene.refuse(own + '/' + other,
-                   "must be left out: the first species has " + wanted + ", all must have the same");
+      scene.refuse(own + '/' + other, "must be left out: the first species has {}, all must have the same",
+                   wanted);
     }
     if (!given[i].contains(wanted) && given.size() > 1) {
-      scene.miss(own + '/' + wanted, "each species must have a " + wanted + " > 0 (or each a " + other + ")");
+      scene.miss(own + '/' + wanted, "each species must have a {} > 0 (or each a {})", wanted, other);
     }
     Species species = {0, given[i].value(wanted, 1.0)};
     if (given[i].contains("density")) species.density = given[i]["density"].get<double>();
@@ -250,8 +243,8 @@ SpeciesList read_species(const SceneDocument& scene, const std::string& pointer)
     list.pointers.push_back(own);
   }
   if (list.species.size() > most_species) {
-    scene.refuse(pointer, fmt::format("must be at most {} sizes, those of distributions counted, not {}",
-                                      most_species, list.species.size()));
+    scene.refuse(pointer, "must be at most {} sizes, those of distributions counted, not {}", most_species,
+                 list.species.size());
   }
   for (Species& one : list.species) one.share /= sum;
   return list;

@@ -41,8 +41,6 @@ struct SizeClass {
 // by less than 0.5 % with 16 classes and widths up to 0.5. Requires a width in (0, largest_relative_width].
 std::vector<SizeClass> size_classes(const SizeDistribution& distribution);
 
-// A list of sizes in a scene, each a radius or a distribution of radii.
-//
 // Each pair of sizes has constants of its own.
 inline constexpr std::size_t most_species = 256;
 

@@ -8,7 +8,6 @@
 
 #include "contract/errors.h"
 #include "contract/named_files.h"
-#include "engine/snapshots/snapshot.h"
 
 namespace peclet::engine {
 namespace {
@@ -42,8 +41,6 @@ class RowText {
   bool single_;
 };
 
-std::string spaced(const Vector3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
-
 // Names of species as words of a line: those that are none, for they are empty or have blanks, are numbered.
 std::vector<std::string> words_of_species(const Snapshot& snapshot) {
   const auto is_plain = [](char c) { return c > ' ' && c <= '~'; };
@@ -54,7 +51,22 @@ std::vector<std::string> words_of_species(const Snapshot& snapshot) {
   return words;
 }
 
+using FrameText = std::string (*)(const Snapshot&);
+
+FrameText text_of(const ConversionOptions& options) {
+  if (options.format == "lammps") return lammps_frame;
+  if (options.format == "xyz") return xyz_frame;
+  const std::string ending = std::filesystem::path(options.output).extension().string();
+  if (ending == ".lammpstrj" || ending == ".dump") return lammps_frame;
+  if (ending == ".xyz" || ending == ".extxyz") return xyz_frame;
+  throw InputError(options.output.empty() ? "--format" : "--output", "",
+                   options.output.empty() ? "missing" : options.output,
+                   "must end in .lammpstrj, .dump, .xyz or .extxyz, or --format must be lammps or xyz");
+}
+
 }  // namespace
+
+std::string spaced(const Vector3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
 
 std::string lammps_frame(const Snapshot& snapshot) {
   const auto& [a, b, c] = snapshot.lattice.column;
@@ -122,23 +134,6 @@ std::string xyz_frame(const Snapshot& snapshot) {
   }
   return text;
 }
-
-namespace {
-
-using FrameText = std::string (*)(const Snapshot&);
-
-FrameText text_of(const ConversionOptions& options) {
-  if (options.format == "lammps") return lammps_frame;
-  if (options.format == "xyz") return xyz_frame;
-  const std::string ending = std::filesystem::path(options.output).extension().string();
-  if (ending == ".lammpstrj" || ending == ".dump") return lammps_frame;
-  if (ending == ".xyz" || ending == ".extxyz") return xyz_frame;
-  throw InputError(options.output.empty() ? "--format" : "--output", "",
-                   options.output.empty() ? "missing" : options.output,
-                   "must end in .lammpstrj, .dump, .xyz or .extxyz, or --format must be lammps or xyz");
-}
-
-}  // namespace
 
 std::string convert_trajectory(const ConversionOptions& options) {
   const FrameText text = text_of(options);

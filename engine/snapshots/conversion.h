@@ -7,8 +7,6 @@
 
 namespace peclet::engine {
 
-// Frames as texts that other programs read.
-//
 // A frame of LAMMPS' dump in a triclinic cell (https://docs.lammps.org/Howto_triclinic.html): the bounds are
 // those of a box that holds the tilted cell. Columns: id (from 1), type (from 1), x y z, ix iy iz, radius,
 // and what the frame has of vx vy vz, omegax omegay omegaz, stress_xx yy zz xy xz yz (V sigma_i), contacts. x
@@ -19,6 +17,9 @@ std::string lammps_frame(const Snapshot& snapshot);
 // A frame of extended XYZ: Lattice, Origin, Step and, where the frame has them, Time, Strain,
 // Velocity_gradient and the stresses of the cell, stress_TERM; columns as read_xyz_frame() takes them.
 std::string xyz_frame(const Snapshot& snapshot);
+
+// Returns the components, parted by blanks, so that they are read back bit by bit.
+std::string spaced(const Vector3& vector);
 
 struct ConversionOptions {
   std::string file;

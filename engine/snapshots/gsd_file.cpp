@@ -1,19 +1,15 @@
 #include "engine/snapshots/gsd_file.h"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
 #include <system_error>
-#include <utility>
 
-#include "contract/errors.h"
 #include "contract/sha256.h"
 
 namespace peclet::engine::gsd {
@@ -41,6 +37,32 @@ void put_counted(ArchiveWriter& archive, const std::vector<Value>& values) {
   archive.put(static_cast<std::uint64_t>(values.size()));
   archive.put(values);
 }
+
+// Of an index in memory: 128 MB. Trajectories of this program have a tenth of it at most.
+constexpr std::uint64_t most_entries = std::uint64_t{4} << 20, most_segments = std::uint64_t{1} << 16;
+// An entry of the index has 16 bits for its name.
+constexpr std::size_t most_names = 65536;
+
+// Not opened as a person's other input is: chunks are read where they are, and a trajectory need not fit into
+// memory. A FIFO would wait for ever.
+Descriptor opened(const std::filesystem::path& path) {
+  Descriptor file = open_file(path, O_RDONLY | O_NONBLOCK | O_NOCTTY);
+  if (file.number() < 0) {
+    throw InputError(path.string(), "", "",
+                     "cannot be read: " + std::generic_category().message(std::exchange(errno, 0)));
+  }
+  struct stat about {};
+  if (fstat(file.number(), &about) != 0) fail_to("cannot examine", path);
+  if (!S_ISREG(about.st_mode)) throw InputError(path.string(), "", "", "must be a regular file");
+  return file;
+}
+
+std::uint64_t size_of_value(std::uint8_t type) {
+  constexpr std::array<std::uint8_t, 11> sizes = {0, 1, 2, 4, 8, 1, 2, 4, 8, 4, 8};
+  return type < sizes.size() ? sizes[type] : 0;
+}
+
+std::string text_in(const char (&field)[64]) { return {field, strnlen(field, sizeof field)}; }
 
 }  // namespace
 
@@ -104,36 +126,6 @@ void Frames::load(ArchiveReader& archive) {
   current_.clear();
 }
 
-namespace {
-
-// Of an index in memory: 128 MB. Trajectories of this program have a tenth of it at most.
-constexpr std::uint64_t most_entries = std::uint64_t{4} << 20, most_segments = std::uint64_t{1} << 16;
-// An entry of the index has 16 bits for its name.
-constexpr std::size_t most_names = 65536;
-
-// Not opened as a person's other input is: chunks are read where they are, and a trajectory need not fit into
-// memory. A FIFO would wait for ever.
-Descriptor opened(const std::filesystem::path& path) {
-  Descriptor file = open_file(path, O_RDONLY | O_NONBLOCK | O_NOCTTY);
-  if (file.number() < 0) {
-    throw InputError(path.string(), "", "",
-                     "cannot be read: " + std::generic_category().message(std::exchange(errno, 0)));
-  }
-  struct stat about {};
-  if (fstat(file.number(), &about) != 0) fail_to("cannot examine", path);
-  if (!S_ISREG(about.st_mode)) throw InputError(path.string(), "", "", "must be a regular file");
-  return file;
-}
-
-std::uint64_t size_of_value(std::uint8_t type) {
-  constexpr std::array<std::uint8_t, 11> sizes = {0, 1, 2, 4, 8, 1, 2, 4, 8, 4, 8};
-  return type < sizes.size() ? sizes[type] : 0;
-}
-
-std::string text_in(const char (&field)[64]) { return {field, strnlen(field, sizeof field)}; }
-
-}  // namespace
-
 Reader::Reader(const std::filesystem::path& path) : path_(path), file_(opened(path)) {
   struct stat about {};
   if (fstat(file_.number(), &about) != 0) fail_to("cannot examine", path_);
@@ -143,19 +135,10 @@ Reader::Reader(const std::filesystem::path& path) : path_(path), file_(opened(pa
   read_index(header);
 }
 
-void Reader::refuse(const std::string& value, const std::string& allowed) const {
-  throw InputError(path_.string(), "", value, allowed);
-}
-
 void Reader::read(std::uint64_t place, std::span<std::byte> bytes) const {
-  while (!bytes.empty()) {
-    const ssize_t more = ::pread(file_.number(), bytes.data(), bytes.size(), static_cast<off_t>(place));
-    if (more < 0 && errno == EINTR) continue;
-    if (more < 0) fail_to("cannot read", path_);
-    if (more == 0) refuse(fmt::format("byte {}", place), "is missing: the file has been cut");
-    place += static_cast<std::uint64_t>(more);
-    bytes = bytes.subspan(static_cast<std::size_t>(more));
-  }
+  const std::size_t count = read_at(file_.number(), place, bytes, path_);
+  if (count < bytes.size())
+    refuse(fmt::format("byte {}", place + count), "is missing: the file has been cut");
 }
 
 std::string Reader::read_text(std::uint64_t place, std::uint64_t length) const {
@@ -170,8 +153,7 @@ Header Reader::checked_header() const {
     refuse(fmt::format("{} bytes", length_), "must be a GSD file: 256 bytes or more");
   read(0, std::as_writable_bytes(std::span(&header, 1)));
   if (header.magic != magic) {
-    refuse(fmt::format("begins with {:#018x}", header.magic),
-           fmt::format("must be a GSD file, {:#018x}", magic));
+    refuse(fmt::format("begins with {:#018x}", header.magic), "must be a GSD file, {:#018x}", magic);
   }
   if (header.file_version >> 16 != 2) {
     refuse(fmt::format("layout {}.{}", header.file_version >> 16, header.file_version & 0xffff),
@@ -188,15 +170,14 @@ void Reader::read_names(const Header& header) {
   if (header.names_segments > most_segments ||
       !holds(header.names_location, header.names_segments * segment)) {
     refuse(fmt::format("{} segments of names at byte {}", header.names_segments, header.names_location),
-           fmt::format("must lie within the {} bytes of the file", length_));
+           "must lie within the {} bytes of the file", length_);
   }
   const std::string list = read_text(header.names_location, header.names_segments * segment);
   for (std::size_t at = 0; at < list.size() && list[at] != '\0';) {
     const std::size_t end = list.find('\0', at);
     if (end == std::string::npos) refuse("the list of names", "must end with a zero");
     std::string name = list.substr(at, end - at);
-    if (names_.size() == most_names)
-      refuse("the list of names", fmt::format("must have at most {}", most_names));
+    if (names_.size() == most_names) refuse("the list of names", "must have at most {}", most_names);
     const bool is_new = number_of_name_.emplace(name, static_cast<std::uint16_t>(names_.size())).second;
     if (!is_new) refuse(name, "must be in the list of names once");
     names_.push_back(std::move(name));
@@ -208,7 +189,7 @@ void Reader::read_index(const Header& header) {
   if (header.index_entries > most_entries ||
       !holds(header.index_location, header.index_entries * sizeof(IndexEntry))) {
     refuse(fmt::format("{} entries of the index at byte {}", header.index_entries, header.index_location),
-           fmt::format("must be at most {} within the {} bytes of the file", most_entries, length_));
+           "must be at most {} within the {} bytes of the file", most_entries, length_);
   }
   index_.resize(header.index_entries);
   read(header.index_location, std::as_writable_bytes(std::span(index_)));
@@ -216,7 +197,7 @@ void Reader::read_index(const Header& header) {
   for (std::size_t k = 0; k < index_.size(); ++k) {
     const IndexEntry& entry = index_[k];
     const auto refuse_entry = [&](const std::string& why) {
-      refuse(fmt::format("entry {} of the index", k), why);
+      refuse(fmt::format("entry {} of the index", k), "{}", why);
     };
     if (entry.name >= names_.size())
       refuse_entry(fmt::format("has name {} of {}", entry.name, names_.size()));
@@ -233,7 +214,7 @@ void Reader::read_index(const Header& header) {
     if (!has_place) {
       refuse(fmt::format("{} of frame {}: {} rows of {} bytes at byte {}", names_[entry.name], entry.frame,
                          entry.rows, width, entry.location),
-             fmt::format("must lie within the {} bytes of the file", length_));
+             "must lie within the {} bytes of the file", length_);
     }
   }
 }
@@ -256,7 +237,7 @@ void Reader::check(const IndexEntry& chunk, std::uint8_t type, std::uint32_t col
   if (chunk.type == type && chunk.columns == columns) return;
   refuse(fmt::format("{} of frame {}: {} columns of type {}", names_[chunk.name], chunk.frame, chunk.columns,
                      chunk.type),
-         fmt::format("must be {} of type {}", columns, type));
+         "must be {} of type {}", columns, type);
 }
 
 bool begins_as_gsd(const std::filesystem::path& path) {

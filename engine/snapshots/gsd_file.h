@@ -1,6 +1,8 @@
 // GSD files: their layout, frames on their way into one, and a reader of files from anywhere.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -8,13 +10,14 @@
 #include <filesystem>
 #include <functional>
 #include <map>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "contract/durable_file.h"
+#include "contract/errors.h"
 #include "engine/state/archive.h"
 
 namespace peclet::engine::gsd {
@@ -154,7 +157,11 @@ class Reader {
   }
 
   // What is wrong with this file, for what is read from it.
-  [[noreturn]] void refuse(const std::string& value, const std::string& allowed) const;
+  template <class... Arguments>
+  [[noreturn]] void refuse(const std::string& value, fmt::format_string<Arguments...> rule,
+                           Arguments&&... arguments) const {
+    throw InputError(path_.string(), "", value, fmt::format(rule, std::forward<Arguments>(arguments)...));
+  }
 
  private:
   void read(std::uint64_t place, std::span<std::byte> bytes) const;

@@ -1,10 +1,7 @@
-#include "engine/snapshots/gsd_snapshots.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstring>
-#include <utility>
 
 #include "engine/snapshots/snapshot.h"
 
@@ -18,7 +15,7 @@ class FrameReading {
   Snapshot read() {
     count_ = single<std::uint32_t>("particles/N", 0);
     if (count_ == 0 || count_ > most_spheres) {
-      refuse("particles/N", std::to_string(count_), fmt::format("must be 1 to {}", most_spheres));
+      refuse("particles/N", std::to_string(count_), "must be 1 to {}", most_spheres);
     }
     Snapshot snapshot;
     snapshot.single = true;
@@ -46,8 +43,11 @@ class FrameReading {
   }
 
  private:
-  [[noreturn]] void refuse(const std::string& name, const std::string& value, const std::string& rule) const {
-    file_.refuse(fmt::format("{} of frame {}: {}", name, frame_, value), rule);
+  template <class... Arguments>
+  [[noreturn]] void refuse(const std::string& name, const std::string& value,
+                           fmt::format_string<Arguments...> rule, Arguments&&... arguments) const {
+    file_.refuse(fmt::format("{} of frame {}: {}", name, frame_, value), rule,
+                 std::forward<Arguments>(arguments)...);
   }
 
   const gsd::IndexEntry* own(std::string_view name) const { return file_.find(frame_, name); }
@@ -73,8 +73,7 @@ class FrameReading {
       if (chunk == nullptr || chunk->rows != count_) return {};
     }
     if (chunk->rows != count_) {
-      refuse(name, fmt::format("{} rows", chunk->rows),
-             fmt::format("must have one for each of {} spheres", count_));
+      refuse(name, fmt::format("{} rows", chunk->rows), "must have one for each of {} spheres", count_);
     }
     const std::vector<Value> values = file_.get<Value>(*chunk, columns);
     std::vector<std::array<Value, columns>> all(count_);
@@ -99,7 +98,7 @@ class FrameReading {
     }
     if (!(std::min({box[0], box[1], box[2]}) > 0)) {
       const bool is_flat = box[0] > 0 && box[1] > 0 && box[2] == 0;
-      refuse("configuration/box", fmt::format("lengths {}, {} and {}", box[0], box[1], box[2]),
+      refuse("configuration/box", fmt::format("lengths {}, {} and {}", box[0], box[1], box[2]), "{}",
              is_flat ? "must be > 0: with Lz = 0 the file has two dimensions, spheres have three"
                      : "must be three lengths > 0");
     }
@@ -120,8 +119,7 @@ class FrameReading {
     }
     if (const gsd::IndexEntry* const chunk = own_or_first("particles/types")) {
       if (chunk->rows > most_types) {
-        refuse("particles/types", fmt::format("{} types", chunk->rows),
-               fmt::format("must be at most {}", most_types));
+        refuse("particles/types", fmt::format("{} types", chunk->rows), "must be at most {}", most_types);
       }
       const auto text = file_.get<std::int8_t>(*chunk, chunk->columns);
       const std::string letters(text.begin(), text.end());
@@ -134,8 +132,8 @@ class FrameReading {
     const auto types = rows<std::uint32_t, 1>("particles/typeid");
     for (std::size_t i = 0; i < types.size(); ++i) {
       if (types[i][0] >= snapshot.species_names.size()) {
-        refuse("particles/typeid", std::to_string(types[i][0]),
-               fmt::format("must be below {}, the number of types", snapshot.species_names.size()));
+        refuse("particles/typeid", std::to_string(types[i][0]), "must be below {}, the number of types",
+               snapshot.species_names.size());
       }
       snapshot.species[i] = types[i][0];
     }
@@ -148,7 +146,7 @@ class FrameReading {
     if (group == nullptr || normal == nullptr || tangential == nullptr) return;
     if (normal->rows != group->rows || tangential->rows != group->rows) {
       refuse("log/bonds/normal_force", fmt::format("{} rows", normal->rows),
-             fmt::format("must be {}, as many as bonds/group", group->rows));
+             "must be {}, as many as bonds/group", group->rows);
     }
     const auto ids = file_.get<std::uint32_t>(*group, 2);
     const auto forces = file_.get<float>(*normal);

@@ -8,9 +8,6 @@
 
 #include "contract/errors.h"
 #include "contract/named_files.h"
-#include "engine/snapshots/gsd_snapshots.h"
-#include "engine/snapshots/xyz_snapshots.h"
-#include "engine/state/periodic_cell.h"
 
 namespace peclet::engine {
 namespace {
@@ -53,19 +50,21 @@ class Check {
   }
 
  private:
-  [[noreturn]] void refuse(const std::string& value, const std::string& rule) const {
-    throw InputError(file_, "", value, rule);
+  template <class... Arguments>
+  [[noreturn]] void refuse(const std::string& value, fmt::format_string<Arguments...> rule,
+                           Arguments&&... arguments) const {
+    throw InputError(file_, "", value, fmt::format(rule, std::forward<Arguments>(arguments)...));
   }
 
   void check_number(double x, const std::string& what) const {
     if (!is_number(x))
-      refuse(fmt::format("{} {:.6g}", what, x), fmt::format("must be from {:g} to {:g}", -largest, largest));
+      refuse(fmt::format("{} {:.6g}", what, x), "must be from {:g} to {:g}", -largest, largest);
   }
 
   void check_vector(const Vector3& v, const char* what, std::size_t sphere) const {
     if (is_vector(v)) return;
-    refuse(fmt::format("{} {} of sphere {}", what, text_of(v), sphere),
-           fmt::format("must have numbers from {:g} to {:g}", -largest, largest));
+    refuse(fmt::format("{} {} of sphere {}", what, text_of(v), sphere), "must have numbers from {:g} to {:g}",
+           -largest, largest);
   }
 
   template <class Name>
@@ -83,11 +82,10 @@ class Check {
     const bool is_cell = is_vector(a) && is_vector(b) && is_vector(c) && longest_ >= least_length &&
                          longest_ <= largest && std::min({across.x, across.y, across.z}) >= finest * longest_;
     if (!is_cell) {
-      refuse(
-          fmt::format("cell {} {} {}", text_of(a), text_of(b), text_of(c)),
-          fmt::format("must have three edges of different directions, from {:g} to {:g} long, none of them "
-                      "less than a millionth of another",
-                      least_length, largest));
+      refuse(fmt::format("cell {} {} {}", text_of(a), text_of(b), text_of(c)),
+             "must have three edges of different directions, from {:g} to {:g} long, none of them "
+             "less than a millionth of another",
+             least_length, largest);
     }
     check_place(snapshot_.corner, [] { return std::string("corner of the cell"); });
   }
@@ -105,12 +103,11 @@ class Check {
       check_place(snapshot_.position[i], [&] { return fmt::format("sphere {}", i); });
       const double a = snapshot_.radius[i];
       if (a >= finest * longest_ && a <= longest_) continue;
-      refuse(
-          fmt::format("radius {:.6g} of sphere {}", a, i),
-          fmt::format("must be > 0, from {:.6g} to {:.6g}: a millionth of the longest edge of the cell and "
-                      "that edge{}",
-                      finest * longest_, longest_,
-                      snapshot_.has_sizes ? "" : "; the file has no diameters, and 1 stands for them"));
+      refuse(fmt::format("radius {:.6g} of sphere {}", a, i),
+             "must be > 0, from {:.6g} to {:.6g}: a millionth of the longest edge of the cell and "
+             "that edge{}",
+             finest * longest_, longest_,
+             snapshot_.has_sizes ? "" : "; the file has no diameters, and 1 stands for them");
     }
   }
 
@@ -119,8 +116,7 @@ class Check {
     if (snapshot_.time) {
       check_number(*snapshot_.time, "time");
       if (*snapshot_.time != 0 && std::abs(*snapshot_.time) < least_time) {
-        refuse(fmt::format("time {:.6g}", *snapshot_.time),
-               fmt::format("must be 0 or at least {:g}", least_time));
+        refuse(fmt::format("time {:.6g}", *snapshot_.time), "must be 0 or at least {:g}", least_time);
       }
     }
     if (!snapshot_.velocity_gradient) return;
@@ -135,12 +131,11 @@ class Check {
                            contact.first != contact.second && contact.normal_force >= 0 &&
                            is_number(contact.normal_force) && is_number(contact.tangential_force);
       if (is_good) continue;
-      refuse(
-          fmt::format("contact of {} and {}: forces {:.6g} and {:.6g}", contact.first, contact.second,
-                      contact.normal_force, contact.tangential_force),
-          fmt::format("must be of two spheres below {}, with a normal force from 0 and a tangential one up "
-                      "to {:g}",
-                      snapshot_.count(), largest));
+      refuse(fmt::format("contact of {} and {}: forces {:.6g} and {:.6g}", contact.first, contact.second,
+                         contact.normal_force, contact.tangential_force),
+             "must be of two spheres below {}, with a normal force from 0 and a tangential one up "
+             "to {:g}",
+             snapshot_.count(), largest);
     }
   }
 
@@ -149,12 +144,6 @@ class Check {
   CellFrame cell_{};
   double longest_ = 0;
 };
-
-}  // namespace
-
-void check_snapshot(const Snapshot& snapshot, const std::string& file) { Check(snapshot, file).run(); }
-
-namespace {
 
 constexpr InputLimits text_limits{std::size_t{256} << 20, 0};
 
@@ -168,6 +157,8 @@ std::int64_t whole(std::string_view text, std::int64_t missing, const std::strin
 }
 
 }  // namespace
+
+void check_snapshot(const Snapshot& snapshot, const std::string& file) { Check(snapshot, file).run(); }
 
 std::string note_on_sizes(const std::string& file) {
   return file + " has no diameters (particles/diameter): its spheres are shown with the diameter 1";

@@ -61,8 +61,6 @@ inline bool is_turned(const Snapshot& snapshot) {
   return a.y != 0 || a.z != 0 || b.z != 0 || !(a.x > 0 && b.y > 0 && c.z > 0);
 }
 
-// The one place that judges what files say of spheres.
-//
 // Throws InputError naming `file` if a number of the snapshot cannot be computed with as what it is:
 //   lattice vectors: linearly independent, of lengths from 1e-30 to 1e30, none shorter across the others than
 //     a millionth of the longest one;
@@ -74,9 +72,27 @@ inline bool is_turned(const Snapshot& snapshot) {
 // Requires lists of as many entries as there are spheres, or none.
 void check_snapshot(const Snapshot& snapshot, const std::string& file);
 
-// A file of frames, whichever kind it is of.
+// Reads a frame of a GSD file of the schema "hoomd", of this program or another one. As the schema has it,
+// what a frame lacks is that of the first frame, if this has as many spheres, and else the schema's default:
+// diameter 1, and no motion. Throws InputError for what is not of the schema, and for what check_snapshot()
+// refuses.
+Snapshot read_gsd_frame(const gsd::Reader& file, std::uint64_t frame);
+
+// Frames of extended XYZ: what this program leaves (final.xyz, `peclet-engine trajectory`), and what others
+// write in the same columns.
 //
-// A GSD file, or extended XYZ of up to 256 MiB: what it is shows in its first bytes, not in its name.
+// The texts of the frames: a line with the number of spheres, one with Lattice and Properties, and one for
+// each sphere. `file` names the text in messages. Throws InputError where a frame is not whole.
+std::vector<std::string_view> xyz_frames(std::string_view text, const std::string& file);
+
+// Reads one of these frames. Asks for a Lattice, pos:R:3 and radius:R:1; takes id:I:1, by which spheres are
+// sorted, type:S:1 or species:S:1, velo:R:3, angular_velocity:R:3, image:I:3, stress:R:6 and contacts:I:1,
+// and of the second line Origin, Step, Time, Strain and Velocity_gradient. Other columns and keys are passed
+// over. Throws InputError, also for what check_snapshot() refuses.
+Snapshot read_xyz_frame(std::string_view frame, const std::string& file);
+
+// A file of frames: a GSD file, or extended XYZ of up to 256 MiB: what it is shows in its first bytes, not in
+// its name.
 class SnapshotFile {
  public:
   // Throws InputError.

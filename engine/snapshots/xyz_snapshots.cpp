@@ -1,5 +1,3 @@
-#include "engine/snapshots/xyz_snapshots.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -55,8 +53,10 @@ class XyzReading {
   }
 
  private:
-  [[noreturn]] void refuse(const std::string& value, const std::string& rule) const {
-    throw InputError(file_, "", value, rule);
+  template <class... Arguments>
+  [[noreturn]] void refuse(const std::string& value, fmt::format_string<Arguments...> rule,
+                           Arguments&&... arguments) const {
+    throw InputError(file_, "", value, fmt::format(rule, std::forward<Arguments>(arguments)...));
   }
 
   template <class Number>
@@ -199,7 +199,7 @@ class XyzReading {
         break;
     }
     for (std::size_t k = 0; k < column.width; ++k) {
-      if (take_word(line).empty()) refuse(where, fmt::format("must have a value for {}", column.name));
+      if (take_word(line).empty()) refuse(where, "must have a value for {}", column.name);
     }
   }
 
@@ -208,7 +208,7 @@ class XyzReading {
     std::vector<std::string>& names = snapshot.species_names;
     const auto known = std::ranges::find(names, name);
     if (known != names.end()) return static_cast<std::uint32_t>(known - names.begin());
-    if (names.size() == most_types) refuse("species", fmt::format("must be at most {}", most_types));
+    if (names.size() == most_types) refuse("species", "must be at most {}", most_types);
     names.emplace_back(name);
     return static_cast<std::uint32_t>(names.size() - 1);
   }

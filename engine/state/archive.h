@@ -40,7 +40,7 @@ class ArchiveWriter {
     }
   }
 
-  // Plain values, objects that save themselves, and vectors of either.
+  // Writes plain values, texts, fields, objects that save themselves, and vectors of these.
   template <class... Parts>
   void put_all(const Parts&... parts) {
     (put_part(parts), ...);
@@ -97,6 +97,15 @@ class ArchiveReader {
     return std::string(take(count), count);
   }
 
+  // Reads what put_all() has written of these parts. Vectors and fields keep their sizes.
+  template <class... Parts>
+  void get_all(Parts&... parts) {
+    (get_part(parts), ...);
+  }
+
+  bool at_end() const { return rest_.empty(); }
+
+ private:
   VectorField get_field(std::size_t expected) {
     const std::vector<Vector3> vectors = get_vector<Vector3>(expected);
     VectorField field(expected);
@@ -106,19 +115,14 @@ class ArchiveReader {
     return field;
   }
 
-  // Reads what put_all() has written of these parts. Vectors keep their sizes.
-  template <class... Parts>
-  void get_all(Parts&... parts) {
-    (get_part(parts), ...);
-  }
-
-  bool at_end() const { return rest_.empty(); }
-
- private:
   template <class Part>
   void get_part(Part& part) {
     if constexpr (requires { part.load(*this); }) {
       part.load(*this);
+    } else if constexpr (std::is_same_v<Part, std::string>) {
+      part = get_string();
+    } else if constexpr (std::is_same_v<Part, VectorField>) {
+      part = get_field(part.size());
     } else if constexpr (std::is_trivially_copyable_v<Part>) {
       part = get<Part>();
     } else if constexpr (std::is_trivially_copyable_v<typename Part::value_type>) {

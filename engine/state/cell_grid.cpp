@@ -1,7 +1,5 @@
 #include "engine/state/cell_grid.h"
 
-#include <algorithm>
-
 namespace peclet::engine {
 namespace {
 

@@ -68,17 +68,15 @@ SpringField placed_contacts(const NeighbourList& list, const ParticleState& part
   for (std::size_t i = 0; i < particles.count(); ++i) {
     begin[i + 1] += begin[i];
   }
-  for_each_range(list.pairs().size(), threads, [&](std::size_t first, std::size_t end) {
-    for (std::size_t p = first; p < end; ++p) {
-      const std::uint32_t id = particles.id[list.pairs()[p].first];
-      if (begin[id] == begin[id + 1]) {
-        continue;
-      }
-      const auto wanted = name_of(contact_of(list, particles, list.pairs()[p]));
-      for (std::uint32_t k = begin[id]; k < begin[id + 1]; ++k) {
-        if (name_of(held[k]) == wanted) {
-          springs.set(p, held[k].springs);
-        }
+  for_each_index(list.pairs().size(), threads, [&](std::size_t p) {
+    const std::uint32_t id = particles.id[list.pairs()[p].first];
+    if (begin[id] == begin[id + 1]) {
+      return;
+    }
+    const auto wanted = name_of(contact_of(list, particles, list.pairs()[p]));
+    for (std::uint32_t k = begin[id]; k < begin[id + 1]; ++k) {
+      if (name_of(held[k]) == wanted) {
+        springs.set(p, held[k].springs);
       }
     }
   });

@@ -18,8 +18,6 @@ inline Vector3 from_eigen(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z(
 
 // Vectors of all particles as one array of Eigen's, for expressions over them.
 //
-// Apart from vector_field.h, because the kernels must not reach Eigen (tests/engine/isolation.py).
-//
 // A column for each particle: x, y, z and the row's fourth, which is zero and must stay so. Expressions by
 // element give the same bits as a loop over rows; sums over particles may be taken in another order.
 using FieldArray = Eigen::Map<Eigen::Array4Xd, Eigen::Aligned32>;

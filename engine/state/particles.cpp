@@ -54,9 +54,9 @@ void wrap_into_cell(ParticleState& particles, const PeriodicCell& box) {
   }
 }
 
-double solid_volume(const ParticleState& particles) {
+double solid_volume(const std::vector<double>& radius) {
   double volume = 0;
-  for (const double a : particles.radius) {
+  for (const double a : radius) {
     volume += 4.0 / 3.0 * std::numbers::pi * a * a * a;
   }
   return volume;
@@ -93,11 +93,7 @@ void permute(std::vector<Value>& values, const std::vector<std::uint32_t>& order
 
 void permute(VectorField& field, const std::vector<std::uint32_t>& order, int threads) {
   VectorField arranged(field.size(), threads);
-  for_each_range(order.size(), threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      arranged.row(i) = field.row(order[i]);
-    }
-  });
+  for_each_index(order.size(), threads, [&](std::size_t i) { arranged.row(i) = field.row(order[i]); });
   field = std::move(arranged);
 }
 

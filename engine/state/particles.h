@@ -9,8 +9,6 @@
 
 namespace peclet::engine {
 
-// What every particle carries.
-//
 // Spheres in the laboratory frame. Positions may lie outside the cell; position and velocity then belong to
 // the image at that place (its velocity follows the streaming flow there). `image` counts the lattice vectors
 // that wrapping has removed, in the current basis: position + image A is the unwrapped place.
@@ -37,11 +35,10 @@ std::vector<double> distinct_radii(const std::vector<double>& radius);
 // removed vectors.
 void wrap_into_cell(ParticleState& particles, const PeriodicCell& box);
 
-// Total volume of the spheres.
-double solid_volume(const ParticleState& particles);
+// Returns the total volume of spheres of these radii.
+double solid_volume(const std::vector<double>& radius);
+inline double solid_volume(const ParticleState& particles) { return solid_volume(particles.radius); }
 
-// Which particles are neighbours in memory.
-//
 // Rearranges the particles along a Morton curve through the cell, so that those of one block stand close
 // together. Positions must lie in the cell. Systems of one block stay as they are. The order is a function of
 // the positions and of the order before. Rows move to new memory, which each thread fills for its own blocks.

@@ -1,7 +1,6 @@
 #include "engine/state/periodic_cell.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace peclet::engine {
 namespace {

@@ -17,8 +17,6 @@
 
 namespace peclet::engine {
 
-// Integer changes of the basis of a lattice, and whole numbers of lattice vectors.
-//
 // Whole numbers of lattice vectors.
 struct LatticeShift {
   std::int32_t x = 0, y = 0, z = 0;
@@ -95,7 +93,7 @@ class PeriodicCell {
   const Matrix3& displacement_gradient() const { return displacement_gradient_; }
   const BasisChange& basis() const { return basis_; }  // of all changes since the start
 
-  // As large as so many along each edge, deformed as much.
+  // Returns the cell enlarged `times`-fold along each edge, with the same strain.
   PeriodicCell enlarged(double times) const {
     PeriodicCell cell = *this;
     cell.start_ = times * start_;

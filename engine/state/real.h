@@ -20,10 +20,6 @@ inline double square_root(double x) { return std::sqrt(x); }
 inline double logarithm(double x) { return std::log(x); }
 inline double exponential(double x) { return std::exp(x); }
 
-}  // namespace peclet::engine
-
-namespace peclet::engine {
-
 // A vector in memory: four doubles, the fourth always zero.
 typedef double Row __attribute__((vector_size(32)));
 

@@ -57,61 +57,48 @@ void rebuild_neighbours(System& system, int threads) {
 
 void save(const System& system, ArchiveWriter& archive) {
   const ParticleState& particles = system.particles;
-  archive.put(system.step);
-  archive.put(system.clock);
-  archive.put(system.box.displacement_gradient());
-  archive.put(system.box.velocity_gradient());
-  archive.put(system.box.basis());
-  archive.put(particles.id);
-  for (const VectorField* field : {&particles.position, &particles.velocity, &particles.angular_velocity}) {
-    archive.put(*field);
-  }
-  archive.put(particles.image);
+  const PeriodicCell& box = system.box;
+  archive.put_all(system.step, system.clock, box.displacement_gradient(), box.velocity_gradient(),
+                  box.basis(), particles.id, particles.position, particles.velocity,
+                  particles.angular_velocity, particles.image);
   for (const ListMoment* moment : {&system.list.moment_of_candidates(), &system.list.listed()}) {
-    archive.put(moment->position);
-    archive.put(moment->displacement_gradient);
+    archive.put_all(moment->position, moment->displacement_gradient);
   }
   archive.put(system.list.builds());
-  for (std::size_t c = 0; c < system.springs.components(); ++c) {
-    archive.put(system.springs.values(c));
-  }
+  for (std::size_t c = 0; c < system.springs.components(); ++c) archive.put(system.springs.values(c));
 }
 
 void load(System& system, ArchiveReader& archive) {
   ParticleState& particles = system.particles;
   const std::size_t count = particles.count();
-  system.step = archive.get<std::uint64_t>();
-  system.clock = archive.get<Clock>();
-  const auto displacement_gradient = archive.get<Matrix3>();
-  system.box.set_velocity_gradient(archive.get<Matrix3>());
-  system.box.set_basis(archive.get<BasisChange>());
-  arrange_by_id(particles, archive.get_vector<std::uint32_t>(count));
-  for (VectorField* field : {&particles.position, &particles.velocity, &particles.angular_velocity}) {
-    *field = archive.get_field(count);
-  }
-  particles.image = archive.get_vector<LatticeShift>(count);
-  {
-    PeriodicCell box = system.box;
-    box.deform(displacement_gradient);
-    require_places(particles.position, box, system.list.ranges().largest());
-  }
-  const auto moment = [&] {
-    VectorField position = archive.get_field(count);
-    const auto gradient = archive.get<Matrix3>();
+  Matrix3 displacement_gradient, velocity_gradient;
+  BasisChange basis;
+  std::vector<std::uint32_t> id(count);
+  archive.get_all(system.step, system.clock, displacement_gradient, velocity_gradient, basis, id);
+  system.box.set_velocity_gradient(velocity_gradient);
+  system.box.set_basis(basis);
+  arrange_by_id(particles, id);
+  archive.get_all(particles.position, particles.velocity, particles.angular_velocity, particles.image);
+  ListMoment candidates{VectorField(count), {}}, listed = candidates;
+  std::uint64_t builds = 0;
+  archive.get_all(candidates.position, candidates.displacement_gradient, listed.position,
+                  listed.displacement_gradient, builds);
+  const auto require = [&](const VectorField& position, const Matrix3& gradient) {
     PeriodicCell box = system.box;
     box.deform(gradient);
-    if (position.size() > 0) require_places(position, box, system.list.ranges().largest());
-    return ListMoment{std::move(position), gradient};
+    require_places(position, box, system.list.ranges().largest());
   };
-  ListMoment candidates = moment(), listed = moment();
-  const auto builds = archive.get<std::uint64_t>();
+  require(particles.position, displacement_gradient);
+  require(candidates.position, candidates.displacement_gradient);
+  require(listed.position, listed.displacement_gradient);
   // A change of basis always comes with a build, so the basis is still that of the build.
   system.list.rebuild_from(std::move(candidates), std::move(listed), particles, system.box);
   system.list.set_builds(builds);
   system.box.deform(displacement_gradient);
-  system.springs = SpringField(system.springs.kinds(), system.list.pairs().size());
+  const std::size_t pairs = system.list.pairs().size();
+  system.springs = SpringField(system.springs.kinds(), pairs);
   for (std::size_t c = 0; c < system.springs.components(); ++c) {
-    system.springs.set_values(c, archive.get_vector<double>(system.list.pairs().size()));
+    system.springs.set_values(c, archive.get_vector<double>(pairs));
   }
 }
 

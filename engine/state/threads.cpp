@@ -17,6 +17,9 @@ void pause() {
 #endif
 }
 
+// What libgomp itself gives to threads beyond the number of processors: some microseconds.
+constexpr const char* turns = "1000";
+
 }  // namespace
 
 Team::Team() = default;
@@ -47,13 +50,6 @@ void Team::meet() {
   arrive();
   wait();
 }
-
-namespace {
-
-// What libgomp itself gives to threads beyond the number of processors: some microseconds.
-constexpr const char* turns = "1000";
-
-}  // namespace
 
 void let_waiting_threads_sleep(char** arguments) {
   if (std::getenv("OMP_WAIT_POLICY") != nullptr || std::getenv("GOMP_SPINCOUNT") != nullptr) return;

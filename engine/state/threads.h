@@ -9,7 +9,6 @@
 #include <span>
 #include <vector>
 
-// Loops over independent indices, shared among threads.
 #ifdef __SANITIZE_THREAD__
 #include <sanitizer/tsan_interface.h>
 #endif
@@ -58,15 +57,16 @@ template <class Body>
   });
 }
 
-}  // namespace peclet::engine
+// Calls body(i) for every index i in [0, count), as for_each_range().
+template <class Body>
+void for_each_index(std::size_t count, int threads, const Body& body) {
+  for_each_range(count, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) body(i);
+  });
+}
 
-namespace peclet::engine {
-
-// Threads that do one piece of work together, each its part, and wait for each other on the way.
-//
-// Nothing is defined here, because this is shared with files that are compiled for one processor only.
-//
-// A team as one of its members sees it.
+// A team of threads that do one piece of work together, as one of its members sees it. Nothing is defined
+// here, because this is shared with files that are compiled for one processor only.
 class Team {
  public:
   // How often each member has arrived, far enough apart for none to disturb another's.
@@ -98,8 +98,6 @@ class Team {
   std::uint64_t arrived_ = 0;
 };
 
-// Runs a team.
-//
 // Calls body(team) as each of the members of a team of that many threads. One thread never enters OpenMP.
 template <class Body>
 void run_team(int threads, Body&& body) {
@@ -115,7 +113,7 @@ void run_team(int threads, Body&& body) {
   });
 }
 
-// How the threads of a run wait for each other.
+// Lets threads that wait for each other sleep.
 //
 // libgomp's threads spin while they wait, for milliseconds as long as there are no more of them than
 // processors. Where other work has the processors, a thread that spins takes the time of the one it waits

@@ -20,11 +20,7 @@ class VectorField {
   // Zero. A page of memory lies near the processor that writes to it first: `threads` share the rows as every
   // loop over blocks does.
   explicit VectorField(std::size_t count, int threads = 1) : rows_(count) {
-    for_each_range(count, threads, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        rows_[i].v = Row{};
-      }
-    });
+    for_each_index(count, threads, [&](std::size_t i) { rows_[i].v = Row{}; });
   }
 
   std::size_t size() const { return rows_.size(); }

@@ -13,7 +13,6 @@
 #include "engine/snapshots/conversion.h"
 #include "engine/snapshots/gsd_file.h"
 #include "engine/snapshots/snapshot.h"
-#include "engine/snapshots/xyz_snapshots.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace {

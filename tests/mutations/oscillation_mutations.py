@@ -17,7 +17,7 @@ OSCILLATION = [
     ),
     (
         "rate of an oscillation in phase with its strain",
-        "engine/flow/oscillatory_shear.cpp",
+        "engine/flow/shear.h",
         "return simple_shear(amplitude_ * frequency_ * std::cos(frequency_ * time));",
         "return simple_shear(amplitude_ * frequency_ * std::sin(frequency_ * time));",
         "engine_tests:OscillatoryShear.GoesToAndFro",

@@ -5,11 +5,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/flow/oscillatory_shear.h"
-#include "engine/flow/planar_extension.h"
+#include "engine/flow/extension.h"
 #include "engine/flow/segments.h"
-#include "engine/flow/steady_shear.h"
-#include "engine/flow/uniaxial_extension.h"
+#include "engine/flow/shear.h"
 
 namespace peclet::engine {
 namespace {

@@ -5,10 +5,9 @@
 #include <cmath>
 
 #include "engine/flow/controlled_shear.h"
-#include "engine/flow/oscillatory_shear.h"
-#include "engine/flow/planar_extension.h"
+#include "engine/flow/extension.h"
 #include "engine/flow/segments.h"
-#include "engine/flow/uniaxial_extension.h"
+#include "engine/flow/shear.h"
 #include "engine/integrators/implicit.h"
 #include "engine/integrators/velocity_verlet.h"
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/flow/oscillatory_shear.h"
-#include "engine/observables/scene_reading.h"
+#include "engine/flow/shear.h"
+#include "engine/observables/observable.h"
 #include "engine/scene/scene.h"
 #include "tests/engine/small_scene.h"
 

@@ -14,7 +14,7 @@
 #include <numbers>
 #include <random>
 
-#include "engine/observables/scene_reading.h"
+#include "engine/observables/observable.h"
 #include "tests/engine/observables/loose_spheres.h"
 
 namespace peclet::engine {

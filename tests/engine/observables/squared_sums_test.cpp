@@ -40,7 +40,7 @@ TEST(SquaredSums, NameTheirLengthsBeforehand) {
     SquaredSums sums(4);
     for (std::uint64_t k = 0; k < entries; ++k) sums.add(1);
     std::vector<std::uint64_t> found;
-    for (const auto& value : sums.values()) found.push_back(value.length);
+    for (const auto& value : sums.values()) found.push_back(value.lag);
     EXPECT_EQ(SquaredSums::lengths(4, entries), found) << entries;
   }
 }

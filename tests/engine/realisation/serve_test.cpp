@@ -1,6 +1,4 @@
 // What the engine makes of jobs that come while one runs.
-#include "engine/realisation/serve.h"
-
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -12,6 +10,7 @@
 
 #include "contract/durable_file.h"
 #include "contract/frames.h"
+#include "engine/realisation/job.h"
 #include "tests/engine/small_scene.h"
 #include "tests/engine/temporary_folder.h"
 

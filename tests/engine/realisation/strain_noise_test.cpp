@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "engine/integrators/integrator.h"
-#include "engine/observables/scene_reading.h"
+#include "engine/observables/observable.h"
 #include "engine/realisation/driver.h"
 #include "engine/terms/keyed_random.h"
 #include "tests/engine/small_scene.h"
@@ -28,11 +28,11 @@ double noise_of(double of_friction, Purpose purpose, std::uint64_t step) {
 // Pairs of the stress friction times rate, and their noise.
 class KnownPairs : public Integrator {
  public:
-  explicit KnownPairs(const ControlledShear& shear) : shear_(shear) {}
+  explicit KnownPairs(const ControlledShear& shear)
+      : Integrator(ForceField({}, {}, strain_noise::timestep, seed), strain_noise::timestep), shear_(shear) {}
 
   static double noise(std::uint64_t step) { return noise_of(friction, Purpose::pair_noise, step); }
 
-  double timestep() const override { return strain_noise::timestep; }
   Intervals intervals() const override { return {}; }
   void start(System& /*system*/) override {}
   StepReport advance_open(System& system) override {
@@ -47,14 +47,9 @@ class KnownPairs : public Integrator {
   double stability_share(const System& /*system*/) const override { return 0; }
   std::optional<double> spurious_energy(const System& /*system*/) const override { return std::nullopt; }
   HalfSteps compare_half_steps(const System& /*system*/, int /*steps*/) const override { return {}; }
-  void mark(const System& system) override { mark_.mark(system, 1); }
-  void return_to_mark(System& system) override { mark_.return_to(system, 1); }
-  void save(ArchiveWriter& /*archive*/) const override {}
-  void load(const System& /*system*/, ArchiveReader& /*archive*/) override {}
 
  private:
   const ControlledShear& shear_;
-  StepOrigin mark_;
 };
 
 class StrainNoise : public testing::Test {

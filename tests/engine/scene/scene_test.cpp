@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "contract/errors.h"
-#include "engine/observables/scene_reading.h"
+#include "engine/observables/observable.h"
 
 namespace peclet::engine {
 namespace {

@@ -1,6 +1,4 @@
 // Frames of the schema "hoomd", as this program and others write them.
-#include "engine/snapshots/gsd_snapshots.h"
-
 #include <gtest/gtest.h>
 
 #include <chrono>

@@ -1,9 +1,8 @@
-#include "engine/snapshots/xyz_snapshots.h"
-
 #include <gtest/gtest.h>
 
 #include "contract/errors.h"
 #include "engine/snapshots/conversion.h"
+#include "engine/snapshots/snapshot.h"
 
 namespace peclet::engine {
 namespace {

@@ -1,24 +1,19 @@
-#include "engine/flow/uniaxial_extension.h"
-
-#include <numbers>
+#include "engine/flow/extension.h"
 
 namespace peclet::engine {
 
-Matrix3 UniaxialExtension::velocity_gradient(double /*time*/) const {
-  return {Vector3{rate_, 0, 0}, Vector3{0, -0.5 * rate_, 0}, Vector3{0, 0, -0.5 * rate_}};
-}
-
-Matrix3 UniaxialExtension::displacement_gradient(double time) const {
-  const double across = std::expm1(-0.5 * rate_ * time);
-  return {Vector3{std::expm1(rate_ * time), 0, 0}, Vector3{0, across, 0}, Vector3{0, 0, across}};
-}
-
-Matrix3 UniaxialExtension::edges_at_start(const Vector3& box) const {
-  const auto edge = [](int k, double length) {
-    const double angle = (2 * k - 1) * std::numbers::pi / 7, scale = -2 * length / std::sqrt(7.0);
-    return scale * Vector3{std::sin(angle), std::sin(2 * angle), std::sin(3 * angle)};
-  };
-  return {edge(1, box.x), edge(2, box.y), edge(3, box.z)};
+FlowKind planar_extension_flow() {
+  return {.key = "/flow/extension_rate",
+          .keys = R"(
+/flow/extension_rate? | number > 0; in 1 / time; named extension rate, ε̇ | Planar extension in the place of
+    shear: (rate x, -rate y, 0). Strains are Hencky strains, at most 10 in a realisation.
+)",
+          .read = [](const FlowSource& source) -> std::shared_ptr<const Deformation> {
+            return std::make_shared<PlanarExtension>(source.scene.number("/flow/extension_rate"));
+          },
+          .largest_strain = PlanarExtension::largest_strain,
+          .own_cell = "a turned cube",
+          .refused_observables = {"mean_squared_displacement", "pair_distribution", "profiles"}};
 }
 
 FlowKind uniaxial_extension_flow() {
