@@ -525,9 +525,9 @@ KindTables::KindTables(std::string title, const std::string& key, std::string_vi
     : title_(std::move(title)), key_{.pointer = '/' + key, .kind = KeyKind::choice, .required = true} {
   std::string shared, meaning, own;
   const auto add = [&] {
-    if (!key_.choices.empty())
-      tables_.emplace_back(
-          meaning, fmt::format("/{} | one of {}\n{}{}", key, key_.choices.back(), shared, own), unknown);
+    if (key_.choices.empty()) return;
+    const std::string kind = fmt::format("/{} | one of {}\n", key, key_.choices.back());
+    tables_.emplace_back(meaning, kind + shared + own, unknown);
   };
   for (const std::string& row : rows_in(rows)) {
     std::string_view rest = row;
