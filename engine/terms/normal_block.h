@@ -7,10 +7,10 @@ namespace peclet::engine {
 
 // Standard normal numbers for eight particles or pairs at once: the one source of every noise.
 //
-// Of each identity six independent normals, a pure function of (key, step, identity, image): Threefry-2x64-20
-// (Salmon et al. 2011) gives 128 bits, three Box-Muller transforms of 21-bit uniforms in single precision
-// turn them into normals. Every operation is exact or rounded on its own (products are never fused with
-// sums), so the bits are the same on every instruction set.
+// Each identity has six independent normals, a pure function of (key, step, identity, image).
+// Threefry-2x64-20 (Salmon et al. 2011) gives 128 bits; three Box-Muller transforms of 21-bit uniforms in
+// single precision turn them into normals. Every operation is exact or rounded on its own (products are never
+// fused with sums), so the bits are the same on every instruction set.
 //
 // The noise of a divided step is refined: of a part with the normal z, and y another one that is keyed by
 // that part, the halves have (z + y)/sqrt 2 and (z - y)/sqrt 2. Both are standard normal and independent, and
