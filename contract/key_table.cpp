@@ -128,7 +128,9 @@ class Validation {
       const Key* key = is_plain ? table_.find(pattern + '/' + name) : nullptr;
       if (key == nullptr) key = any_member;
       if (key == nullptr && table_.ignores_unknown()) continue;
-      const std::string below = pointer + (Json::json_pointer() / name).to_string();
+      const bool is_escaped = name.find_first_of("~/") != std::string::npos;  // RFC 6901
+      const std::string below =
+          pointer + (is_escaped ? (Json::json_pointer() / name).to_string() : '/' + name);
       if (key == nullptr) refuse_unknown(keys, name, below);
       check_value(value, *key, below);
     }
@@ -136,13 +138,13 @@ class Validation {
       if (object.contains(name_of(*key))) refuse_misplaced(object, *key, pointer);
     }
     for (const Key* key : keys) {
+      if (!key->required && key->default_value.is_null()) continue;
       const std::string name = name_of(*key);
       const std::string below = pointer + '/' + name;
       if (key == any_member || object.contains(name) || !may_be_given(*key, object)) continue;
       if (const Key* other = alternative_to(table_, *key); other && object.contains(name_of(*other)))
         continue;
       if (key->required) throw InputError(file_, below, "missing", wanted(*key, object));
-      if (key->default_value.is_null()) continue;
       object[name] = key->default_value;
       check_value(object[name], *key, below);
     }
@@ -451,19 +453,25 @@ std::string cell(const std::string& text) {
 }  // namespace
 
 KeyTable::KeyTable(std::string title, std::vector<Key> keys, Unknown unknown)
-    : title_(std::move(title)), keys_(std::move(keys)), unknown_(unknown) {}
+    : title_(std::move(title)), keys_(std::move(keys)), unknown_(unknown) {
+  for (std::size_t i = 0; i < keys_.size(); ++i) {
+    const std::string& pointer = keys_[i].pointer;
+    place_.emplace(pointer, i);
+    below_[pointer.substr(0, pointer.rfind('/'))].push_back(i);
+  }
+}
 
 const Key* KeyTable::find(std::string_view pointer) const {
-  const auto found = std::ranges::find(keys_, pointer, &Key::pointer);
-  return found == keys_.end() ? nullptr : &*found;
+  const auto found = place_.find(pointer);
+  return found == place_.end() ? nullptr : &keys_[found->second];
 }
 
 std::vector<const Key*> KeyTable::below(std::string_view pointer) const {
-  std::vector<const Key*> found;
-  for (const Key& key : keys_) {
-    if (std::string_view(key.pointer).substr(0, key.pointer.rfind('/')) == pointer) found.push_back(&key);
+  std::vector<const Key*> keys;
+  if (const auto found = below_.find(pointer); found != below_.end()) {
+    for (const std::size_t place : found->second) keys.push_back(&keys_[place]);
   }
-  return found;
+  return keys;
 }
 
 Json KeyTable::validate(Json document, const std::string& file, const std::string& root) const {
@@ -479,8 +487,7 @@ Json KeyTable::validate(Json document, const std::string& file, const std::strin
 
 Json KindTables::validate(Json document, const std::string& file) const {
   // What tells it apart comes first: it decides what else there is.
-  const KeyTable kind("", {key_}, Unknown::ignored);
-  document = kind.validate(std::move(document), file);
+  document = kind_.validate(std::move(document), file);
   const std::string name = document[name_of(key_)];
   const auto found = std::ranges::find(key_.choices, name);
   return tables_[static_cast<std::size_t>(found - key_.choices.begin())].validate(std::move(document), file);
@@ -515,12 +522,14 @@ std::vector<Key> keys_of(std::string_view rows) {
 }
 
 KindTables::KindTables(std::string title, const std::string& key, std::string_view rows, Unknown unknown)
-    : title_(std::move(title)), key_{.pointer = '/' + key, .kind = KeyKind::choice, .required = true} {
+    : title_(std::move(title)),
+      key_{.pointer = '/' + key, .kind = KeyKind::choice, .required = true},
+      kind_("", "") {
   std::string shared, meaning, own;
   const auto add = [&] {
-    if (!key_.choices.empty())
-      tables_.emplace_back(
-          meaning, fmt::format("/{} | one of {}\n{}{}", key, key_.choices.back(), shared, own), unknown);
+    if (key_.choices.empty()) return;
+    const std::string kind = fmt::format("/{} | one of {}\n", key, key_.choices.back());
+    tables_.emplace_back(meaning, kind + shared + own, unknown);
   };
   for (const std::string& row : rows_in(rows)) {
     std::string_view rest = row;
@@ -534,6 +543,7 @@ KindTables::KindTables(std::string title, const std::string& key, std::string_vi
     }
   }
   add();
+  kind_ = KeyTable("", std::vector{key_}, Unknown::ignored);
 }
 
 std::string allowed_values(const Key& key) {

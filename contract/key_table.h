@@ -35,7 +35,9 @@
 // object that has no row of its own. An object or array without rows below it may hold anything.
 #pragma once
 
+#include <functional>
 #include <limits>
+#include <map>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -122,6 +124,8 @@ class KeyTable {
  private:
   std::string title_;
   std::vector<Key> keys_;
+  std::map<std::string, std::size_t, std::less<>> place_;               // in keys_, by pointer
+  std::map<std::string, std::vector<std::size_t>, std::less<>> below_;  // places, by the pointer above them
   Unknown unknown_;
 };
 
@@ -140,6 +144,7 @@ class KindTables {
  private:
   std::string title_;
   Key key_;
+  KeyTable kind_;                 // of key_ alone
   std::vector<KeyTable> tables_;  // ordered as key_.choices
 };
 

@@ -8,8 +8,8 @@
 #include "engine/kernels/pair_terms.h"
 #include "engine/state/pair_run.h"
 #include "engine/state/vector3.h"
-#include "engine/terms/fill_normals.h"
 #include "engine/terms/laws.h"
+#include "engine/terms/normal_block.h"
 
 namespace peclet::engine {
 

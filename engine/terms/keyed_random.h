@@ -8,7 +8,7 @@
 
 #include "engine/state/periodic_cell.h"
 #include "engine/state/vector3.h"
-#include "engine/terms/fill_normals.h"
+#include "engine/terms/normal_block.h"
 
 namespace peclet::engine {
 

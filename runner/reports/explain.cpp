@@ -55,6 +55,7 @@ std::string width_text(const Known& known) {
 std::string widths_text(const std::vector<Known>& all) {
   if (all.size() == 1) return width_text(all.front());
   std::vector<std::string> widths;
+  widths.reserve(all.size());
   for (const Known& known : all) widths.push_back(known.look.observable + ' ' + width_text(known));
   return fmt::format("{}", fmt::join(widths, ", "));
 }

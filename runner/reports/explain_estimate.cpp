@@ -38,6 +38,7 @@ std::string interval_text(const Look& look, const std::vector<Outcome>& outcomes
         rough(interval.low), rough(interval.high));
   }
   std::vector<double> values;
+  values.reserve(outcomes.size());
   for (const Outcome& outcome : outcomes) values.push_back(outcome.controlled());
   std::string text;
   if (const std::optional<Interval> interval = bootstrap_t(values, level)) {

@@ -287,6 +287,7 @@ std::string earlier_looks_text(const CampaignStatus& status) {
 // "3 capped, 2 open"
 std::string listed(const std::map<std::string, int>& counts) {
   std::vector<std::string> parts;
+  parts.reserve(counts.size());
   for (const auto& [name, count] : counts) parts.push_back(fmt::format("{} {}", count, name));
   return fmt::format("{}", fmt::join(parts, ", "));
 }

@@ -67,7 +67,7 @@ class Drill:
         self.running(campaign)
         self.cluster.say("scancel", "--signal=KILL", "--full", self.cluster.tasks()[0])
         campaign.lets_go()
-        assert owner.wait(300) == 0
+        assert owner.wait(300) == 0, campaign.log()
         returned = campaign.ask("SELECT count(*) FROM bundle_seed WHERE outcome IN ('returned', 'killed')")
         assert returned > 0, campaign.log()
         return f"{killed} tasks killed, 2 by scancel; {returned} seeds queued again"
