@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 
@@ -14,14 +15,14 @@
 namespace peclet {
 namespace {
 
-std::string name_of(const Key& key) { return key.pointer.substr(key.pointer.rfind('/') + 1); }
+std::string_view name_of(const Key& key) {
+  return std::string_view(key.pointer).substr(key.pointer.rfind('/') + 1);
+}
 
-// The key of the same object that may be given instead of this one; null when there is none.
-const Key* alternative_to(const KeyTable& table, const Key& key) {
-  for (const Key* other : table.below(key.pointer.substr(0, key.pointer.rfind('/')))) {
-    if (other->instead_of == name_of(key)) return other;
-  }
-  return nullptr;
+// Returns which of the keys of one object may be given instead of `key`; null if none may.
+const Key* alternative_to(const std::vector<const Key*>& keys, const Key& key) {
+  const auto found = std::ranges::find(keys, name_of(key), &Key::instead_of);
+  return found == keys.end() ? nullptr : *found;
 }
 
 bool is_whole(const Json& value) {
@@ -98,53 +99,59 @@ std::string hint_at_percent(const Key& key, const Json& value) {
   return fmt::format("; {:g} % is written {:g}", percent, percent / 100);
 }
 
-// One pass over a document. `pattern` is where we are in the table, `pointer` where we are in the document.
+// Where a value stands in a document. Its JSON pointer is written only where a message needs it.
+struct Place {
+  const Place* above = nullptr;
+  std::string_view name = {};             // of a member
+  std::optional<std::size_t> index = {};  // of an element
+
+  Json::json_pointer pointer() const {
+    if (above == nullptr) return Json::json_pointer();
+    return index ? above->pointer() / *index : above->pointer() / std::string(name);
+  }
+};
+
+// One pass over a document. `pattern` is the pointer of an object's key in the table.
 class Validation {
  public:
   Validation(const KeyTable& table, const std::string& file) : table_(table), file_(file) {}
 
-  void check_value(Json& value, const Key& key, const std::string& pointer) const {
-    if (!is_allowed(key, value)) {
-      throw InputError(file_, pointer, shortened(value), allowed_values(key) + hint_at_percent(key, value));
-    }
+  void check_value(Json& value, const Key& key, const Place& place) const {
+    if (!is_allowed(key, value)) refuse(place, value, allowed_values(key) + hint_at_percent(key, value));
     if (key.kind == KeyKind::any || value.is_null()) return;
     const std::string& pattern = key.same_as.empty() ? key.pointer : key.same_as;
     if (value.is_object()) {
-      check_object(value, pattern, pointer);
-    } else if (const Key* element = value.is_array() ? table_.find(pattern + "/*") : nullptr) {
-      for (std::size_t i = 0; i < value.size(); ++i)
-        check_value(value[i], *element, fmt::format("{}/{}", pointer, i));
+      check_object(value, pattern, place);
+    } else if (const Key* element = value.is_array() ? table_.find(pattern, "*") : nullptr) {
+      for (std::size_t i = 0; i < value.size(); ++i) check_value(value[i], *element, {&place, {}, i});
     } else if (key.kind == KeyKind::integer && value.is_number()) {
       value = static_cast<long long>(value.get<double>());
     }
   }
 
-  void check_object(Json& object, const std::string& pattern, const std::string& pointer) const {
+  void check_object(Json& object, const std::string& pattern, const Place& place) const {
     const std::vector<const Key*> keys = table_.below(pattern);
     if (keys.empty()) return;
-    const Key* const any_member = table_.find(pattern + "/*");
+    const Key* const any_member = table_.find(pattern, "*");
     for (const auto& [name, value] : object.items()) {
-      const bool is_plain = name != "*" && name.find('/') == std::string::npos;
-      const Key* key = is_plain ? table_.find(pattern + '/' + name) : nullptr;
+      const Key* key = name == "*" ? nullptr : table_.find(pattern, name);
       if (key == nullptr) key = any_member;
       if (key == nullptr && table_.ignores_unknown()) continue;
-      const bool is_escaped = name.find_first_of("~/") != std::string::npos;  // RFC 6901
-      const std::string below =
-          pointer + (is_escaped ? (Json::json_pointer() / name).to_string() : '/' + name);
-      if (key == nullptr) refuse_unknown(keys, name, below);
+      const Place below = {&place, name};
+      if (key == nullptr) refuse_unknown(keys, below);
       check_value(value, *key, below);
     }
     for (const Key* key : keys) {
-      if (object.contains(name_of(*key))) refuse_misplaced(object, *key, pointer);
+      if (object.contains(name_of(*key))) refuse_misplaced(object, *key, place);
     }
     for (const Key* key : keys) {
       if (!key->required && key->default_value.is_null()) continue;
-      const std::string name = name_of(*key);
-      const std::string below = pointer + '/' + name;
+      const std::string_view name = name_of(*key);
       if (key == any_member || object.contains(name) || !may_be_given(*key, object)) continue;
-      if (const Key* other = alternative_to(table_, *key); other && object.contains(name_of(*other)))
-        continue;
-      if (key->required) throw InputError(file_, below, "missing", wanted(*key, object));
+      if (const Key* other = alternative_to(keys, *key); other && object.contains(name_of(*other))) continue;
+      const Place below = {&place, name};
+      if (key->required)
+        throw InputError(file_, below.pointer().to_string(), "missing", wanted(*key, object));
       object[name] = key->default_value;
       check_value(object[name], *key, below);
     }
@@ -154,10 +161,12 @@ class Validation {
   // Returns what a missing key must be, with the keys that an object needs, and why it must be given.
   std::string wanted(const Key& key, const Json& object) const {
     std::vector<std::string> members;
-    for (const Key* member : table_.below(key.same_as.empty() ? key.pointer : key.same_as)) {
-      const Key* const other = alternative_to(table_, *member);
+    const std::vector<const Key*> keys = table_.below(key.same_as.empty() ? key.pointer : key.same_as);
+    for (const Key* member : keys) {
       if (!member->required || !member->only_if.empty()) continue;
-      members.push_back(name_of(*member) + (other ? " or " + name_of(*other) : ""));
+      const Key* const other = alternative_to(keys, *member);
+      members.push_back(
+          fmt::format("{}{}{}", name_of(*member), other ? " or " : "", other ? name_of(*other) : ""));
     }
     std::string words = allowed_values(key);
     if (!members.empty()) words += fmt::format(" with {}", fmt::join(members, ", "));
@@ -166,7 +175,7 @@ class Validation {
     return words + fmt::format(", because {} is {}", key.only_if, value);
   }
 
-  void refuse_misplaced(const Json& object, const Key& key, const std::string& pointer) const {
+  void refuse_misplaced(const Json& object, const Key& key, const Place& place) const {
     std::string allowed;
     if (!may_be_given(key, object)) {
       allowed = key.if_words.empty() ? fmt::format("must be left out without {}", key.only_if)
@@ -177,17 +186,21 @@ class Validation {
     } else {
       return;
     }
-    const std::string name = name_of(key);
-    throw InputError(file_, pointer + '/' + name, shortened(object[name]), allowed);
+    const std::string_view name = name_of(key);
+    refuse({&place, name}, object[name], allowed);
   }
 
-  [[noreturn]] void refuse_unknown(const std::vector<const Key*>& keys, const std::string& name,
-                                   const std::string& pointer) const {
+  [[noreturn]] void refuse(const Place& place, const Json& value, const std::string& allowed) const {
+    throw InputError(file_, place.pointer().to_string(), shortened(value), allowed);
+  }
+
+  [[noreturn]] void refuse_unknown(const std::vector<const Key*>& keys, const Place& place) const {
     std::vector<std::string> names;
     names.reserve(keys.size());
-    for (const Key* key : keys) names.push_back(name_of(*key));
-    throw InputError(file_, pointer, "unknown key",
-                     fmt::format("allowed keys: {}{}", fmt::join(names, ", "), suggestion(name, names)));
+    for (const Key* key : keys) names.emplace_back(name_of(*key));
+    const std::string near = suggestion(std::string(place.name), names);
+    throw InputError(file_, place.pointer().to_string(), "unknown key",
+                     fmt::format("allowed keys: {}{}", fmt::join(names, ", "), near));
   }
 
   const KeyTable& table_;
@@ -417,13 +430,13 @@ void add_members(const KeyTable& table, const std::string& pointer, Json& schema
   if (keys.empty()) return;  // holds anything
   if (!table.ignores_unknown()) schema["additionalProperties"] = false;
   for (const Key* key : keys) {
-    const std::string name = name_of(*key);
+    const std::string name(name_of(*key));
     if (name == "*") {
       schema["additionalProperties"] = schema_of(table, *key);
       continue;
     }
     schema["properties"][name] = schema_of(table, *key);
-    if (const Key* const other = alternative_to(table, *key)) {
+    if (const Key* const other = alternative_to(keys, *key)) {
       schema["oneOf"] = {{{"required", {name}}}, {{"required", {name_of(*other)}}}};
     } else if (!key->only_if.empty()) {
       const Json where = {{"properties", {{key->only_if, {{"enum", key->if_words}}}}}};
@@ -455,21 +468,28 @@ std::string cell(const std::string& text) {
 KeyTable::KeyTable(std::string title, std::vector<Key> keys, Unknown unknown)
     : title_(std::move(title)), keys_(std::move(keys)), unknown_(unknown) {
   for (std::size_t i = 0; i < keys_.size(); ++i) {
-    const std::string& pointer = keys_[i].pointer;
-    place_.emplace(pointer, i);
-    below_[pointer.substr(0, pointer.rfind('/'))].push_back(i);
+    Object& object = objects_[keys_[i].pointer.substr(0, keys_[i].pointer.rfind('/'))];
+    object.keys.push_back(i);
+    object.by_name.emplace(name_of(keys_[i]), i);
   }
 }
 
 const Key* KeyTable::find(std::string_view pointer) const {
-  const auto found = place_.find(pointer);
-  return found == place_.end() ? nullptr : &keys_[found->second];
+  const std::size_t end = pointer.rfind('/');
+  return end == std::string_view::npos ? nullptr : find(pointer.substr(0, end), pointer.substr(end + 1));
+}
+
+const Key* KeyTable::find(std::string_view object, std::string_view name) const {
+  const auto keys = objects_.find(object);
+  if (keys == objects_.end()) return nullptr;
+  const auto found = keys->second.by_name.find(name);
+  return found == keys->second.by_name.end() ? nullptr : &keys_[found->second];
 }
 
 std::vector<const Key*> KeyTable::below(std::string_view pointer) const {
   std::vector<const Key*> keys;
-  if (const auto found = below_.find(pointer); found != below_.end()) {
-    for (const std::size_t place : found->second) keys.push_back(&keys_[place]);
+  if (const auto found = objects_.find(pointer); found != objects_.end()) {
+    for (const std::size_t place : found->second.keys) keys.push_back(&keys_[place]);
   }
   return keys;
 }
@@ -477,10 +497,10 @@ std::vector<const Key*> KeyTable::below(std::string_view pointer) const {
 Json KeyTable::validate(Json document, const std::string& file, const std::string& root) const {
   const Validation validation(*this, file);
   if (const Key* key = find(root)) {
-    validation.check_value(document, *key, "");
+    validation.check_value(document, *key, {});
   } else {
     if (!document.is_object()) throw InputError(file, "", shortened(document), "must be an object");
-    validation.check_object(document, root, "");
+    validation.check_object(document, root, {});
   }
   return document;
 }
@@ -581,7 +601,7 @@ std::string KeyTable::markdown() const {
   for (const Key& key : keys_) {
     std::string fallback = key.required && key.only_if.empty() ? "required" : "";
     if (!key.instead_of.empty()) fallback = fmt::format("instead of `{}`", key.instead_of);
-    if (const Key* const other = alternative_to(*this, key)) {
+    if (const Key* const other = alternative_to(below(key.pointer.substr(0, key.pointer.rfind('/'))), key)) {
       fallback += fmt::format(", or `{}`", name_of(*other));
     }
     if (!key.default_value.is_null()) fallback = fmt::format("`{}`", key.default_value.dump());

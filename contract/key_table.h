@@ -115,6 +115,8 @@ class KeyTable {
 
   // The key of that pointer; null when there is none.
   const Key* find(std::string_view pointer) const;
+  // The key `name` of the object at pointer `object` of the table; null when there is none.
+  const Key* find(std::string_view object, std::string_view name) const;
   // The keys directly below `pointer`, in the order of the table.
   std::vector<const Key*> below(std::string_view pointer) const;
 
@@ -124,8 +126,11 @@ class KeyTable {
  private:
   std::string title_;
   std::vector<Key> keys_;
-  std::map<std::string, std::size_t, std::less<>> place_;               // in keys_, by pointer
-  std::map<std::string, std::vector<std::size_t>, std::less<>> below_;  // places, by the pointer above them
+  struct Object {
+    std::vector<std::size_t> keys;  // places in keys_
+    std::map<std::string, std::size_t, std::less<>> by_name;
+  };
+  std::map<std::string, Object, std::less<>> objects_;  // by pointer
   Unknown unknown_;
 };
 
