@@ -230,21 +230,11 @@ int main(int argc, char** argv) {
   }
 
   try {
-    if (*run_command) {
-      return run(options);
-    }
-    if (*serve_command) {
-      return serve(0);
-    }
-    if (*forces_command) {
-      return forces(configuration);
-    }
-    if (*trajectory_command) {
-      return done_with(convert_trajectory(conversion));
-    }
-    if (*snapshot_command) {
-      return done_with(draw_picture(picture));
-    }
+    if (*run_command) return run(options);
+    if (*serve_command) return serve(0);
+    if (*forces_command) return forces(configuration);
+    if (*trajectory_command) return done_with(convert_trajectory(conversion));
+    if (*snapshot_command) return done_with(draw_picture(picture));
     if (*sizes_command) {
       const SizesAnswer answer = choose_sizes(sizes);
       fmt::print(stderr, "{}", answer.remarks);

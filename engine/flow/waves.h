@@ -53,9 +53,7 @@ class Waves final : public FlowVariation {
 
   double largest_rate(const PeriodicCell& cell) const override {
     double sum = 0;
-    for (const Wave& wave : waves_) {
-      sum += wavenumber(wave, cell) * std::hypot(wave.sine, wave.cosine);
-    }
+    for (const Wave& wave : waves_) sum += wavenumber(wave, cell) * std::hypot(wave.sine, wave.cosine);
     return sum;
   }
 

@@ -50,12 +50,8 @@ class Reader {
                                        name.image,
                                        {vector(at + "/tangential"), vector(at + "/rolling"), slides}});
     }
-    if (state.contains("noise")) {
-      configuration.noise = noise(radius.size());
-    }
-    if (document_.contains("advance")) {
-      configuration.advance = document_.at("advance").get<double>();
-    }
+    if (state.contains("noise")) configuration.noise = noise(radius.size());
+    if (document_.contains("advance")) configuration.advance = document_.at("advance").get<double>();
     return configuration;
   }
 
@@ -182,9 +178,7 @@ Json to_json(const Vector3& v) { return {v.x, v.y, v.z}; }
 
 Json to_json(const VectorField& field) {
   Json rows = Json::array();
-  for (std::size_t i = 0; i < field.size(); ++i) {
-    rows.push_back(to_json(field[i]));
-  }
+  for (std::size_t i = 0; i < field.size(); ++i) rows.push_back(to_json(field[i]));
   return rows;
 }
 
@@ -297,15 +291,11 @@ class Evaluation {
     noise_.resize(list_.pairs().size());
     varying_ = FlowAtCentres(particles.count(), /*threads=*/1);
     varying_.set(configuration.physics.flow.at(configuration.box), particles, 0, particles.count());
-    if (configuration.noise) {
-      find_noise(*configuration.noise);
-    }
+    if (configuration.noise) find_noise(*configuration.noise);
   }
 
   Json run() {
-    for (const TermRecipe& recipe : recipes_of(configuration_.physics)) {
-      add_pairs(recipe);
-    }
+    for (const TermRecipe& recipe : recipes_of(configuration_.physics)) add_pairs(recipe);
     add_one_body();
     add_uniform_flow();
     Json answer = by_term_.json();
@@ -374,9 +364,7 @@ class Evaluation {
 
   Json advanced_springs() const {
     Json advanced = Json::array();
-    if (!terms_.friction) {
-      return advanced;
-    }
+    if (!terms_.friction) return advanced;
     SpringField springs = springs_;
     evaluate(terms_, configuration_.physics, *configuration_.advance, springs);
     const std::vector<ImageFrame> frames = image_frames(list_, configuration_.box);
@@ -384,9 +372,7 @@ class Evaluation {
       const Pair& pair = list_.pairs()[p];
       const PairGeometry shape =
           geometry(separation(configuration_.particles, pair, frames[pair.image]), kinds_[pair.kind]);
-      if (!(shape.overlap() > 0)) {
-        continue;
-      }
+      if (!(shape.overlap() > 0)) continue;
       const LatticeShift image = list_.images()[pair.image];
       advanced.push_back({{"i", pair.first},
                           {"j", pair.second},

@@ -91,9 +91,7 @@ StepReport Implicit::advance_open(System& system) {
 
 // All of a step but the step counter, which belongs to whole ones.
 StepReport Implicit::advance_part(System& system) {
-  if (meets_a_jump(system)) {
-    return advance_halves(system);
-  }
+  if (meets_a_jump(system)) return advance_halves(system);
   const Deformation& deformation = physics_.flow.deformation();
   const double half = 0.5 * timestep_;
   follow_flow(system, deformation.velocity_gradient(system.clock.time() + half), half, field_.threads());
@@ -184,9 +182,7 @@ void Implicit::follow_list(System& system, double way) {
   const double next = 0.5 * way;
   if (displacement_bound_ + next >= allowed) {
     displacement_bound_ = system.list.largest_displacement(system.particles, system.box, field_.threads());
-    if (displacement_bound_ + next >= allowed) {
-      rebuild_list(system);
-    }
+    if (displacement_bound_ + next >= allowed) rebuild_list(system);
   }
 }
 
@@ -196,9 +192,7 @@ void Implicit::return_to_origin(System& system) {
 }
 
 void Implicit::restore_springs(System& system) const {
-  if (system.springs.kinds() != SpringKinds::none) {
-    system.springs = origin_.springs();
-  }
+  if (system.springs.kinds() != SpringKinds::none) system.springs = origin_.springs();
 }
 
 bool Implicit::move_half_a_step(System& system) {

@@ -69,9 +69,7 @@ void StepOrigin::return_to(System& system, int threads) const {
 
 void Integrator::start(System& system) {
   const SpringKinds kinds = spring_kinds(field_.terms());
-  if (system.springs.kinds() != kinds) {
-    system.springs = SpringField(kinds, system.list.pairs().size());
-  }
+  if (system.springs.kinds() != kinds) system.springs = SpringField(kinds, system.list.pairs().size());
   system.clock.count_in(timestep_);
   rebuild_list(system);
 }

@@ -51,12 +51,8 @@ std::optional<StepReport> Midpoint::find_velocities(System& system) {
   const Iterations& iterations = system.springs.kinds() == SpringKinds::none ? without_springs : with_springs;
   StepReport report;
   for (int iteration = 0;; ++iteration) {
-    if (!move_half_a_step(system)) {
-      return std::nullopt;
-    }
-    if (iteration == 0) {
-      solver_.assemble(system, field_);
-    }
+    if (!move_half_a_step(system)) return std::nullopt;
+    if (iteration == 0) solver_.assemble(system, field_);
     report.sums = field_.evaluate(system, loads_.force, loads_.torque);
     const VelocitySolver::Residual residual = solver_.set_residual(system, origin_, loads_, nullptr);
     // A packing that starts with the streaming flow's velocities has no motion yet but what it is about to
@@ -71,9 +67,7 @@ std::optional<StepReport> Midpoint::find_velocities(System& system) {
       return report;
     }
     restore_springs(system);
-    if (iteration > 0) {
-      solver_.assemble(system, field_);
-    }
+    if (iteration > 0) solver_.assemble(system, field_);
     const double left = std::min(solver_.tolerance() / usual_tolerance, 1.0) *
                         (iteration == 0 ? iterations.first_forcing : iterations.forcing);
     if (!solver_.correct(system, std::max(0.25 * target, left * left * residual.squared), report)) {

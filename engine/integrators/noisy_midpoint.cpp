@@ -60,21 +60,15 @@ std::optional<StepReport> NoisyMidpoint::find_velocities(System& system) {
   });
   const bool predicted = solve(system, of_prediction, report);
 
-  if (!move_half_a_step(system)) {
-    return std::nullopt;
-  }
+  if (!move_half_a_step(system)) return std::nullopt;
   stress_.predict(system, assemble(system, ahead_, loads_), loads_, field_.physics());
   if (of_each_pair) stress_.predict_pairs(system, ahead_);
-  if (inertial_) {
-    leave_half_of_the_drag(system);
-  }
+  if (inertial_) leave_half_of_the_drag(system);
   const bool solved = solve(system, 1, report);
   report.sums = stress_.end(system, ahead_, solver_.weights(), timestep_);
   if (of_each_pair) stress_.end_pairs(system, ahead_, solver_.weights(), timestep_);
 
-  if (!move_half_a_step(system)) {
-    return std::nullopt;
-  }
+  if (!move_half_a_step(system)) return std::nullopt;
   if (system.springs.kinds() != SpringKinds::none) {
     field_.evaluate(system, loads_.force, loads_.torque);  // advances the springs
   }

@@ -129,9 +129,7 @@ SpectralBound largest_eigenvalue(const PackingMatrix& matrix, double tolerance) 
       const Largest found = largest_of(diagonal.head(k + 1), beside.head(k));
       bound.value = found.eigenvalue;
       bound.residual = exhausted ? 0 : length * found.last_component;
-      if (exhausted || bound.residual <= tolerance * bound.value) {
-        break;
-      }
+      if (exhausted || bound.residual <= tolerance * bound.value) break;
     }
     before.swap(vector);
     vector = product / length;

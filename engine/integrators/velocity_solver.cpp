@@ -29,9 +29,7 @@ VelocitySolver::VelocitySolver(const Physics& physics, const ParticleState& part
       moved_(particles.count()),
       loads_(particles.count()),
       flow_(physics.flow) {
-  if (flow_.varies()) {
-    varying_velocity_ = varying_spin_ = VectorField(particles.count());
-  }
+  if (flow_.varies()) varying_velocity_ = varying_spin_ = VectorField(particles.count());
   const std::size_t classes = distinct_radii(particles.radius).size();
   inertia_.resize(classes);
   diagonal_.resize(classes);
@@ -62,9 +60,7 @@ void VelocitySolver::assemble(System& system, ForceField& field, Loads* loads) {
   const LinkSystem matrix = links(system);
   run_team(threads_, [&](Team& team) {
     const Team::Part mine = team.part_of(matrix.count_of_blocks);
-    for (std::size_t block = mine.begin; block < mine.end; ++block) {
-      assemble_block(block);
-    }
+    for (std::size_t block = mine.begin; block < mine.end; ++block) assemble_block(block);
     team.meet();
     link_.factorise(matrix, pivots_.data(), team);
   });

@@ -70,12 +70,8 @@ StepReport VelocityVerlet::advance_open(System& system) {
   report.largest_displacement = speed * timestep_;
   // Displacements beyond the range of the list: no neighbours are looked for, and the caller reports the
   // cause.
-  if (!(speed * timestep_ < system.list.ranges().largest())) {
-    return report;
-  }
-  if (keep_list(system, speed) || !in_one_walk) {
-    sums = field_.evaluate_blocks(system, force_, torque_);
-  }
+  if (!(speed * timestep_ < system.list.ranges().largest())) return report;
+  if (keep_list(system, speed) || !in_one_walk) sums = field_.evaluate_blocks(system, force_, torque_);
   open_ = true;
   report.sums = sums;
   const bool has_noise = field_.physics().thermal_energy > 0;
@@ -142,15 +138,11 @@ OneBodyInput VelocityVerlet::kick_input(System& system) {
 
 // Forces of the last step that wait for it.
 void VelocityVerlet::add_due(const System& system, const ParticleBlock& block) {
-  if (open_) {
-    field_.add_incoming(system, block, force_, torque_);
-  }
+  if (open_) field_.add_incoming(system, block, force_, torque_);
 }
 
 void VelocityVerlet::complete(System& system) {
-  if (!open_) {
-    return;
-  }
+  if (!open_) return;
   const OneBodyInput input = kick_input(system);
   const std::vector<ParticleBlock>& blocks = system.list.blocks();
   for_each_index(blocks.size(), field_.threads(), [&](std::size_t b) {
@@ -203,13 +195,9 @@ bool VelocityVerlet::keep_list(System& system, double speed) {
   // A displacement d grows by dt (u - L x_reference) = dt (peculiar velocity + L d).
   displacement_bound_ += timestep_ * (speed + norm(system.box.velocity_gradient()) * displacement_bound_);
   const double allowed = system.list.allowed_displacement(system.box);
-  if (displacement_bound_ < allowed) {
-    return false;
-  }
+  if (displacement_bound_ < allowed) return false;
   displacement_bound_ = system.list.largest_displacement(system.particles, system.box);
-  if (displacement_bound_ < allowed) {
-    return false;
-  }
+  if (displacement_bound_ < allowed) return false;
   rebuild_list(system);
   return true;
 }
@@ -228,9 +216,7 @@ void VelocityVerlet::return_to_mark(System& system) {
 }
 
 void VelocityVerlet::save(ArchiveWriter& archive) const {
-  if (open_) {
-    throw std::logic_error("a step must be complete to be saved");
-  }
+  if (open_) throw std::logic_error("a step must be complete to be saved");
   archive.put_all(force_, torque_);
   Integrator::save(archive);
 }

@@ -117,12 +117,8 @@ PairSums ForceField::evaluate_blocks(System& system, VectorField& force, VectorF
                                      const SetDrag& set_drag) {
   return add_pairs(system, force, torque, [&](const ParticleBlock& block) {
     set_drag(block);
-    if (physics_.flow.varies()) {
-      add_varying_drag(system, block.begin, block.end, force, torque);
-    }
-    if (physics_.thermal_energy > 0) {
-      add_drag_noise(system, block.begin, block.end, force, torque);
-    }
+    if (physics_.flow.varies()) add_varying_drag(system, block.begin, block.end, force, torque);
+    if (physics_.thermal_energy > 0) add_drag_noise(system, block.begin, block.end, force, torque);
   });
 }
 
@@ -222,9 +218,7 @@ void ForceField::add_drag_noise(const System& system, std::size_t begin, std::si
   NormalBlock normals;
   for (std::size_t first = begin; first < end; first += identities_per_block) {
     const std::size_t count = std::min<std::size_t>(identities_per_block, end - first);
-    for (std::size_t k = 0; k < count; ++k) {
-      identity[k] = system.particles.id[first + k];
-    }
+    for (std::size_t k = 0; k < count; ++k) identity[k] = system.particles.id[first + k];
     fill_normals_(key, identity, nullptr, normals);
     for (std::size_t k = 0; k < count; ++k) {
       const auto normal = [&](int c) { return static_cast<double>(normals.value[c][k]); };

@@ -49,14 +49,10 @@ InstructionSet chosen_instruction_set() {
   InstructionSet widest = InstructionSet::baseline;
   std::string available;
   for (const InstructionSet set : every_set) {
-    if (!is_available(set)) {
-      continue;
-    }
+    if (!is_available(set)) continue;
     widest = set;
     available += (available.empty() ? "" : ", ") + std::string(name_of(set));
-    if (wanted != nullptr && std::string_view(wanted) == name_of(set)) {
-      return set;
-    }
+    if (wanted != nullptr && std::string_view(wanted) == name_of(set)) return set;
   }
   if (wanted != nullptr && *wanted != '\0') {
     throw InputError("PECLET_INSTRUCTION_SET", "", wanted,
@@ -104,9 +100,7 @@ const LinkKernels& link_kernels([[maybe_unused]] InstructionSet set) {
 
 const OneBodyKernels& one_body_kernels([[maybe_unused]] InstructionSet set) {
 #ifdef PECLET_NEWER_SETS
-  if (set != InstructionSet::baseline) {
-    return avx2_one_body_kernels;
-  }
+  if (set != InstructionSet::baseline) return avx2_one_body_kernels;
 #endif
   return baseline_one_body_kernels;
 }

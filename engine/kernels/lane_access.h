@@ -92,18 +92,14 @@ PECLET_ALWAYS_INLINE RowsOf<Lanes<Set>> scattered(const Vector3Of<Lanes<Set>>& v
 template <class Set>
 PECLET_ALWAYS_INLINE double sum_of_lanes(const Lanes<Set>& x) {
   double sum = 0;
-  for (int k = 0; k < Lanes<Set>::width; ++k) {
-    sum += x.v[k];
-  }
+  for (int k = 0; k < Lanes<Set>::width; ++k) sum += x.v[k];
   return sum;
 }
 
 template <class Set>
 PECLET_ALWAYS_INLINE double largest_lane(const Lanes<Set>& x) {
   double largest = x.v[0];
-  for (int k = 1; k < Lanes<Set>::width; ++k) {
-    largest = largest < x.v[k] ? x.v[k] : largest;
-  }
+  for (int k = 1; k < Lanes<Set>::width; ++k) largest = largest < x.v[k] ? x.v[k] : largest;
   return largest;
 }
 
@@ -128,9 +124,7 @@ PECLET_ALWAYS_INLINE Lanes<Set> load_lanes(const double* values, int count, cons
   if (count == Lanes<Set>::width) {
     __builtin_memcpy(&result.v, values, sizeof result.v);
   } else {
-    for (int k = 0; k < count; ++k) {
-      result.v[k] = values[k];
-    }
+    for (int k = 0; k < count; ++k) result.v[k] = values[k];
   }
   return result;
 }
@@ -150,9 +144,7 @@ PECLET_ALWAYS_INLINE void store_lanes(double* values, int count, const Lanes<Set
   if (count == Lanes<Set>::width) {
     __builtin_memcpy(values, &x.v, sizeof x.v);
   } else {
-    for (int k = 0; k < count; ++k) {
-      values[k] = x.v[k];
-    }
+    for (int k = 0; k < count; ++k) values[k] = x.v[k];
   }
 }
 

@@ -69,9 +69,7 @@ class Mask {
 template <class Set>
 Mask<Set> first_lanes(int count) {
   typename Mask<Set>::Integers numbers;
-  for (int k = 0; k < Set::width; ++k) {
-    numbers[k] = k;
-  }
+  for (int k = 0; k < Set::width; ++k) numbers[k] = k;
   return Mask<Set>(numbers < static_cast<std::int64_t>(count));
 }
 

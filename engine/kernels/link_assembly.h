@@ -33,9 +33,7 @@ void couple_nothing(LinkGroup& group, int place, std::uint32_t first, std::uint3
   Floats* const numbers[] = {&group.normal[0],   &group.normal[1],   &group.normal[2],   &group.squeeze,
                              &group.shear,       &group.pump_first,  &group.pump_second, &group.twist_first,
                              &group.twist_cross, &group.twist_second};
-  for (Floats* const number : numbers) {
-    (*number)[place] = 0;
-  }
+  for (Floats* const number : numbers) (*number)[place] = 0;
 }
 
 // Links that couple nothing, so that a level's groups are full.
@@ -191,9 +189,7 @@ class LinkedPairs {
     const unsigned coupled = near_ & (bits(coupling.squeeze > 0.0) | bits(coupling.shear > 0.0));
     const LinkNumbers numbers(shape_.normal, coupling);
     for (int k = 0; k < count_; ++k) {
-      if ((coupled >> k & 1U) == 0) {
-        continue;
-      }
+      if ((coupled >> k & 1U) == 0) continue;
       const std::uint32_t row_of_first = places.row[first_[k]], row_of_second = places.row[second_[k]];
       const bool swapped = row_of_first < row_of_second;
       const std::uint32_t later = swapped ? row_of_second : row_of_first;
@@ -261,9 +257,7 @@ class LinkedPairs {
                                        bool swapped) {
     const int first = swapped ? 1 : 0, second = 1 - first;
     const float sign = swapped ? -1.0F : 1.0F;
-    for (int c = 0; c < 3; ++c) {
-      group.normal[c][place] = sign * numbers.normal[c][k];
-    }
+    for (int c = 0; c < 3; ++c) group.normal[c][place] = sign * numbers.normal[c][k];
     group.squeeze[place] = numbers.squeeze[k];
     group.shear[place] = numbers.shear[k];
     group.pump_first[place] = numbers.pump[first][k];
@@ -296,9 +290,7 @@ void assemble(const PairKernelInput& in, const PairRun* runs, std::size_t count,
               const LinkWeights& weights, const LinkPlaces& places, const LinkBlock& block, LinkGroup* groups,
               const PairKernelOutput* loads) {
   constexpr std::uint32_t width = width_of<Real>;
-  for (std::uint32_t level = block.levels_begin; level < block.levels_end; ++level) {
-    places.next[level] = 0;
-  }
+  for (std::uint32_t level = block.levels_begin; level < block.levels_end; ++level) places.next[level] = 0;
   LaneSumsOf<Real> sums;
   for (const PairRun* run = runs; run < runs + count; ++run) {
     for (std::uint32_t begin = run->begin; begin < run->end; begin += width) {

@@ -104,9 +104,7 @@ void LinkOrder::number_rows(const NeighbourList& list, const std::vector<Colour>
   row_.resize(colour_.size());
   level_.resize(colour_.size());
   for_each_range(blocks_.size(), threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) {
-      number_rows(blocks_[b]);
-    }
+    for (std::size_t b = begin; b < end; ++b) number_rows(blocks_[b]);
   });
 }
 
@@ -114,9 +112,7 @@ void LinkOrder::number_rows(const LinkBlock& block) {
   const auto level_of = [&](std::uint32_t i) {
     return colour_[i] + (in_boundary_[i] != 0 ? block.boundary_begin : block.levels_begin);
   };
-  for (std::uint32_t i = block.rows_begin; i < block.rows_end; ++i) {
-    ++next_[level_of(i)];
-  }
+  for (std::uint32_t i = block.rows_begin; i < block.rows_end; ++i) ++next_[level_of(i)];
   std::uint32_t row = block.rows_begin;
   for (std::uint32_t l = block.levels_begin; l < block.levels_end; ++l) {
     levels_[l].rows_begin = row;

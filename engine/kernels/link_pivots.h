@@ -47,9 +47,7 @@ PECLET_ALWAYS_INLINE void invert(const Floats* a, Floats* inverse) {
     Floats pivot = a[entry(row, row)];
     for (int column = 0; column < row; ++column) {
       Floats sum = a[entry(row, column)];
-      for (int k = 0; k < column; ++k) {
-        sum -= scaled[k] * lower[entry(column, k)];
-      }
+      for (int k = 0; k < column; ++k) sum -= scaled[k] * lower[entry(column, k)];
       scaled[column] = sum;
       lower[entry(row, column)] = sum * per_pivot[column];
       pivot -= sum * lower[entry(row, column)];
@@ -59,9 +57,7 @@ PECLET_ALWAYS_INLINE void invert(const Floats* a, Floats* inverse) {
   for (int column = 0; column < 6; ++column) {
     for (int row = column + 1; row < 6; ++row) {
       Floats sum = lower[entry(row, column)];
-      for (int k = column + 1; k < row; ++k) {
-        sum += lower[entry(row, k)] * inverse_lower[entry(k, column)];
-      }
+      for (int k = column + 1; k < row; ++k) sum += lower[entry(row, k)] * inverse_lower[entry(k, column)];
       inverse_lower[entry(row, column)] = Floats{} - sum;
     }
   }
@@ -110,9 +106,7 @@ template <class Add>
 PECLET_ALWAYS_INLINE void for_each_row_of_blocks(Floats* blocks, Add&& add) {
   for (std::size_t part = 0; part < rows_of_block; ++part) {
     transpose(blocks + 8 * part);
-    for (std::size_t k = 0; k < links_per_group; ++k) {
-      add(k, part, blocks[8 * part + k]);
-    }
+    for (std::size_t k = 0; k < links_per_group; ++k) add(k, part, blocks[8 * part + k]);
   }
 }
 
@@ -162,9 +156,7 @@ PECLET_ALWAYS_INLINE void add_squeezing(const GroupRange& groups, Pivot* pivots)
   constexpr float kept = 0.9F;
   MotionRow* const rows = reinterpret_cast<MotionRow*>(pivots);
   const auto places = [](const std::uint32_t* of, std::uint32_t part, std::uint32_t* row) {
-    for (int k = 0; k < links_per_group; ++k) {
-      row[k] = 4 * of[k] + part;
-    }
+    for (int k = 0; k < links_per_group; ++k) row[k] = 4 * of[k] + part;
     return row;
   };
   for (const LinkGroup* group = groups.begin; group < groups.end; ++group) {
@@ -187,9 +179,7 @@ PECLET_ALWAYS_INLINE void invert_pivots(Pivot* begin, std::size_t count) {
   Floats held[3][8], a[entries], inverse[entries];
   // Lanes without a particle repeat the first one.
   for (std::size_t part = 0; part < 3; ++part) {
-    for (std::size_t k = 0; k < 8; ++k) {
-      held[part][k] = begin[k < count ? k : 0].rows[part].v;
-    }
+    for (std::size_t k = 0; k < 8; ++k) held[part][k] = begin[k < count ? k : 0].rows[part].v;
     transpose(held[part]);
   }
   // In each 3 x 3 part: the diagonal, and what stands beside it.
@@ -229,9 +219,7 @@ PECLET_ALWAYS_INLINE void invert_pivots(Pivot* begin, std::size_t count) {
   pivot[3][3] = pivot[3][7] = Floats{};
   for (std::size_t part = 0; part < 4; ++part) {
     transpose(pivot[part]);
-    for (std::size_t k = 0; k < count; ++k) {
-      begin[k].rows[part].v = pivot[part][k];
-    }
+    for (std::size_t k = 0; k < count; ++k) begin[k].rows[part].v = pivot[part][k];
   }
 }
 

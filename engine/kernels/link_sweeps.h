@@ -12,9 +12,7 @@ namespace {
 
 PECLET_ALWAYS_INLINE double sum_of(const Floats& v) {
   double sum = 0;
-  for (int k = 0; k < 8; ++k) {
-    sum += static_cast<double>(v[k]);
-  }
+  for (int k = 0; k < 8; ++k) sum += static_cast<double>(v[k]);
   return sum;
 }
 
@@ -31,13 +29,9 @@ PECLET_ALWAYS_INLINE double summed(std::size_t begin, std::size_t end, Body&& bo
     Floats sum[4]{};
     std::size_t i = part;
     for (; i + 4 <= part_end; i += 4) {
-      for (std::size_t k = 0; k < 4; ++k) {
-        body(i + k, sum[k]);
-      }
+      for (std::size_t k = 0; k < 4; ++k) body(i + k, sum[k]);
     }
-    for (; i < part_end; ++i) {
-      body(i, sum[0]);
-    }
+    for (; i < part_end; ++i) body(i, sum[0]);
     total += sum_of((sum[0] + sum[1]) + (sum[2] + sum[3]));
   }
   return total;
@@ -88,27 +82,21 @@ PECLET_ALWAYS_INLINE GroupRange crossing_groups(const LinkSystem& system, const 
 template <class Body>
 PECLET_ALWAYS_INLINE void for_my_blocks(const LinkSystem& system, const Team& team, Body&& body) {
   const Team::Part mine = team.part_of(system.count_of_blocks);
-  for (std::size_t b = mine.begin; b < mine.end; ++b) {
-    body(system.blocks[b], b);
-  }
+  for (std::size_t b = mine.begin; b < mine.end; ++b) body(system.blocks[b], b);
 }
 
 // The sum over all blocks, in their order, once all members have contributed theirs.
 PECLET_ALWAYS_INLINE double total(const LinkSystem& system, Team& team, double LinkSums::*sum) {
   team.meet();
   double total = 0;
-  for (std::size_t b = 0; b < system.count_of_blocks; ++b) {
-    total += system.sums[b].*sum;
-  }
+  for (std::size_t b = 0; b < system.count_of_blocks; ++b) total += system.sums[b].*sum;
   return total;
 }
 
 // Calls body(row) for the rows of a block or level.
 template <class Rows, class Body>
 PECLET_ALWAYS_INLINE void for_each_row(const Rows& of, Body&& body) {
-  for (std::size_t i = of.rows_begin; i < of.rows_end; ++i) {
-    body(i);
-  }
+  for (std::size_t i = of.rows_begin; i < of.rows_end; ++i) body(i);
 }
 
 // Calls body(groups) for all groups of levels [begin, end).

@@ -76,9 +76,7 @@ PECLET_ALWAYS_INLINE void leave_load(const PairLoadOf<Real>& load, const PairRun
   const RowsOf<Real> force = scattered(load.force), torque_first = scattered(load.torque_first),
                      torque_second = scattered(load.torque_second);
   for (int k = 0; k < width_of<Real>; ++k) {
-    if (k == count) {
-      break;
-    }
+    if (k == count) break;
     if constexpr (mirrored) {
       const std::size_t j = second[k] - out.first_particle;
       row_of(out.force, j) -= force.row[k];
@@ -251,9 +249,7 @@ class PairGroup {
 
   // The rows of crossing pairs are written at every evaluation: nobody clears them.
   PECLET_ALWAYS_INLINE void leave_nothing(const PairKernelOutput& out) const {
-    if (run_.crossing == within_block) {
-      return;
-    }
+    if (run_.crossing == within_block) return;
     for (int k = 0; k < count_; ++k) {
       const std::size_t c = run_.crossing + (begin_ - run_.begin) + static_cast<std::uint32_t>(k);
       row_of(out.crossing, 2 * c) = Row{};
@@ -275,9 +271,7 @@ class PairGroup {
       }
       return result;
     }
-    if (!eight_.drawn) {
-      draw();
-    }
+    if (!eight_.drawn) draw();
     const auto offset = static_cast<int>(begin_ - eight_.begin);
     for (int c = 0; c < 6; ++c) {
       for (int k = 0; k < width_of<Real>; ++k) {
@@ -331,9 +325,7 @@ class PairGroup {
 inline constexpr std::uint32_t pairs_ahead = 16;
 PECLET_ALWAYS_INLINE void ask_for_rows(const PairKernelInput& in, const PairRun& run, std::uint32_t begin,
                                        std::uint32_t end) {
-  if (run.crossing == within_block) {
-    return;
-  }
+  if (run.crossing == within_block) return;
   end = end + pairs_ahead < run.end ? end + pairs_ahead : run.end;
   for (std::uint32_t p = begin + pairs_ahead; p < end; ++p) {
     const std::size_t row = 4 * std::size_t{run.first_is_away ? in.pairs[p].first : in.pairs[p].second};
@@ -371,9 +363,7 @@ template <class Real, Terms terms>
 void run_pair_kernel(const PairKernelInput& in, const PairRun* runs, std::size_t count,
                      const PairKernelOutput& out) {
   const PairRun *const end = runs + count, *mirrored = runs;
-  while (mirrored < end && !mirrored->first_is_away) {
-    ++mirrored;
-  }
+  while (mirrored < end && !mirrored->first_is_away) ++mirrored;
   add_runs<Real, terms, false>(in, runs, mirrored, out, out.sums[0]);
   if (mirrored < end) {
     add_runs<Real, terms, true>(in, mirrored, end, out, out.sums[1]);

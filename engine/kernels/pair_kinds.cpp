@@ -33,9 +33,7 @@ PairKind make_pair_kind(const Physics& physics, double first, double second) {
 std::vector<PairKind> make_pair_kinds(const Physics& physics, const std::vector<double>& distinct_radii) {
   std::vector<PairKind> kinds;
   for (const double first : distinct_radii) {
-    for (const double second : distinct_radii) {
-      kinds.push_back(make_pair_kind(physics, first, second));
-    }
+    for (const double second : distinct_radii) kinds.push_back(make_pair_kind(physics, first, second));
   }
   return kinds;
 }
@@ -43,9 +41,7 @@ std::vector<PairKind> make_pair_kinds(const Physics& physics, const std::vector<
 RangeTable range_table(const std::vector<PairKind>& kinds, std::size_t classes) {
   RangeTable ranges(classes);
   for (std::size_t a = 0; a < classes; ++a) {
-    for (std::size_t b = 0; b < classes; ++b) {
-      ranges.at(a, b) = kinds[a * classes + b].listed_range;
-    }
+    for (std::size_t b = 0; b < classes; ++b) ranges.at(a, b) = kinds[a * classes + b].listed_range;
   }
   return ranges;
 }

@@ -10,9 +10,7 @@ namespace peclet::engine {
 PairSums total_of(const std::vector<PairSums>& blocks) {
   PairSums total;
   for (const PairSums& block : blocks) {
-    for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
-      total.stress[t] += block.stress[t];
-    }
+    for (std::size_t t = 0; t < count_of_stress_terms; ++t) total.stress[t] += block.stress[t];
     total.contacts += block.contacts;
     total.overlaps += block.overlaps;
     total.largest_overlap = std::max(total.largest_overlap, block.largest_overlap);
@@ -40,9 +38,7 @@ bool feels_varying_flow(const Physics& physics) {
 }
 
 SpringKinds spring_kinds(const Terms& terms) {
-  if (!terms.friction) {
-    return SpringKinds::none;
-  }
+  if (!terms.friction) return SpringKinds::none;
   const SpringKinds kinds = terms.rolling ? SpringKinds::tangential_and_rolling : SpringKinds::tangential;
   return terms.kinetic ? that_slide(kinds) : kinds;
 }
@@ -57,9 +53,7 @@ PairKernelInput PairPass::kernel_input(const PairPassInput& input, SpringField& 
     image_velocity_.set(k, frames[k].velocity);
   }
   image_keys_.clear();
-  for (const LatticeShift image : input.list.images()) {
-    image_keys_.push_back(image_identity(image));
-  }
+  for (const LatticeShift image : input.list.images()) image_keys_.push_back(image_identity(image));
   static_assert(sizeof(NormalPair) == 6 * sizeof(double));
   PairKernelInput kernel{};
   kernel.position = input.particles.position.data();
@@ -110,9 +104,7 @@ PairSums PairPass::add_pairs(const PairPassInput& input, SpringField& springs, V
 }
 
 double* PairPass::crossing_rows(const NeighbourList& list) {
-  if (crossing_.size() < 2 * list.crossings()) {
-    crossing_ = VectorField(2 * list.crossings());
-  }
+  if (crossing_.size() < 2 * list.crossings()) crossing_ = VectorField(2 * list.crossings());
   return crossing_.data();
 }
 
@@ -132,9 +124,7 @@ void PairPass::add_incoming(const NeighbourList& list, int threads, VectorField&
                             VectorField& torque) const {
   if (list.crossings() == 0) return;
   for_each_range(list.blocks().size(), threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t b = begin; b < end; ++b) {
-      add_incoming(list, list.blocks()[b], force, torque);
-    }
+    for (std::size_t b = begin; b < end; ++b) add_incoming(list, list.blocks()[b], force, torque);
   });
 }
 

@@ -21,17 +21,13 @@ bool has_stress_term(const Physics& physics, StressTerm term);
 // The bits of `code` are the terms in the order of every_term.
 constexpr Terms decoded_terms(unsigned code) {
   Terms terms;
-  for (unsigned bit = 0; bit < count_of_terms; ++bit) {
-    terms.*every_term[bit].chosen = (code >> bit & 1U) != 0;
-  }
+  for (unsigned bit = 0; bit < count_of_terms; ++bit) terms.*every_term[bit].chosen = (code >> bit & 1U) != 0;
   return terms;
 }
 
 constexpr unsigned code_of(const Terms& terms) {
   unsigned code = 0;
-  for (unsigned bit = 0; bit < count_of_terms; ++bit) {
-    code |= terms.*every_term[bit].chosen ? 1U << bit : 0U;
-  }
+  for (unsigned bit = 0; bit < count_of_terms; ++bit) code |= terms.*every_term[bit].chosen ? 1U << bit : 0U;
   return code;
 }
 

@@ -170,13 +170,9 @@ PECLET_ALWAYS_INLINE void add_stiffness(PairResistanceOf<Real>& sum, const Terms
                                         const ContactParameters& contact, const PairKind& kind,
                                         const PairGeometryOf<Real>& pair, const CouplingWeights& weights,
                                         Held&& held) {
-  if (terms.conservative) {
-    sum.squeeze += positive_stiffness(kind.conservative, pair, weights.normal);
-  }
+  if (terms.conservative) sum.squeeze += positive_stiffness(kind.conservative, pair, weights.normal);
   const auto touching = pair.overlap() > 0.0;
-  if (!terms.contact || !any(touching)) {
-    return;
-  }
+  if (!terms.contact || !any(touching)) return;
   sum.squeeze +=
       select(touching, Real{contact_coupling(contact, weights.normal, weights.resistance)}, Real{0.0});
   if (terms.friction) add_springs(sum, terms, contact_of(contact, kind, pair), weights, held());

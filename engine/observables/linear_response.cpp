@@ -165,9 +165,7 @@ class LinearResponse : public Observable {
   // B(t).
   Curve moments() const {
     Curve curve;
-    for (const LagMean& value : sums_[0].values()) {
-      curve.time.push_back(lag_time(value.lag, timestep_));
-    }
+    for (const LagMean& value : sums_[0].values()) curve.time.push_back(lag_time(value.lag, timestep_));
     curve.value.assign(curve.time.size(), 0);
     for (const SquaredSums& sums : sums_) {
       const std::vector<LagMean> values = sums.values();

@@ -40,15 +40,11 @@ double statistical_inefficiency(const std::vector<double>& series) {
   };
   const double variance = covariance(0);
   // Values that differ by rounding alone say nothing.
-  if (!(variance > 1e-24 * mean * mean)) {
-    return 1;
-  }
+  if (!(variance > 1e-24 * mean * mean)) return 1;
   double inefficiency = 1;
   for (std::size_t lag = 1; lag < series.size(); ++lag) {
     const double correlation = covariance(lag) / variance;
-    if (correlation <= 0) {
-      break;
-    }
+    if (correlation <= 0) break;
     inefficiency += 2 * correlation;
   }
   return inefficiency;

@@ -8,9 +8,7 @@ namespace peclet::engine {
 SymmetricTensor structural_brownian_stress(const System& system, const std::vector<PairKind>& kinds,
                                            double thermal_energy) {
   SymmetricTensor sum;
-  if (!(thermal_energy > 0)) {
-    return sum;
-  }
+  if (!(thermal_energy > 0)) return sum;
   const std::vector<ImageFrame> frames = image_frames(system.list, system.box);
   for (const Pair& pair : system.list.pairs()) {
     const PairKind& kind = kinds[pair.kind];
@@ -44,9 +42,7 @@ KineticTemperatures kinetic_temperatures(const System& system, const ImposedFlow
 SymmetricTensor varying_stresslet(const ParticleState& particles, const PeriodicCell& box,
                                   const Physics& physics) {
   SymmetricTensor sum;
-  if (!physics.flow.varies()) {
-    return sum;
-  }
+  if (!physics.flow.varies()) return sum;
   const BackgroundFlow flow = physics.flow.at(box);
   for (std::size_t i = 0; i < particles.count(); ++i) {
     const double a = particles.radius[i];

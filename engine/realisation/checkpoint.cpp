@@ -98,9 +98,7 @@ Spent read_checkpoint(const std::filesystem::path& path, const CheckpointIdentit
     require_same_motion(found, identity);
     spent = payload.get<Spent>();
     simulation.load(payload);
-    if (!payload.at_end()) {
-      throw CheckpointError("holds more than belongs there");
-    }
+    if (!payload.at_end()) throw CheckpointError("holds more than belongs there");
   });
   return spent;
 }

@@ -174,9 +174,7 @@ class Job {
 
   void begin() {
     construct();
-    if (!job_.checkpoint.empty() && !kind_of(job_.checkpoint).empty() && resume()) {
-      return;
-    }
+    if (!job_.checkpoint.empty() && !kind_of(job_.checkpoint).empty() && resume()) return;
     open_frames_file();
     if (!job_.extended.empty()) {
       extend_checkpoint(job_.extended, identity_, *simulation_);
@@ -239,9 +237,7 @@ class Job {
       meter_.start_after(spent);
       return true;
     } catch (const CheckpointError& error) {
-      if (!job_.restart_on_bad_checkpoint) {
-        throw;
-      }
+      if (!job_.restart_on_bad_checkpoint) throw;
       // Results depend on scene, seed and binary alone, so starting again only costs time.
       events_.remark(std::string(error.what()) + ": set aside, the realisation starts again");
       fs::rename(job_.checkpoint, free_name(job_.checkpoint.string() + ".rejected"));
@@ -258,17 +254,11 @@ class Job {
         Clock::now() +
         std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(job_.checkpoint_seconds));
     while (true) {
-      if (std::optional<Ending> ending = simulation_->advance(stride)) {
-        return ending;
-      }
+      if (std::optional<Ending> ending = simulation_->advance(stride)) return ending;
       events_.progress(progress_of(*simulation_));
       if (!relieve_memory()) return std::nullopt;
-      if (job_.checkpoint.empty()) {
-        continue;
-      }
-      if (events_.drain_requested()) {
-        return std::nullopt;
-      }
+      if (job_.checkpoint.empty()) continue;
+      if (events_.drain_requested()) return std::nullopt;
       if (Clock::now() > next_checkpoint) next_checkpoint = Clock::now() + checkpoint_on_the_way();
     }
   }

@@ -51,9 +51,7 @@ class Quench {
     int downhill = 0;
     for (int iteration = 0; iteration < most_iterations; ++iteration) {
       const Overlaps overlaps = evaluate();
-      if (overlaps.largest < (1 - smallest_gap) * inflation || overlaps.force_squared == 0) {
-        return closest();
-      }
+      if (overlaps.largest < (1 - smallest_gap) * inflation || overlaps.force_squared == 0) return closest();
       if (overlaps.force_squared < force_squared_of_jam()) {
         return closest();  // a minimum with overlaps: jammed
       }
@@ -77,9 +75,7 @@ class Quench {
 
  private:
   Overlaps evaluate() {
-    if (!list_.holds(particles_, box_)) {
-      list_.build(particles_, box_);
-    }
+    if (!list_.holds(particles_, box_)) list_.build(particles_, box_);
     force_ = VectorField(particles_.count());
     Overlaps overlaps;
     for (const Pair& pair : list_.pairs()) {
@@ -155,9 +151,7 @@ double reached_volume_fraction(ParticleState particles, const PeriodicCell& box,
   double free = wanted * scale * scale * scale, jammed = wanted;
   while (jammed - free > 0.005) {
     const double middle = 0.5 * (free + jammed), shrunk = std::cbrt(middle / wanted);
-    for (std::size_t i = 0; i < radius.size(); ++i) {
-      particles.radius[i] = shrunk * radius[i];
-    }
+    for (std::size_t i = 0; i < radius.size(); ++i) particles.radius[i] = shrunk * radius[i];
     particles.velocity = VectorField(radius.size());
     (Quench(particles, box, made_step).run() > 1 ? free : jammed) = middle;
   }
@@ -248,9 +242,7 @@ void relax(System& system, const Scene& scene, int threads, const std::function<
       continue;
     }
     system = std::move(trial);
-    if (step == timestep) {
-      break;
-    }
+    if (step == timestep) break;
     step = std::min(2 * step, timestep);
   }
   system.step = 0;

@@ -41,9 +41,7 @@ std::optional<double> energy_imbalance(const Scene& scene, const Simulation& sim
 // How much more stress the samples have with whole steps than with half ones, relative to the latter.
 std::optional<double> half_step_difference(const StepErrors& errors) {
   const auto [whole, halved] = errors.half_steps;
-  if (!(halved > 0)) {
-    return std::nullopt;
-  }
+  if (!(halved > 0)) return std::nullopt;
   return whole / halved - 1;
 }
 
@@ -59,9 +57,7 @@ constexpr double largest_share_divided = 0.1;
 Json solver_json(const Scene& scene, const Simulation& simulation) {
   const StepErrors& errors = simulation.step_errors();
   const auto steps = static_cast<double>(sum_of(simulation.production().blocks()).steps);
-  if (scene.method != Method::implicit_steps || steps == 0) {
-    return nullptr;
-  }
+  if (scene.method != Method::implicit_steps || steps == 0) return nullptr;
   return {{"iterations_per_step", static_cast<double>(errors.solver_iterations) / steps},
           {"mean_residual", errors.sum_of_solver_residuals / steps},
           {"largest_residual", errors.largest_solver_residual},
@@ -292,9 +288,7 @@ Json make_result(const ResultHeader& header, const Scene& scene, const Simulatio
   ArchiveWriter state;
   save(simulation.system(), state);
   result["final_state_sha256"] = sha256(state.bytes());
-  if (is_measured(ending.cause)) {
-    add_measurements(scene, simulation, ending, result);
-  }
+  if (is_measured(ending.cause)) add_measurements(scene, simulation, ending, result);
   return result;
 }
 

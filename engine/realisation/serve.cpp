@@ -67,9 +67,7 @@ class Worker {
  private:
   // A peer that is gone is no error: what is finished lies in the spool, what is not goes to a checkpoint.
   void tell(const Json& message) {
-    if (abandoned_) {
-      return;
-    }
+    if (abandoned_) return;
     try {
       channel_.send(message);
     } catch (const std::system_error&) {
@@ -190,9 +188,7 @@ class Worker {
     events.progress = [this, id, progress_seconds](const Progress& progress) {
       last_step_ = progress.phase == std::string_view("packing") ? 0 : progress.step;
       const Clock::time_point now = Clock::now();
-      if (std::chrono::duration<double>(now - last_progress_).count() < progress_seconds) {
-        return;
-      }
+      if (std::chrono::duration<double>(now - last_progress_).count() < progress_seconds) return;
       last_progress_ = now;
       tell({{"type", "progress"},
             {"job", id},
@@ -207,9 +203,7 @@ class Worker {
   // Asked at every turn of the time loop; looks at the socket only now and then.
   bool drain_requested() {
     const Clock::time_point now = Clock::now();
-    if (now - last_look_ < attention) {
-      return told_to_leave_ || abandoned_;
-    }
+    if (now - last_look_ < attention) return told_to_leave_ || abandoned_;
     last_look_ = now;
     hear(std::chrono::milliseconds(0));
     return told_to_leave_ || abandoned_;
@@ -228,9 +222,7 @@ class Worker {
         break;
     }
     const auto type = message.at("type").get<std::string>();
-    if (type == "stop") {
-      std::exit(0);
-    }
+    if (type == "stop") std::exit(0);
     if (type == "job" && !waiting_job_ && !told_to_leave_) {
       waiting_job_ = message;
       hear(std::chrono::milliseconds(0));  // a drain may be behind it

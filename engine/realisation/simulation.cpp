@@ -87,9 +87,7 @@ Simulation::Simulation(const Scene& scene, const Schedule& schedule, std::uint64
 
 void Simulation::start(const std::function<void()>& made_step) {
   place_randomly(system_.particles, system_.box, seed_, made_step);
-  if (required_terms(scene_.physics).conservative) {
-    relax(system_, scene_, threads_, made_step);
-  }
+  if (required_terms(scene_.physics).conservative) relax(system_, scene_, threads_, made_step);
   set_initial_velocities(system_.particles, scene_.physics.flow.at(system_.box), scene_.physics, seed_);
   begin();
 }
@@ -118,17 +116,13 @@ void Simulation::start(const System& placed, bool in_motion) {
 std::optional<Ending> Simulation::advance(std::uint64_t steps) {
   const std::uint64_t last = system_.step + steps;
   while (system_.step < std::min(last, schedule_.total())) {
-    if (std::optional<Ending> ending = check_stability()) {
-      return ending;
-    }
+    if (std::optional<Ending> ending = check_stability()) return ending;
     const StepReport report = driver_->advance(*integrator_, system_, watchers_of_step());
     if (std::optional<Ending> ending = ending_of(report, system_, scene_.guard, smallest_radius_)) {
       integrator_->complete(system_);
       return ending;
     }
-    if (system_.step > schedule_.equilibration) {
-      observe(report);
-    }
+    if (system_.step > schedule_.equilibration) observe(report);
     if (std::optional<Ending> ending = driver_->ending(system_, schedule_)) return ending;
   }
   integrator_->complete(system_);

@@ -50,9 +50,7 @@ std::vector<std::size_t> by_largest_remainders(const std::vector<double>& weight
     remainder.emplace_back(-(exact - std::floor(exact)), s);
   }
   std::sort(remainder.begin(), remainder.end());
-  for (std::size_t k = 0; given < count; ++k, ++given) {
-    ++number[remainder[k % remainder.size()].second];
-  }
+  for (std::size_t k = 0; given < count; ++k, ++given) ++number[remainder[k % remainder.size()].second];
   return number;
 }
 

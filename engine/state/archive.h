@@ -35,9 +35,7 @@ class ArchiveWriter {
 
   void put(const VectorField& field) {
     put(static_cast<std::uint64_t>(field.size()));
-    for (std::size_t i = 0; i < field.size(); ++i) {
-      put(field[i]);
-    }
+    for (std::size_t i = 0; i < field.size(); ++i) put(field[i]);
   }
 
   // Writes plain values, texts, fields, objects that save themselves, and vectors of these.
@@ -83,17 +81,13 @@ class ArchiveReader {
                          " belong");
     }
     std::vector<Value> values(expected);
-    if (expected > 0) {
-      std::memcpy(values.data(), take(expected * sizeof(Value)), expected * sizeof(Value));
-    }
+    if (expected > 0) std::memcpy(values.data(), take(expected * sizeof(Value)), expected * sizeof(Value));
     return values;
   }
 
   std::string get_string() {
     const auto count = get<std::uint64_t>();
-    if (count > rest_.size()) {
-      throw ArchiveError("ends too early");
-    }
+    if (count > rest_.size()) throw ArchiveError("ends too early");
     return std::string(take(count), count);
   }
 
@@ -109,9 +103,7 @@ class ArchiveReader {
   VectorField get_field(std::size_t expected) {
     const std::vector<Vector3> vectors = get_vector<Vector3>(expected);
     VectorField field(expected);
-    for (std::size_t i = 0; i < expected; ++i) {
-      field.set(i, vectors[i]);
-    }
+    for (std::size_t i = 0; i < expected; ++i) field.set(i, vectors[i]);
     return field;
   }
 
@@ -133,9 +125,7 @@ class ArchiveReader {
   }
 
   const char* take(std::size_t count) {
-    if (count > rest_.size()) {
-      throw ArchiveError("ends too early");
-    }
+    if (count > rest_.size()) throw ArchiveError("ends too early");
     const char* begin = rest_.data();
     rest_.remove_prefix(count);
     return begin;

@@ -49,9 +49,7 @@ CellGrid::CellGrid(const LatticePlaces& places, std::span<const std::uint32_t> m
     cell.push_back(linear(cell_at(places.fractional[i])));
     ++first_[cell.back() + 1];
   }
-  for (std::size_t c = 1; c < first_.size(); ++c) {
-    first_[c] += first_[c - 1];
-  }
+  for (std::size_t c = 1; c < first_.size(); ++c) first_[c] += first_[c - 1];
   content_.resize(members.size());
   std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
   for (std::size_t k = 0; k < members.size(); ++k) {

@@ -33,17 +33,13 @@ void sort_contacts(std::vector<HeldContact>& contacts) {
 std::vector<HeldContact> held_contacts(const NeighbourList& list, const ParticleState& particles,
                                        const SpringField& springs, int threads) {
   std::vector<HeldContact> held;
-  if (springs.kinds() == SpringKinds::none) {
-    return held;
-  }
+  if (springs.kinds() == SpringKinds::none) return held;
   std::mutex of_held;
   for_each_range(springs.size(), threads, [&](std::size_t begin, std::size_t end) {
     std::vector<HeldContact> part;
     for (std::size_t p = begin; p < end; ++p) {
       const ContactSprings of_pair = springs[p];
-      if (is_zero(of_pair.tangential) && is_zero(of_pair.rolling) && of_pair.slides == 0) {
-        continue;
-      }
+      if (is_zero(of_pair.tangential) && is_zero(of_pair.rolling) && of_pair.slides == 0) continue;
       part.push_back(contact_of(list, particles, list.pairs()[p]));
       part.back().springs = of_pair;
     }
@@ -57,27 +53,17 @@ std::vector<HeldContact> held_contacts(const NeighbourList& list, const Particle
 SpringField placed_contacts(const NeighbourList& list, const ParticleState& particles,
                             const std::vector<HeldContact>& held, SpringKinds kinds, int threads) {
   SpringField springs(kinds, list.pairs().size());
-  if (held.empty()) {
-    return springs;
-  }
+  if (held.empty()) return springs;
   // Where the contacts of each first particle begin.
   std::vector<std::uint32_t> begin(particles.count() + 1);
-  for (const HeldContact& contact : held) {
-    ++begin[contact.first + 1];
-  }
-  for (std::size_t i = 0; i < particles.count(); ++i) {
-    begin[i + 1] += begin[i];
-  }
+  for (const HeldContact& contact : held) ++begin[contact.first + 1];
+  for (std::size_t i = 0; i < particles.count(); ++i) begin[i + 1] += begin[i];
   for_each_index(list.pairs().size(), threads, [&](std::size_t p) {
     const std::uint32_t id = particles.id[list.pairs()[p].first];
-    if (begin[id] == begin[id + 1]) {
-      return;
-    }
+    if (begin[id] == begin[id + 1]) return;
     const auto wanted = name_of(contact_of(list, particles, list.pairs()[p]));
     for (std::uint32_t k = begin[id]; k < begin[id + 1]; ++k) {
-      if (name_of(held[k]) == wanted) {
-        springs.set(p, held[k].springs);
-      }
+      if (name_of(held[k]) == wanted) springs.set(p, held[k].springs);
     }
   });
   return springs;

@@ -43,9 +43,7 @@ class SpringField {
  public:
   SpringField() = default;
   SpringField(SpringKinds kinds, std::size_t pairs) : kinds_(kinds), pairs_(pairs) {
-    for (std::size_t c = 0; c < components(); ++c) {
-      component_[c].assign(pairs, 0.0);
-    }
+    for (std::size_t c = 0; c < components(); ++c) component_[c].assign(pairs, 0.0);
   }
 
   SpringKinds kinds() const { return kinds_; }
@@ -58,21 +56,15 @@ class SpringField {
     if (include(kinds_, SpringKinds::tangential_and_rolling)) {
       springs.rolling = {component_[3][pair], component_[4][pair], component_[5][pair]};
     }
-    if (remembers_sliding()) {
-      springs.slides = component_[components() - 1][pair];
-    }
+    if (remembers_sliding()) springs.slides = component_[components() - 1][pair];
     return springs;
   }
   // Springs of a kind that the field does not have are dropped.
   void set(std::size_t pair, const ContactSprings& springs) {
     const std::array<double, 6> values = {springs.tangential.x, springs.tangential.y, springs.tangential.z,
                                           springs.rolling.x,    springs.rolling.y,    springs.rolling.z};
-    for (std::size_t c = 0; c < components_of_springs(kinds_); ++c) {
-      component_[c][pair] = values[c];
-    }
-    if (remembers_sliding()) {
-      component_[components() - 1][pair] = springs.slides;
-    }
+    for (std::size_t c = 0; c < components_of_springs(kinds_); ++c) component_[c][pair] = values[c];
+    if (remembers_sliding()) component_[components() - 1][pair] = springs.slides;
   }
   bool remembers_sliding() const { return remember_sliding(kinds_); }
 

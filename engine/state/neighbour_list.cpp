@@ -167,18 +167,14 @@ class ListBuilder {
   void search(std::size_t block) {
     const ParticleBlock& home = list_.blocks_[block];
     std::vector<Found>& found = found_[block];
-    for (std::uint32_t i = home.begin; i < home.end; ++i) {
-      search_near(i, found);
-    }
+    for (std::uint32_t i = home.begin; i < home.end; ++i) search_near(i, found);
   }
 
   void search_near(std::uint32_t i, std::vector<Found>& found) {
     const std::size_t own = particles_.size_class[i], classes = band_of_.size(), bands = grids_.size();
     const double range = list_.ranges_.at(own, own);
     for (std::size_t band = band_of_[own]; band < bands; ++band) {
-      if (!grids_[band]) {
-        continue;
-      }
+      if (!grids_[band]) continue;
       grids_[band]->visit_near(places_.fractional[i], widest_reach_[own * bands + band],
                                [&](std::uint32_t j, LatticeShift wrap, const Vector3& separation) {
                                  const std::size_t other = particles_.size_class[j];
@@ -187,9 +183,7 @@ class ListBuilder {
                                  }
                                  const double squared = dot(separation, separation);
                                  const double reach = reach_[own * classes + other];
-                                 if (!(squared < reach * reach)) {
-                                   return;
-                                 }
+                                 if (!(squared < reach * reach)) return;
                                  if (j == i) {
                                    if (wrap != LatticeShift{} && squared < range * range) {
                                      meets_itself_ = true;
@@ -214,22 +208,16 @@ class ListBuilder {
 
   std::uint32_t block_of(std::uint32_t particle) const {
     const std::size_t blocks = list_.blocks_.size();
-    if (blocks == 1) {
-      return 0;
-    }
+    if (blocks == 1) return 0;
     // Blocks begin at count b / blocks rounded down; the estimate is right or one too small.
     std::size_t block = particle * blocks / particles_.count();
-    while (particle >= list_.blocks_[block].end) {
-      ++block;
-    }
+    while (particle >= list_.blocks_[block].end) ++block;
     return static_cast<std::uint32_t>(block);
   }
 
   // Pairs that were found from their particle in the earlier block go to the later one.
   void deliver_strays() {
-    if (found_.size() == 1) {
-      return;
-    }
+    if (found_.size() == 1) return;
     std::vector<std::vector<Found>> strays(found_.size());
     for_each_index(found_.size(), threads_, [&](std::size_t b) {
       const auto home = [b](const Found& pair) { return pair.block == b; };
@@ -238,9 +226,7 @@ class ListBuilder {
       found_[b].erase(away, found_[b].end());
     });
     for (const std::vector<Found>& from_block : strays) {
-      for (const Found& pair : from_block) {
-        found_[pair.block].push_back(pair);
-      }
+      for (const Found& pair : from_block) found_[pair.block].push_back(pair);
     }
   }
 
@@ -267,9 +253,7 @@ class ListBuilder {
   void arrange(std::size_t block, const std::vector<Found>& found) {
     const std::size_t part = 2 * list_.ranges_.classes() * list_.ranges_.classes(), buckets = 3 * part;
     std::vector<std::uint32_t> next(buckets + 1);
-    for (const Found& pair : found) {
-      ++next[bucket(pair) + 1];
-    }
+    for (const Found& pair : found) ++next[bucket(pair) + 1];
     next[0] = list_.blocks_[block].runs_begin;
     for (std::size_t k = 0; k < buckets; ++k) {
       next[k + 1] += next[k];
@@ -298,9 +282,7 @@ class ListBuilder {
       list_.blocks_[b].runs_end = static_cast<std::uint32_t>(list_.runs_.size());
     }
     list_.incoming_.clear();
-    if (crossings == 0) {
-      return;
-    }
+    if (crossings == 0) return;
     std::vector<std::uint32_t> next(list_.blocks_.size() + 1);
     const auto for_each_crossing = [&](auto&& use) {
       for (const PairRun& run : list_.runs_) {

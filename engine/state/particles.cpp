@@ -45,9 +45,7 @@ void wrap_into_cell(ParticleState& particles, const PeriodicCell& box) {
     const LatticeShift removed = {static_cast<std::int32_t>(std::floor(place.x)),
                                   static_cast<std::int32_t>(std::floor(place.y)),
                                   static_cast<std::int32_t>(std::floor(place.z))};
-    if (removed == LatticeShift{}) {
-      continue;
-    }
+    if (removed == LatticeShift{}) continue;
     particles.position.set(i, particles.position[i] - box.displacement(removed));
     particles.velocity.add(i, -box.velocity(removed));
     particles.image[i] = particles.image[i] + removed;
@@ -85,9 +83,7 @@ template <class Value>
 void permute(std::vector<Value>& values, const std::vector<std::uint32_t>& order) {
   std::vector<Value> arranged;
   arranged.reserve(values.size());
-  for (const std::uint32_t from : order) {
-    arranged.push_back(values[from]);
-  }
+  for (const std::uint32_t from : order) arranged.push_back(values[from]);
   values = std::move(arranged);
 }
 
@@ -112,9 +108,7 @@ void permute(ParticleState& particles, const std::vector<std::uint32_t>& order, 
 }  // namespace
 
 void arrange_along_curve(ParticleState& particles, const PeriodicCell& box, int threads) {
-  if (count_of_particle_blocks(particles.count()) == 1) {
-    return;
-  }
+  if (count_of_particle_blocks(particles.count()) == 1) return;
   const CellFrame frame = box.frame();
   std::vector<std::uint32_t> code, order(particles.count());
   code.reserve(particles.count());

@@ -42,12 +42,8 @@ void rebuild_neighbours(System& system, int threads) {
   }
   if (const BasisChange change = system.box.due_change(); change != BasisChange{}) {
     system.box.change_basis(change);
-    for (LatticeShift& image : particles.image) {
-      image = change.after(image);
-    }
-    for (HeldContact& contact : held) {
-      contact.image = change.after(contact.image);
-    }
+    for (LatticeShift& image : particles.image) image = change.after(image);
+    for (HeldContact& contact : held) contact.image = change.after(contact.image);
   }
   wrap_into_cell(particles, system.box);
   arrange_along_curve(particles, system.box, threads);

@@ -84,12 +84,8 @@ inline void box_muller(const std::uint32_t (&radius_bits)[width], const std::uin
 inline void split_words(const std::uint64_t (&words)[width], std::uint32_t (&uniform)[3][width]) {
   for (int j = 0; j < 3; ++j) {
     std::uint64_t shifted[width];
-    for (int k = 0; k < width; ++k) {
-      shifted[k] = words[k] >> (21 * j);
-    }
-    for (int k = 0; k < width; ++k) {
-      uniform[j][k] = static_cast<std::uint32_t>(shifted[k]) & 0x1fffffU;
-    }
+    for (int k = 0; k < width; ++k) shifted[k] = words[k] >> (21 * j);
+    for (int k = 0; k < width; ++k) uniform[j][k] = static_cast<std::uint32_t>(shifted[k]) & 0x1fffffU;
   }
 }
 
@@ -110,9 +106,7 @@ inline void fill_whole(const NoiseKey& key, const std::uint64_t* identity, const
 [[gnu::noinline]] inline void refine(const NoiseKey& key, const std::uint64_t* identity,
                                      const std::uint64_t* image, NormalBlock& block) {
   int divisions = 0;
-  while (key.part >> (divisions + 1) != 0) {
-    ++divisions;
-  }
+  while (key.part >> (divisions + 1) != 0) ++divisions;
   while (divisions > 0) {
     const std::uint64_t whole = key.part >> divisions;
     --divisions;

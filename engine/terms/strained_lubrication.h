@@ -75,9 +75,7 @@ template <class Real>
   PairMotionOf<Real> relative = {
       motion.velocity - cross(spin, pair.separation) - pair.surface_distance() * strained(flow.strain, n),
       motion.spin_first - spin, motion.spin_second - spin};
-  if (!flow.varies) {
-    return lubrication_load(R, pair, relative);
-  }
+  if (!flow.varies) return lubrication_load(R, pair, relative);
   relative.velocity -= varying.velocity;
   relative.spin_first -= varying.spin_first;
   relative.spin_second -= varying.spin_second;

@@ -117,9 +117,7 @@ void show(const std::string& text, const Size& size) {
   // Home, then line by line with what was there before erased, then everything below: no flicker.
   std::string screen = "\x1b[H";
   const std::string visible = fitted(text, size.rows - 1, size.columns);
-  for (const std::string_view line : lines_of(visible)) {
-    screen += std::string(line) + "\x1b[K\n";
-  }
+  for (const std::string_view line : lines_of(visible)) screen += std::string(line) + "\x1b[K\n";
   std::fputs((screen + "\x1b[J").c_str(), stdout);
   std::fflush(stdout);
 }

@@ -548,9 +548,7 @@ bool Ledger::take_result(const GivenSeed& given_seed, const std::string& sha256,
     if (result.point != given_seed.job.point || result.seed != given_seed.job.seed) {
       throw ResultError("it is of another point or seed than the job");
     }
-    if (result.engine != engine_) {
-      throw ResultError("it names another engine than the worker's hello");
-    }
+    if (result.engine != engine_) throw ResultError("it names another engine than the worker's hello");
     return result;
   };
   why = take_whole(given_seed.job.spool, read, [&](const RealisationResult& result) {

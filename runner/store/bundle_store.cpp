@@ -9,9 +9,7 @@ std::int64_t BundleStore::prepare(const BundleRecord& bundle, const std::vector<
   const std::int64_t id = connection_.last_insert_id();
   Statement insert(connection_,
                    "INSERT INTO bundle_seed (bundle_id, place, task, point_id, seed) VALUES (?, ?, ?, ?, ?)");
-  for (const BundleSeedRecord& seed : seeds) {
-    insert.run(id, seed.place, seed.task, seed.point, seed.seed);
-  }
+  for (const BundleSeedRecord& seed : seeds) insert.run(id, seed.place, seed.task, seed.point, seed.seed);
   return id;
 }
 

@@ -39,12 +39,8 @@ void stretch_springs(System& system, const Physics& physics, Draws& draws) {
       const Vector3 normal = (1 / norm(r)) * r;
       ContactSprings springs;
       springs.tangential = across(draws.vector(2 * overlap), normal);
-      if (physics.contact->rolling_stiffness > 0) {
-        springs.rolling = across(draws.vector(5 * overlap), normal);
-      }
-      if (remembers_sliding(*physics.contact)) {
-        springs.slides = draws.whole(0, 1);
-      }
+      if (physics.contact->rolling_stiffness > 0) springs.rolling = across(draws.vector(5 * overlap), normal);
+      if (remembers_sliding(*physics.contact)) springs.slides = draws.whole(0, 1);
       system.springs.set(p, springs);
     }
   }
@@ -83,9 +79,7 @@ Physics physics_with(const Terms& terms) {
 System dense_suspension(const Physics& physics, std::size_t count, std::uint64_t seed) {
   Draws draws(seed);
   std::vector<double> radius(count, 1.0);
-  for (std::size_t i = 0; i < count; i += 4) {
-    radius[i] = 1.4;
-  }
+  for (std::size_t i = 0; i < count; i += 4) radius[i] = 1.4;
   const double edge = cube_edge(radius, 0.52);
   System system;
   system.particles = make_particles(radius, 0.1);

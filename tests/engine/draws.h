@@ -23,9 +23,7 @@ class Draws {
   }
   Vector3 direction() {
     Vector3 v = vector();
-    while (norm(v) > 1 || norm(v) < 0.1) {
-      v = vector();
-    }
+    while (norm(v) > 1 || norm(v) < 0.1) v = vector();
     return (1 / norm(v)) * v;
   }
 

@@ -13,18 +13,14 @@ namespace peclet::engine {
 std::vector<Terms> every_recipe() {
   std::vector<Terms> recipes;
   for (unsigned code = 0; code < count_of_codes; ++code) {
-    if (decoded_terms(code).valid()) {
-      recipes.push_back(decoded_terms(code));
-    }
+    if (decoded_terms(code).valid()) recipes.push_back(decoded_terms(code));
   }
   return recipes;
 }
 
 std::string text(const Terms& terms) {
   std::string all;
-  for (const NamedTerm& term : every_term) {
-    all += terms.*term.chosen ? std::string(term.name) + ' ' : "";
-  }
+  for (const NamedTerm& term : every_term) all += terms.*term.chosen ? std::string(term.name) + ' ' : "";
   return all;
 }
 
@@ -65,9 +61,7 @@ void expect_near(const std::vector<double>& expected, const std::vector<double>&
                  const std::string& what, double bound) {
   ASSERT_EQ(expected.size(), found.size()) << what;
   double scale = 0;
-  for (const double x : expected) {
-    scale = std::max(scale, std::abs(x));
-  }
+  for (const double x : expected) scale = std::max(scale, std::abs(x));
   std::size_t differing = 0;
   double worst = 0;
   for (std::size_t k = 0; k < expected.size(); ++k) {

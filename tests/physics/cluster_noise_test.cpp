@@ -93,18 +93,14 @@ INSTANTIATE_TEST_SUITE_P(Of, ClusterNoise, testing::Values(Form::kim_karrila, Fo
 TEST_P(ClusterNoise, FeltResistanceIsSymmetric) {
   const Matrix R = felt_resistance(GetParam());
   for (Eigen::Index a = 0; a < components; ++a) {
-    for (Eigen::Index b = 0; b < a; ++b) {
-      EXPECT_NEAR(R(a, b), R(b, a), 1e-12 * std::sqrt(R(a, a) * R(b, b)));
-    }
+    for (Eigen::Index b = 0; b < a; ++b) EXPECT_NEAR(R(a, b), R(b, a), 1e-12 * std::sqrt(R(a, a) * R(b, b)));
   }
 }
 
 TEST_P(ClusterNoise, FirstTwoSpheresActThroughTwoImages) {
   Cluster warm(GetParam(), thermal_energy);
   std::size_t images = 0;
-  for (const Pair& pair : warm.system().list.pairs()) {
-    images += pair.first == 0 && pair.second == 1 ? 1 : 0;
-  }
+  for (const Pair& pair : warm.system().list.pairs()) images += pair.first == 0 && pair.second == 1 ? 1 : 0;
   EXPECT_EQ(images, 2U);
 }
 

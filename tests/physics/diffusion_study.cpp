@@ -72,13 +72,9 @@ double diffusion(const Scene& scene, std::uint64_t seed) {
     const auto due = static_cast<std::uint64_t>(std::llround(sample * between / schedule.timestep));
     if (due > simulation.system().step) {
       const auto ending = simulation.advance(due - simulation.system().step);
-      if (ending && ending->cause != Ending::Cause::completed) {
-        throw std::runtime_error(ending->message);
-      }
+      if (ending && ending->cause != Ending::Cause::completed) throw std::runtime_error(ending->message);
     }
-    if (sample >= equilibration * samples_per_brownian_time) {
-      sampled.push_back(places(simulation.system()));
-    }
+    if (sample >= equilibration * samples_per_brownian_time) sampled.push_back(places(simulation.system()));
   }
   const auto mean_square = [&](std::size_t lag) {
     double sum = 0;

@@ -135,9 +135,7 @@ SpherePower power_of_spheres(const ParticleState& all) {
 
 double sum_of_stress_xy(const PairSums& sums) {
   double xy = 0;
-  for (const SymmetricTensor& term : sums.stress) {
-    xy += term.xy;
-  }
+  for (const SymmetricTensor& term : sums.stress) xy += term.xy;
   return xy;
 }
 
@@ -176,9 +174,7 @@ TEST(EnergyBalance, HoldsAtEveryInstantOfASheardSuspension) {
 double relative_imbalance(double timestep) {
   Laboratory laboratory = sheared_suspension(timestep);
   const auto steps_of_strain = [&](double strain) { return std::lround(strain / (rate * timestep)); };
-  for (long step = steps_of_strain(0.3); step > 0; --step) {
-    laboratory.step();
-  }
+  for (long step = steps_of_strain(0.3); step > 0; --step) laboratory.step();
   const auto stored = [&] {
     return power_of_all(laboratory.system()).energy + power_of_spheres(laboratory.particles()).kinetic;
   };
@@ -221,9 +217,7 @@ class StepsTakenApart {
     }
     ++system_.step;
     system_.box.deform(simple_shear(rate * timestep_ * static_cast<double>(system_.step)));
-    if (!system_.list.holds(all, system_.box)) {
-      rebuild_neighbours(system_);
-    }
+    if (!system_.list.holds(all, system_.box)) rebuild_neighbours(system_);
     return field_.evaluate(system_, force_, torque_);
   }
 

@@ -95,9 +95,7 @@ TEST_P(FreeSpheres, MoveFasterThanTheirTemperatureByTheHalfStepBias) {
   const auto steps = static_cast<int>(blocks * std::ceil(40 / timestep));
   for (int step = 0; step < steps; ++step) {
     std::vector<Vector3> before;
-    for (std::size_t i = 0; i < all.count(); ++i) {
-      before.push_back(laboratory.unwrapped(i));
-    }
+    for (std::size_t i = 0; i < all.count(); ++i) before.push_back(laboratory.unwrapped(i));
     laboratory.step();
     std::vector<double> sum(2);
     for (std::size_t i = 0; i < all.count(); ++i) {

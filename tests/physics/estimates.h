@@ -17,9 +17,7 @@ struct Estimate {
 inline Estimate estimate(const std::vector<double>& values) {
   const auto n = static_cast<double>(values.size());
   double sum = 0, squares = 0;
-  for (const double value : values) {
-    sum += value;
-  }
+  for (const double value : values) sum += value;
   for (const double value : values) {
     squares += (value - sum / n) * (value - sum / n);
   }

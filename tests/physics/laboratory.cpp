@@ -68,9 +68,7 @@ Laboratory single_spheres(std::size_t count, double thermal_energy, double times
 std::vector<Vector3> unwrapped_places(const Laboratory& laboratory) {
   const ParticleState& particles = laboratory.system().particles;
   std::vector<Vector3> places(particles.count());
-  for (std::size_t i = 0; i < particles.count(); ++i) {
-    places[particles.id[i]] = laboratory.unwrapped(i);
-  }
+  for (std::size_t i = 0; i < particles.count(); ++i) places[particles.id[i]] = laboratory.unwrapped(i);
   return places;
 }
 

@@ -73,18 +73,14 @@ TEST_P(LargeSteps, LeaveTheDiffusionCoefficientAlone) {
   const std::size_t count = 1500;
   const double thermal_energy = 0.1, x = GetParam();
   Laboratory laboratory = single_spheres(count, thermal_energy, x, /*skin=*/8);
-  for (int step = 0; step < 20 / x; ++step) {
-    laboratory.step();
-  }
+  for (int step = 0; step < 20 / x; ++step) laboratory.step();
   std::vector<double> ratios;  // of consecutive, independent windows to the formula
   const auto window = static_cast<int>(20 / x);
   const double expected =
       2 * thermal_energy * (window * x - (1 - x) * (1 - std::pow(1 - x, window)) / (1 - 0.5 * x));
   for (int k = 0; k < 40; ++k) {
     const std::vector<Vector3> origin = unwrapped_places(laboratory);
-    for (int step = 0; step < window; ++step) {
-      laboratory.step();
-    }
+    for (int step = 0; step < window; ++step) laboratory.step();
     ratios.push_back(mean_square(laboratory, origin) / expected);
   }
   // Windows of twenty decay times share hardly a memory: the variance has 3 N * 40 independent terms.

@@ -20,9 +20,7 @@ double area(double d) {
 double weight(const PairDensityRun& run, StepBias bias, double d) {
   const double overlap = std::max(contact_distance - d, 0.0);
   const double boltzmann = std::exp(-0.5 * run.stiffness_over_thermal_energy * overlap * overlap);
-  if (bias == StepBias::none) {
-    return boltzmann;
-  }
+  if (bias == StepBias::none) return boltzmann;
   // X_A of equal spheres, eq. 9 of Li, Royer & Ness (2023) with beta = 1, gap h / a.
   const double gap = std::max(d - contact_distance, run.inner_gap);
   const double squeeze = gap <= pair_density_outer_gap ? 0.25 / gap + 9.0 / 40 * std::log(1 / gap) : 0.0;
@@ -97,14 +95,10 @@ double inverse_form(std::vector<std::vector<double>>& C, std::vector<double> x) 
   for (std::size_t a = 0; a < x.size(); ++a) {
     for (std::size_t b = 0; b <= a; ++b) {
       double rest = C[a][b];
-      for (std::size_t c = 0; c < b; ++c) {
-        rest -= C[a][c] * C[b][c];
-      }
+      for (std::size_t c = 0; c < b; ++c) rest -= C[a][c] * C[b][c];
       C[a][b] = a == b ? std::sqrt(rest) : rest / C[b][b];
     }
-    for (std::size_t c = 0; c < a; ++c) {
-      x[a] -= C[a][c] * x[c];
-    }
+    for (std::size_t c = 0; c < a; ++c) x[a] -= C[a][c] * x[c];
     x[a] /= C[a][a];
     sum += x[a] * x[a];
   }
@@ -117,9 +111,7 @@ std::vector<double> pair_density_edges(const PairDensityRun& run) {
   const double thermal = 1 / std::sqrt(run.stiffness_over_thermal_energy), outer = pair_density_outer_gap;
   std::vector<double> edges = {-contact_distance, -1.4 * thermal, -0.7 * thermal, 0,   run.inner_gap,
                                2 * run.inner_gap, outer,          2 * outer,      0.2, 0.4};
-  for (double& edge : edges) {
-    edge += contact_distance;
-  }
+  for (double& edge : edges) edge += contact_distance;
   return edges;
 }
 

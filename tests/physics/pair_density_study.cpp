@@ -39,9 +39,7 @@ void print(const PairDensityRun& run) {
   for (std::size_t bin = 0; bin < plain.size(); ++bin) {
     std::vector<double> column;
     column.reserve(shares.size());
-    for (const auto& row : shares) {
-      column.push_back(row[bin]);
-    }
+    for (const auto& row : shares) column.push_back(row[bin]);
     const Estimate e = estimate(column);
     fmt::print("{:>9.5f} {:>9.5f} {:>10.3e} {:>8.4f} +- {:<7.4f} {:>8.4f} +- {:<7.4f}\n", edges[bin] - 2,
                edges[bin + 1] - 2, e.mean, e.mean / plain[bin], e.error / plain[bin], e.mean / biased[bin],

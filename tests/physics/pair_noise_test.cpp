@@ -108,9 +108,7 @@ void for_each_pair(Check&& check) {
 TEST(PairNoise, SampledCovarianceEqualsTheResistance) {
   for_each_pair([](NoisyPair& pair, const Matrix12& expected) {
     SampledCovariance sampled(12);
-    for (std::uint64_t step = 0; step < samples; ++step) {
-      sampled.add(pair.noise(step));
-    }
+    for (std::uint64_t step = 0; step < samples; ++step) sampled.add(pair.noise(step));
     EXPECT_LT(sampled.largest_deviation(expected), largest_sigma);
     EXPECT_LT(sampled.largest_mean(expected), largest_sigma);
   });
@@ -145,9 +143,7 @@ TEST(PairNoise, IsFreshAtEveryStep) {
 
 TEST(PairNoise, IsZeroBeyondTheOuterGap) {
   NoisyPair pair(3.0, 0.0501, 1);
-  for (const double component : pair.noise(7)) {
-    EXPECT_EQ(component, 0.0);
-  }
+  for (const double component : pair.noise(7)) EXPECT_EQ(component, 0.0);
 }
 
 }  // namespace

@@ -125,9 +125,7 @@ Outcome run(System system, const Physics& physics, double step, double strain) {
     }
     if (k >= steps_of(settling_strain, step)) {
       sums.add(report);
-      if (k % energy_sampling_interval == 0) {
-        sums.add_energy(integrator.spurious_energy(system).value());
-      }
+      if (k % energy_sampling_interval == 0) sums.add_energy(integrator.spurious_energy(system).value());
     }
   }
   sums.reduce(system, step, outcome);
@@ -165,13 +163,9 @@ void study(const Arguments& arguments) {
     for (const double step : steps_to_try) {
       Outcome outcome = run(start, physics, step, window_strain);
       print(arguments, window, step, outcome);
-      if (step == reference_step) {
-        reference = std::move(outcome);
-      }
+      if (step == reference_step) reference = std::move(outcome);
     }
-    if (std::string(reference.ending) != "completed") {
-      return;
-    }
+    if (std::string(reference.ending) != "completed") return;
   }
 }
 

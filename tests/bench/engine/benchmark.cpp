@@ -98,9 +98,7 @@ class Runner {
     const double start = seconds(wall_);
     advance(*simulation_, steps);
     const double taken = seconds(wall_) - start;
-    if (simulation_->system().list.builds() != builds && !is_implicit()) {
-      return std::nullopt;
-    }
+    if (simulation_->system().list.builds() != builds && !is_implicit()) return std::nullopt;
     return 1e9 * taken / static_cast<double>(steps * count());
   }
 
@@ -238,9 +236,7 @@ void print_roofline(const std::vector<Runner>& runners, const std::vector<Measur
     const Runner& runner = runners[k];
     const Physics& physics = runner.contestant().scene.physics;
     const std::optional<Operations> done = count_operations(physics, runner.system(), runner.timestep());
-    if (!done) {
-      continue;
-    }
+    if (!done) continue;
     const auto count = static_cast<double>(runner.count());
     const double pairs = results[k].near * count;
     const double bytes = bytes_per_particle(physics, runner.system(), runner.contestant().threads);
@@ -260,9 +256,7 @@ void run(const Group& group, const Machine& machine) {
   const bool wall = std::any_of(group.contestants.begin(), group.contestants.end(),
                                 [](const Contestant& each) { return each.threads > 1; });
   std::vector<Runner> runners;
-  for (const Contestant& contestant : group.contestants) {
-    runners.emplace_back(contestant, wall);
-  }
+  for (const Contestant& contestant : group.contestants) runners.emplace_back(contestant, wall);
   const std::vector<Measured> results = measure(runners, group.rounds);
   fmt::print("\n{}: {}{} {} rounds\n\n", group.name, group.question, wall ? " (time on the wall)" : "",
              group.rounds);
@@ -301,9 +295,7 @@ void run_benchmarks(const std::vector<std::string>& names) {
   fmt::print("rounds of {} particle steps, implicit ones of {}, after a strain of {}\n",
              particle_steps_per_round, implicit_particle_steps_per_round, warm_up_strain);
   std::fflush(stdout);
-  for (const Group& group : groups) {
-    run(group, machine);
-  }
+  for (const Group& group : groups) run(group, machine);
 }
 
 }  // namespace peclet::engine

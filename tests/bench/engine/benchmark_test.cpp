@@ -39,9 +39,7 @@ TEST(Tiling, LeavesEveryParticleTheForcesThatItHas) {
   expect_near(components(force), components(of_large.force), "force", fewer_digits);
   expect_near(components(torque), components(of_large.torque), "torque", fewer_digits);
   std::vector<double> stress = components(of_small.sums);
-  for (double& component : stress) {
-    component *= 27;
-  }
+  for (double& component : stress) component *= 27;
   expect_near(stress, components(of_large.sums), "stress", fewer_digits);
   EXPECT_EQ(27 * of_small.sums.contacts, of_large.sums.contacts);
 }

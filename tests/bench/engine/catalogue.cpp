@@ -174,9 +174,7 @@ std::string names_of(const std::vector<Group>& groups) {
   std::vector<std::string> names;
   for (const Group& group : groups) {
     names.push_back(group.name);
-    for (const Contestant& each : group.contestants) {
-      names.push_back(each.name);
-    }
+    for (const Contestant& each : group.contestants) names.push_back(each.name);
   }
   return fmt::format("{}", fmt::join(names, ", "));
 }
@@ -193,9 +191,7 @@ std::vector<Group> chosen_groups(const std::vector<std::string>& names) {
       return group.name == name || std::any_of(group.contestants.begin(), group.contestants.end(),
                                                [&](const Contestant& each) { return each.name == name; });
     });
-    if (!known) {
-      throw InputError("", "", name, "must be in the catalogue: " + names_of(all));
-    }
+    if (!known) throw InputError("", "", name, "must be in the catalogue: " + names_of(all));
   }
   std::vector<Group> chosen;
   for (const Group& group : all) {
@@ -203,9 +199,7 @@ std::vector<Group> chosen_groups(const std::vector<std::string>& names) {
     if (!asked(group.name)) {
       std::erase_if(part.contestants, [&](const Contestant& each) { return !asked(each.name); });
     }
-    if (!part.contestants.empty()) {
-      chosen.push_back(std::move(part));
-    }
+    if (!part.contestants.empty()) chosen.push_back(std::move(part));
   }
   return chosen;
 }

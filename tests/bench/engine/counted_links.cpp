@@ -69,9 +69,7 @@ class alignas(4 * width) CountedVector {
   template <class Number>
   static CountedVector each(const Number& number) {
     CountedVector result;
-    for (int k = 0; k < width; ++k) {
-      result.lane_[k].value = number(k);
-    }
+    for (int k = 0; k < width; ++k) result.lane_[k].value = number(k);
     return result;
   }
 
@@ -96,9 +94,7 @@ CountedVector<sizeof...(Places)> of_lanes(const CountedVector<width>& a, const C
 template <class To, class From>
 To converted(const From& numbers) {
   To result{};
-  for (int k = 0; k < 4; ++k) {
-    result[k] = static_cast<float>(numbers[k]);
-  }
+  for (int k = 0; k < 4; ++k) result[k] = static_cast<float>(numbers[k]);
   return result;
 }
 
@@ -128,9 +124,7 @@ constinit const LinkKernels counting_kernels = {
 class Counting {
  public:
   explicit Counting(const LinkSystem& system) : system_(system), pivots_(system.particles) {
-    for (std::vector<MotionRow>& row : rows_) {
-      row.resize(system.particles);
-    }
+    for (std::vector<MotionRow>& row : rows_) row.resize(system.particles);
     system_.pivots = pivots_.data();
     Team alone;
     done = {};

@@ -23,9 +23,7 @@ std::span<const LinkLevel> levels_of(const LinkSystem& system) {
 // What the compiled kernels leave after as many iterations.
 double squared_residual(const Links& links, const std::vector<MotionRow>& right, int iterations) {
   std::vector<MotionRow> rows[7];
-  for (std::vector<MotionRow>& each : rows) {
-    each = right;
-  }
+  for (std::vector<MotionRow>& each : rows) each = right;
   const SolverRows places = {rows[0].data(), rows[1].data(), rows[2].data(), rows[3].data(),
                              rows[4].data(), rows[5].data(), rows[6].data()};
   Team alone;

@@ -27,12 +27,8 @@ double fastest(Work&& work) {
 
 const PeakLoops& loops_of([[maybe_unused]] InstructionSet set) {
 #ifdef PECLET_NEWER_SETS
-  if (set == InstructionSet::avx2) {
-    return avx2_peak_loops;
-  }
-  if (set == InstructionSet::avx512) {
-    return avx512_peak_loops;
-  }
+  if (set == InstructionSet::avx2) return avx2_peak_loops;
+  if (set == InstructionSet::avx512) return avx512_peak_loops;
 #endif
   return baseline_peak_loops;
 }

@@ -36,14 +36,10 @@ double run_chains(std::uint64_t rounds, const Operation& operation) {
     x[k] = Real{1.0 + 0.01 * k};
   }
   for (std::uint64_t r = 0; r < rounds; ++r) {
-    for (Real& each : x) {
-      each = operation(each);
-    }
+    for (Real& each : x) each = operation(each);
   }
   double sum = 0;
-  for (const Real& each : x) {
-    sum += sum_of_lanes(each);
-  }
+  for (const Real& each : x) sum += sum_of_lanes(each);
   return sum;
 }
 

@@ -30,36 +30,24 @@ std::vector<Json> reference_documents() {
 }
 
 double largest_component(const Json& value) {
-  if (value.is_number()) {
-    return std::abs(value.get<double>());
-  }
+  if (value.is_number()) return std::abs(value.get<double>());
   double largest = 0;
-  for (const Json& part : value) {
-    largest = std::max(largest, largest_component(part));
-  }
+  for (const Json& part : value) largest = std::max(largest, largest_component(part));
   return largest;
 }
 
 double largest_difference(const Json& a, const Json& b) {
-  if (a.is_number() && b.is_number()) {
-    return std::abs(a.get<double>() - b.get<double>());
-  }
-  if (!a.is_array() || !b.is_array() || a.size() != b.size()) {
-    return std::numeric_limits<double>::infinity();
-  }
+  if (a.is_number() && b.is_number()) return std::abs(a.get<double>() - b.get<double>());
+  if (!a.is_array() || !b.is_array() || a.size() != b.size()) return std::numeric_limits<double>::infinity();
   double largest = 0;
-  for (std::size_t k = 0; k < a.size(); ++k) {
-    largest = std::max(largest, largest_difference(a[k], b[k]));
-  }
+  for (std::size_t k = 0; k < a.size(); ++k) largest = std::max(largest, largest_difference(a[k], b[k]));
   return largest;
 }
 
 // Terms that are zero but for rounding are measured by the largest term of their block.
 void expect_equal_terms(const Json& expected, const Json& answer, const std::string& where) {
   double scale = 0;
-  for (const Json& value : expected) {
-    scale = std::max(scale, largest_component(value));
-  }
+  for (const Json& value : expected) scale = std::max(scale, largest_component(value));
   for (const auto& [term, value] : expected.items()) {
     ASSERT_TRUE(answer.contains(term)) << where << '.' << term;
     const double size = largest_component(value);
@@ -88,16 +76,12 @@ TEST(ReferenceForces, AdvancedSpringsEqualTheIndependentEvaluation) {
     const auto key = [](const Json& spring) {
       return Json({spring["i"], spring["j"], spring["image"]}).dump();
     };
-    for (const Json& spring : answer.at("springs")) {
-      found[key(spring)] = spring;
-    }
+    for (const Json& spring : answer.at("springs")) found[key(spring)] = spring;
     const Json& expected = document.at("expected").at("springs");
     EXPECT_EQ(found.size(), expected.size()) << name;
     for (const char* kind : {"tangential", "rolling"}) {
       double longest = 0;
-      for (const Json& spring : expected) {
-        longest = std::max(longest, largest_component(spring.at(kind)));
-      }
+      for (const Json& spring : expected) longest = std::max(longest, largest_component(spring.at(kind)));
       ASSERT_GT(longest, 0) << name;
       for (const Json& spring : expected) {
         ASSERT_TRUE(found.count(key(spring))) << name << ": " << key(spring);

@@ -25,9 +25,7 @@ Outcome after_steps(const Physics& physics, System system, InstructionSet set, i
   const std::unique_ptr<Implicit> steps =
       implicit_steps(physics, outcome.system.particles, step, tolerance, seed, threads, set);
   steps->start(outcome.system);
-  for (int k = 0; k < 4; ++k) {
-    outcome.report = steps->advance(outcome.system);
-  }
+  for (int k = 0; k < 4; ++k) outcome.report = steps->advance(outcome.system);
   return outcome;
 }
 

@@ -38,9 +38,7 @@ std::vector<PairKind> kinds_of(const System& system, const Physics& physics) {
 // Columns by unit vectors.
 Dense dense(const PackingMatrix& matrix) {
   Dense all;
-  for (Eigen::Index k = 0; k < rows; ++k) {
-    all.col(k) = matrix * Rows::Unit(k);
-  }
+  for (Eigen::Index k = 0; k < rows; ++k) all.col(k) = matrix * Rows::Unit(k);
   return all;
 }
 
@@ -138,9 +136,7 @@ Dense stiffness_by_extensions(const System& system, const Physics& physics) {
     for (const Vector3& tangent : tangents) {
       sum.add(std::max(pull, 0.0) / distance, pair.first, pair.second, tangent, {}, {});
     }
-    if (h >= 0) {
-      continue;
-    }
+    if (h >= 0) continue;
     sum.add(physics.contact->normal_stiffness, pair.first, pair.second, n, {}, {});
     const double reduced = 2 * first * second / (first + second);
     for (const Vector3& tangent : tangents) {

@@ -30,9 +30,7 @@ void expect_those_of_an_evaluation(const Terms& terms, std::size_t count, Instru
   order.arrange(system.list, count);
   const ForceField::LoadRows rows = {force, torque};
   const ForceField::AssembleLinks assemble = field.assemble_links(system, weights, order, groups, &rows);
-  for (std::size_t block = 0; block < order.blocks().size(); ++block) {
-    assemble(block);
-  }
+  for (std::size_t block = 0; block < order.blocks().size(); ++block) assemble(block);
   field.add_incoming(system, force, torque);
   field.evaluate(system, expected_force, expected_torque);
   // A mean over the shortest way, 1e-5 of the inner gap, is a difference of logarithms of gaps, 7 at most,

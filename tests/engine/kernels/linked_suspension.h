@@ -38,9 +38,7 @@ class Links {
     }
     order_.arrange(system_.list, particles.count());
     const ForceField::AssembleLinks assemble = field_.assemble_links(system_, of_links, order_, groups_);
-    for (std::size_t block = 0; block < order_.blocks().size(); ++block) {
-      assemble(block);
-    }
+    for (std::size_t block = 0; block < order_.blocks().size(); ++block) assemble(block);
     pivots_.resize(particles.count());
     aside_.resize(std::size_t{rows_of_block} * links_per_group * order_.crossing_groups());
     sums_.resize(order_.blocks().size());
@@ -71,13 +69,9 @@ class Links {
   // Both in the order of particles.
   std::vector<MotionRow> times(const std::vector<MotionRow>& vector) const {
     std::vector<MotionRow> rows(vector.size()), product(vector.size()), result(vector.size());
-    for (std::size_t i = 0; i < vector.size(); ++i) {
-      rows[order_.row()[i]] = vector[i];
-    }
+    for (std::size_t i = 0; i < vector.size(); ++i) rows[order_.row()[i]] = vector[i];
     kernels_.multiply(view(), rows.data(), product.data());
-    for (std::size_t i = 0; i < vector.size(); ++i) {
-      result[i] = product[order_.row()[i]];
-    }
+    for (std::size_t i = 0; i < vector.size(); ++i) result[i] = product[order_.row()[i]];
     return result;
   }
 
@@ -139,9 +133,7 @@ inline Eigen::Vector<double, 8> entries(const MotionRow& row) {
 inline std::vector<double> numbers(const std::vector<MotionRow>& rows) {
   std::vector<double> result;
   for (const MotionRow& row : rows) {
-    for (const int c : of_a_motion) {
-      result.push_back(static_cast<double>(row.v[c]));
-    }
+    for (const int c : of_a_motion) result.push_back(static_cast<double>(row.v[c]));
   }
   return result;
 }

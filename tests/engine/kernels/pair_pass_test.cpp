@@ -33,9 +33,7 @@ std::vector<double> summed(const Json& block, std::size_t count) {
   std::vector<double> sum(3 * count);
   for (const Json& term : block) {
     for (std::size_t i = 0; i < count; ++i) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        sum[3 * i + k] += term[i][k].get<double>();
-      }
+      for (std::size_t k = 0; k < 3; ++k) sum[3 * i + k] += term[i][k].get<double>();
     }
   }
   return sum;
@@ -49,9 +47,7 @@ struct OneByOne {
 
 OneByOne one_by_one(const System& system, const Physics& physics) {
   Configuration configuration = configuration_of(system, physics);
-  if (physics.thermal_energy > 0) {
-    configuration.noise = noise_of(system);
-  }
+  if (physics.thermal_energy > 0) configuration.noise = noise_of(system);
   configuration.advance = timestep;
   const Json springs = evaluate_configuration(configuration).at("springs");
   configuration.advance.reset();

@@ -44,9 +44,7 @@ TEST(PairDistribution, OfAPairInASmallBoxIsIdealUpToTheCornerOfItsFaces) {
   Draws draws(4);
   constexpr int samples = 100'000;
   for (int sample = 0; sample < samples; ++sample) {
-    for (std::size_t i = 0; i < 2; ++i) {
-      system.particles.position.set(i, place_in_box(draws));
-    }
+    for (std::size_t i = 0; i < 2; ++i) system.particles.position.set(i, place_in_box(draws));
     observable->sample(system, 0);
   }
   const Json radial = mean_of(*observable)["pair_distribution"]["radial"];

@@ -78,9 +78,7 @@ double discs_between(double low, double high, double height, double radius) {
   for (int k = 0; k < discs; ++k) {
     const double z = (k + 0.5) * thickness - radius, y = height + z;
     for (const double image : {y - edge, y, y + edge}) {
-      if (image >= low && image < high) {
-        volume += std::numbers::pi * (radius * radius - z * z) * thickness;
-      }
+      if (image >= low && image < high) volume += std::numbers::pi * (radius * radius - z * z) * thickness;
     }
   }
   return volume;

@@ -118,9 +118,7 @@ struct Scaled {
 Scaled packed_in_units(double unit, double volume_fraction) {
   std::vector<double> radius = {1, 1, 1, 1.5, 1.5, 1, 1, 1.5};
   const double edge = unit * cube_edge(radius, volume_fraction);
-  for (double& a : radius) {
-    a *= unit;
-  }
+  for (double& a : radius) a *= unit;
   ParticleState particles = make_particles(radius, 1);
   try {
     place_randomly(particles, PeriodicCell({edge, edge, edge}, Matrix3{}), 3);

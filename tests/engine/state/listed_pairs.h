@@ -17,9 +17,7 @@ inline RangeTable ranges_of(const std::vector<double>& radius) {
   const std::vector<double> sizes = distinct_radii(radius);
   RangeTable ranges(sizes.size());
   for (std::size_t a = 0; a < sizes.size(); ++a) {
-    for (std::size_t b = 0; b < sizes.size(); ++b) {
-      ranges.at(a, b) = outer * (sizes[a] + sizes[b]);
-    }
+    for (std::size_t b = 0; b < sizes.size(); ++b) ranges.at(a, b) = outer * (sizes[a] + sizes[b]);
   }
   return ranges;
 }
@@ -28,9 +26,7 @@ inline RangeTable ranges_of(const std::vector<double>& radius) {
 inline ParticleState scattered(std::size_t count, const std::vector<double>& sizes, const PeriodicCell& box,
                                Draws& draws) {
   std::vector<double> radius;
-  for (std::size_t i = 0; i < count; ++i) {
-    radius.push_back(sizes[i % sizes.size()]);
-  }
+  for (std::size_t i = 0; i < count; ++i) radius.push_back(sizes[i % sizes.size()]);
   ParticleState particles = make_particles(radius, 1);
   for (std::size_t i = 0; i < count; ++i) {
     const LatticeShift shift = {draws.whole(-3, 3), draws.whole(-3, 3), draws.whole(-3, 3)};

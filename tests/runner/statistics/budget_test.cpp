@@ -125,9 +125,7 @@ double error_bought(Allocation allocation, double budget, unsigned start) {
   Scheduler scheduler(std::vector<std::vector<std::optional<Outcome>>>(4), {"relative_viscosity", 0.03, 0.95},
                       8, 4000);
   scheduler.set_allocation(allocation);
-  for (int point = 0; point < 4; ++point) {
-    scheduler.set_cost(point, seconds[static_cast<std::size_t>(point)]);
-  }
+  for (int point = 0; point < 4; ++point) scheduler.set_cost(point, seconds[static_cast<std::size_t>(point)]);
   while (const std::optional<SeedId> next = scheduler.next_within(budget)) {
     const auto point = static_cast<std::size_t>(next->point);
     scheduler.begin(*next);
