@@ -1,5 +1,5 @@
-# What is installed beside the programs: what they look for relative to themselves (runner/store/own_files.h), and what people
-# read. Below share/peclet everything lies as it does in the source, so that links between the texts hold.
+# Files installed beside the programs: those that the programs look for relative to themselves
+# (own_file() in runner/store/campaign_directory.h), and those that people read. Below share/peclet everything lies as it does in the source, so that links between the texts hold.
 
 set(own ${CMAKE_INSTALL_DATADIR}/peclet)
 set(unwanted PATTERN __pycache__ EXCLUDE PATTERN "*.peclet" EXCLUDE)

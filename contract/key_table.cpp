@@ -476,7 +476,9 @@ KeyTable::KeyTable(std::string title, std::vector<Key> keys, Unknown unknown)
 
 const Key* KeyTable::find(std::string_view pointer) const {
   const std::size_t end = pointer.rfind('/');
-  return end == std::string_view::npos ? nullptr : find(pointer.substr(0, end), pointer.substr(end + 1));
+  // The pointer of the document itself is empty.
+  return end == std::string_view::npos ? find(pointer, pointer)
+                                       : find(pointer.substr(0, end), pointer.substr(end + 1));
 }
 
 const Key* KeyTable::find(std::string_view object, std::string_view name) const {

@@ -114,7 +114,7 @@ class Integrator {
   ForceField field_;
   double timestep_;
   // An upper bound of the displacements since the list was built. A step raises it by its largest one; the
-  // true value replaces it only when it reaches what the list allows.
+  // true value replaces it when it comes near what the list allows.
   double displacement_bound_ = 0;
 
  private:

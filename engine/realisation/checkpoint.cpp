@@ -52,6 +52,8 @@ void with_payload(const std::filesystem::path& path, std::size_t particles, cons
     use(payload);
   } catch (const UnsuitableFile& error) {
     throw CheckpointError(error.what());
+  } catch (const std::bad_alloc&) {
+    throw;                                 // short memory says nothing of the file
   } catch (const std::exception& error) {  // also of a cell that is smaller than the range of the forces
     throw CheckpointError(path.string() + ": " + error.what());
   }

@@ -1,4 +1,4 @@
-
+// The engine as a worker: jobs come and results go over a socket.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>

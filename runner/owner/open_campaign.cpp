@@ -48,7 +48,7 @@ int results_of(const Campaign& campaign, const fs::path& folder) {
       }
     }
     return results;
-  } catch (const std::exception&) {
+  } catch (const std::runtime_error&) {
     return 0;
   }
 }

@@ -109,7 +109,9 @@ TEST_F(GuardedFile, AFolderIsOnesOwnAndNoLink) {
   // What belongs to an ordinary user is refused to any other one, also to root.
   const fs::path foreign = folder() / "foreign";
   fs::create_directory(foreign);
-  if (geteuid() == 0) ASSERT_EQ(chown(foreign.c_str(), 12345, 12345), 0);
+  if (geteuid() == 0) {
+    ASSERT_EQ(chown(foreign.c_str(), 12345, 12345), 0);
+  }
   const uid_t other = geteuid() == 0 ? 0 : geteuid() + 1;
   try {
     require_own_folder(foreign, false, other);

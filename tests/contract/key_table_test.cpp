@@ -108,6 +108,13 @@ TEST(KeyTable, ABlockCanBeCheckedAlone) {
   }
 }
 
+TEST(KeyTable, ADocumentMayBeASingleValue) {
+  const KeyTable table("", {Key{.pointer = "", .kind = KeyKind::integer, .minimum = 1}});
+  EXPECT_EQ(table.validate(3, "option"), 3);
+  EXPECT_THROW(table.validate(0, "option"), InputError);
+  EXPECT_THROW(table.validate("3", "option"), InputError);
+}
+
 TEST(KeyTable, LongValuesAreShortenedBetweenCharacters) {
   EXPECT_EQ(shortened(std::string(58, 'x')).size(), 60U);
   const std::string text = shortened("x" + std::string(100, 'y'));

@@ -93,7 +93,9 @@ INSTANTIATE_TEST_SUITE_P(Of, ClusterNoise, testing::Values(Form::kim_karrila, Fo
 TEST_P(ClusterNoise, FeltResistanceIsSymmetric) {
   const Matrix R = felt_resistance(GetParam());
   for (Eigen::Index a = 0; a < components; ++a) {
-    for (Eigen::Index b = 0; b < a; ++b) EXPECT_NEAR(R(a, b), R(b, a), 1e-12 * std::sqrt(R(a, a) * R(b, b)));
+    for (Eigen::Index b = 0; b < a; ++b) {
+      EXPECT_NEAR(R(a, b), R(b, a), 1e-12 * std::sqrt(R(a, a) * R(b, b)));
+    }
   }
 }
 

@@ -32,7 +32,9 @@ TEST(PairDistribution, OfUniformPointsIsIdeal) {
   const double ideal = mean["slice"]["ideal"].get<double>();
   EXPECT_NEAR(ideal, 200.0 * 200 * 199 / 1000 * 0.01 * 1, 1e-6);
   for (const Json& row : mean["slice"]["counts"]) {
-    for (const Json& count : row) EXPECT_NEAR(count.get<double>(), ideal, 6 * std::sqrt(ideal));
+    for (const Json& count : row) {
+      EXPECT_NEAR(count.get<double>(), ideal, 6 * std::sqrt(ideal));
+    }
   }
 }
 

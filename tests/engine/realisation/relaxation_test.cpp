@@ -52,7 +52,9 @@ TEST(Relaxation, MovesSpheresAndNothingElse) {
   EXPECT_EQ(system.box.velocity_gradient(), simple_shear(scene.physics.flow.rate()));
   std::vector<std::uint32_t> id = system.particles.id;
   std::sort(id.begin(), id.end());
-  for (std::uint32_t i = 0; i < id.size(); ++i) EXPECT_EQ(id[i], i);
+  for (std::uint32_t i = 0; i < id.size(); ++i) {
+    EXPECT_EQ(id[i], i);
+  }
 }
 
 // Neither flow nor noise is a force here.

@@ -102,7 +102,9 @@ void expect_fault(const Json& document, const CompositionFault& fault, const std
     ADD_FAILURE() << "accepted: " << fault.edit;
   } catch (const InputError& error) {
     EXPECT_EQ(error.pointer(), pointer) << fault.edit;
-    if (fault.value != nullptr) EXPECT_EQ(error.value(), fault.value) << fault.edit;
+    if (fault.value != nullptr) {
+      EXPECT_EQ(error.value(), fault.value) << fault.edit;
+    }
     EXPECT_NE(error.allowed().find(fault.allowed), std::string::npos)
         << fault.edit << ": " << error.allowed();
   }

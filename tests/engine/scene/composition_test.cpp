@@ -92,8 +92,8 @@ TEST(Mixture, AGroupWithoutVolumeHasNoSpheres) {
     EXPECT_EQ(numbers[0] + numbers[1], 4000U);
     EXPECT_EQ(scene.particles.reference_radius, 1);
   }
-  EXPECT_EQ(derived_groups(colloids).mixture->alpha, 0);
-  EXPECT_NEAR(derived_groups(grains).mixture->alpha, 1, 1e-15);
+  EXPECT_EQ(*derived_groups(colloids).alpha, 0);
+  EXPECT_NEAR(*derived_groups(grains).alpha, 1, 1e-15);
 }
 
 TEST(Mixture, TheRadiusOfReferenceIsThatOfAGroupOrTheirMean) {
@@ -116,9 +116,9 @@ TEST(Mixture, GrainsAreRoundedFromTheLargestOn) {
   const Scene scene = read(mixture(0.1, "grains", 0.55));
   EXPECT_EQ(species_numbers(scene.particles), (std::vector<std::size_t>{2929, 1068, 2, 1}));
   // (2 * 125 + 343) / (593 + 2929 + 1068 * 2.744) = 593 / 6452.6
-  EXPECT_NEAR(derived_groups(scene).mixture->alpha, 0.091901, 1e-6);
+  EXPECT_NEAR(*derived_groups(scene).alpha, 0.091901, 1e-6);
   // 250 / 6452.6 over 0.05, less 1
-  EXPECT_NEAR(derived_groups(scene).mixture->largest_share_error, 0.225118, 1e-5);
+  EXPECT_NEAR(*derived_groups(scene).largest_share_error, 0.225118, 1e-5);
 }
 
 TEST(Mixture, AlphaIsMetToHalfOfTheSmallestGrain) {
@@ -141,8 +141,8 @@ TEST(Mixture, PecletNumbersAreOfEachGroup) {
       read(mixture(0.5, "grains", 0.5), {{"fluid", {{"thermal_energy", 0.6 * std::numbers::pi * 0.009}}}});
   const DerivedGroups groups = derived_groups(scene);
   EXPECT_NEAR(*groups.peclet, 1, 1e-12);
-  EXPECT_NEAR(*groups.mixture->peclet_mean, 27, 1e-10);     // a_cg = 3
-  EXPECT_NEAR(*groups.mixture->peclet_grains, 125, 1e-10);  // a_g = 5
+  EXPECT_NEAR(*groups.peclet_mean, 27, 1e-10);     // a_cg = 3
+  EXPECT_NEAR(*groups.peclet_grains, 125, 1e-10);  // a_g = 5
   EXPECT_EQ(to_json(groups)["volume_fraction"], scene.volume_fraction);
 }
 

@@ -72,7 +72,9 @@ TEST(SizeDistribution, KeepsItsMoments) {
       const double exact = one.integral(p - shift) / one.integral(-shift);
       const double error = moment(sizes, p) / exact - 1;
       EXPECT_LT(std::abs(error), p == 3 ? 2e-5 : 5e-3) << one.name << " moment " << p;
-      if (p < 3) EXPECT_GT(error, 0) << one.name << " moment " << p;
+      if (p < 3) {
+        EXPECT_GT(error, 0) << one.name << " moment " << p;
+      }
     }
   }
 }
@@ -105,7 +107,9 @@ TEST(SizeDistribution, NoClassHasMoreThanTwiceItsPart) {
     for (std::size_t k = 0; k < sizes.size(); ++k) {
       const double number = sizes[k].number, of_volume = number * std::pow(sizes[k].radius, 3) / volume;
       EXPECT_NEAR((number + of_volume) / 2, 1.0 / 16, 1e-5) << one.name << ' ' << k;
-      if (k > 0) EXPECT_GT(sizes[k].radius, sizes[k - 1].radius) << one.name;
+      if (k > 0) {
+        EXPECT_GT(sizes[k].radius, sizes[k - 1].radius) << one.name;
+      }
     }
   }
 }

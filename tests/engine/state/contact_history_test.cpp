@@ -42,7 +42,9 @@ double largest(const std::vector<double>& values) {
 
 void expect_same_loads(const System& before, const System& after) {
   const std::vector<double> a = loads_of(before), b = loads_of(after);
-  for (std::size_t k = 0; k < a.size(); ++k) EXPECT_NEAR(a[k], b[k], 1e-12 * largest(a));
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    EXPECT_NEAR(a[k], b[k], 1e-12 * largest(a));
+  }
 }
 
 // The springs of all contacts by their particles: no two of them meet twice here.
@@ -130,7 +132,9 @@ TEST(ContactHistory, UnwrappedPlacesFollowTheFlowThroughFlips) {
     rebuild_neighbours(system);
   }
   EXPECT_EQ(system.box.basis(), flips(3));  // the tilt began at 0.31 and would have ended at 2.71 edges
-  for (std::size_t i = 0; i < 50; ++i) EXPECT_NEAR(norm(unwrapped(i) - expected[i]), 0, 1e-10);
+  for (std::size_t i = 0; i < 50; ++i) {
+    EXPECT_NEAR(norm(unwrapped(i) - expected[i]), 0, 1e-10);
+  }
 }
 
 TEST(ContactHistory, ForgetsWhatIsFarApartByNow) {

@@ -193,7 +193,9 @@ TEST(PeriodicCell, IsMadeCompactInExtension) {
     const Vector3 widths = box.frame().widths();
     const double shortest = std::min(norm(a), norm(b));
     EXPECT_GT(shortest, (1 - 1e-9) * least) << share;
-    if (share == 0.25 || share == 0.75) EXPECT_NEAR(shortest, least, 1e-9) << share;
+    if (share == 0.25 || share == 0.75) {
+      EXPECT_NEAR(shortest, least, 1e-9) << share;
+    }
     EXPECT_GT(std::min({widths.x, widths.y, widths.z}), 0.75 * least) << share;
     if (share == std::floor(share)) {
       EXPECT_NEAR(norm(a), edge, 1e-9) << share;

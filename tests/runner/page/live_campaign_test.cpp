@@ -88,7 +88,9 @@ TEST_F(LivePage, ShowsTheSameAsAReportButForWhatTakesLong) {
   }
   report.erase("points");
   for (const auto& [key, value] : report.items()) {
-    if (key != "commands" && key != "provenance") EXPECT_EQ(state["head"][key], value) << key;
+    if (key != "commands" && key != "provenance") {
+      EXPECT_EQ(state["head"][key], value) << key;
+    }
   }
   EXPECT_EQ(live.details("none"), nullptr);
 }

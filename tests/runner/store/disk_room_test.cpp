@@ -170,7 +170,9 @@ TEST_F(FullDatabase, LosesNothingOfWorkersThatHaveTwoJobs) {
       fill();
       assigned = pool_.assigned.size();
     }
-    if (turns > 4 && turns < 60) EXPECT_EQ(pool_.assigned.size(), assigned);
+    if (turns > 4 && turns < 60) {
+      EXPECT_EQ(pool_.assigned.size(), assigned);
+    }
     if (turns == 60) make_room();
     finish_all();
   };
