@@ -1,5 +1,6 @@
 # Files installed beside the programs: those that the programs look for relative to themselves
-# (own_file() in runner/store/campaign_directory.h), and those that people read. Below share/peclet everything lies as it does in the source, so that links between the texts hold.
+# (own_file() in runner/store/campaign_directory.h), and those that people read. Below share/peclet everything lies as
+# it does in the source, so that links between the texts hold.
 
 set(own ${CMAKE_INSTALL_DATADIR}/peclet)
 set(unwanted PATTERN __pycache__ EXCLUDE PATTERN "*.peclet" EXCLUDE)

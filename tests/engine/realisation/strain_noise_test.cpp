@@ -29,7 +29,8 @@ double noise_of(double of_friction, Purpose purpose, std::uint64_t step) {
 class KnownPairs : public Integrator {
  public:
   explicit KnownPairs(const ControlledShear& shear)
-      : Integrator(ForceField({}, {}, strain_noise::timestep, seed, 1), strain_noise::timestep), shear_(shear) {}
+      : Integrator(ForceField({}, {}, strain_noise::timestep, seed, 1), strain_noise::timestep),
+        shear_(shear) {}
 
   static double noise(std::uint64_t step) { return noise_of(friction, Purpose::pair_noise, step); }
 
