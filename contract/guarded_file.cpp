@@ -48,7 +48,7 @@ void require_regular(const fs::path& path) {
   if (lstat(path.c_str(), &about) == 0 && !S_ISREG(about.st_mode)) refuse(path, kind_of(about.st_mode));
 }
 
-// Looked at before it is opened, because opening a device may do something; looked at again afterwards,
+// StopTestMade at before it is opened, because opening a device may do something; looked at again afterwards,
 // because it may have been replaced in between.
 Descriptor open_regular(const fs::path& path, int flags, unsigned mode) {
   require_regular(path);

@@ -7,7 +7,7 @@
 PRAGMA application_id = 1346587724;  -- "PCLL" as a big-endian integer
 PRAGMA user_version = 1;
 
--- What a verdict was reached for. Old targets stay, with the looks that were made for them.
+-- What a verdict was reached for. Old targets stay, with the stop tests that were made for them.
 CREATE TABLE target (
   target_id          INTEGER PRIMARY KEY,
   observable         TEXT    NOT NULL,
@@ -52,12 +52,12 @@ CREATE TABLE point (
   priority        INTEGER NOT NULL DEFAULT 0,  -- points of a higher one are served first
   cancelled       INTEGER NOT NULL DEFAULT 0 CHECK (cancelled IN (0, 1)),  -- gets no more seeds
   -- Results of an engine that another one has replaced by name; the scene's own row is the one of 0.
-  kept_apart      INTEGER NOT NULL DEFAULT 0 CHECK (kept_apart IN (0, 1)),
+  set_aside      INTEGER NOT NULL DEFAULT 0 CHECK (set_aside IN (0, 1)),
   UNIQUE (hash, engine_identity),
-  CHECK (kept_apart = 0 OR (place IS NULL AND engine_identity IS NOT NULL))
+  CHECK (set_aside = 0 OR (place IS NULL AND engine_identity IS NOT NULL))
 ) STRICT;
 
-CREATE UNIQUE INDEX point_by_hash ON point (hash) WHERE kept_apart = 0;
+CREATE UNIQUE INDEX point_by_hash ON point (hash) WHERE set_aside = 0;
 
 -- One seed at one point: its state, and what belongs to it apart from the numbers that it has measured.
 CREATE TABLE realisation (
@@ -175,7 +175,7 @@ CREATE TABLE lease (
 ) STRICT, WITHOUT ROWID;
 
 -- What the closed cohort of the first `seeds` seeds said. NULL: does not exist for so few values.
-CREATE TABLE look (
+CREATE TABLE stop_test (
   point_id                    INTEGER NOT NULL REFERENCES point,
   target_id                   INTEGER NOT NULL REFERENCES target,
   seeds                       INTEGER NOT NULL,
@@ -184,9 +184,9 @@ CREATE TABLE look (
   mean                        REAL,     -- of value + control: the estimate that decides
   standard_error              REAL,
   half_width                  REAL,
-  uncontrolled_mean           REAL,     -- of the values alone
-  uncontrolled_standard_error REAL,
-  uncontrolled_half_width     REAL,
+  plain_mean           REAL,     -- of the values alone
+  plain_standard_error REAL,
+  plain_half_width     REAL,
   verdict                     TEXT    NOT NULL CHECK (verdict IN ('more', 'converged', 'converged-with-losses',
                                 'capped', 'failed', 'complete', 'complete-with-losses')),
   made_at                     TEXT    NOT NULL,
@@ -202,7 +202,7 @@ CREATE TABLE prediction (
   target_id   INTEGER NOT NULL REFERENCES target,
   made_at     TEXT    NOT NULL,
   pilot       INTEGER NOT NULL,  -- seeds that it was made from
-  seeds       INTEGER NOT NULL,  -- of the deciding look, as expected
+  seeds       INTEGER NOT NULL,  -- of the deciding stop test, as expected
   lower       INTEGER NOT NULL,  -- and the range that should hold it 95 % of the time
   upper       INTEGER NOT NULL,
   cpu_seconds REAL    NOT NULL,  -- of one seed

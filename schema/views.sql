@@ -34,16 +34,16 @@ JOIN realisation r USING (point_id, seed)
 LEFT JOIN engine e USING (engine_id)
 WHERE p.place IS NOT NULL ORDER BY p.place, f.seed, f.name;
 
--- The last look at each point for the campaign's present target.
+-- The last stop test at each point for the campaign's present target.
 CREATE VIEW estimates AS
 SELECT p.place, p.label, p.hash, t.observable, json_extract(t.criterion, '$.relative_tolerance') AS relative_tolerance,
        json_extract(t.criterion, '$.absolute_tolerance') AS absolute_tolerance, t.confidence, l.seeds, l.lost, l.count,
-       l.mean, l.standard_error, l.half_width, l.uncontrolled_mean, l.uncontrolled_standard_error, l.uncontrolled_half_width,
+       l.mean, l.standard_error, l.half_width, l.plain_mean, l.plain_standard_error, l.plain_half_width,
        l.skewness, l.transient, l.verdict
-FROM look l
+FROM stop_test l
 JOIN campaign c USING (target_id)
 JOIN target t USING (target_id)
 JOIN point p USING (point_id)
 WHERE p.place IS NOT NULL
-  AND l.seeds = (SELECT max(m.seeds) FROM look m WHERE m.point_id = l.point_id AND m.target_id = l.target_id)
+  AND l.seeds = (SELECT max(m.seeds) FROM stop_test m WHERE m.point_id = l.point_id AND m.target_id = l.target_id)
 ORDER BY p.place;

@@ -184,7 +184,7 @@ def follows(other, axis):
 
 def kind_of(point):
     kinds = {"converged": "decided"}
-    return "jammed" if point["jammed"] else kinds.get(point["standing"], point["standing"])
+    return "jammed" if point["jammed"] else kinds.get(point["state"], point["state"])
 
 
 def ends(mark):

@@ -62,7 +62,7 @@ def main():
         rate = point["scene"]["variables"]["weissenberg"]
         viscosity, normal = with_step(rate)
         quantities = point["quantities"]
-        cells = [f"{rate:g}", point["look"]["seeds"], *cells_of(quantities["viscosity"], viscosity)]
+        cells = [f"{rate:g}", point["stop_test"]["seeds"], *cells_of(quantities["viscosity"], viscosity)]
         print(markdown_row([*cells, *cells_of(quantities["first_normal_difference"], normal)]))
     print(f"\nWith the step: viscosity {viscosity:.4f}, normal stress {normal:.4f}")
 

@@ -3,7 +3,7 @@
 
 Prints the relative viscosities of the campaign beside the fits of Mari et al. as quoted by Monti et al. (2021):
 1.4 (1 - phi/0.66)^-1.6 without friction and 0.71 (1 - phi/0.575)^-2.3 with friction coefficient 1.
-Every seed that has ended counts, surplus ones too.
+Every seed that has ended counts, extra ones too.
 """
 import json
 import sys
@@ -23,7 +23,7 @@ def main():
     scene = export["document"]["scene"]
     print(markdown_head(HEAD))
     for point in export["points"]:
-        means = [r["mean"] for r in point["realisations"] + point["surplus"] if r.get("mean")]
+        means = [r["mean"] for r in point["realisations"] + point["extra"] if r.get("mean")]
         settings = {**scene["contact"], **scene["lubrication"]}
         settings |= {path.split("/")[-1]: value for path, value in point["settings"].items()}
         phi, friction = settings["volume_fraction"], settings["friction"]

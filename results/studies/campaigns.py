@@ -201,7 +201,7 @@ def viscosity_row(point, *others):
     means = point.means
     for name, terms in TERMS.items():
         numbers[name] = estimate([term(mean, *terms) for mean in means]) if means else (math.nan, math.inf)
-    row = {"seeds": len(means), "lost": point.lost, "transient": int(bool((point["look"] or {}).get("transient")))}
+    row = {"seeds": len(means), "lost": point.lost, "transient": int(bool((point["stop_test"] or {}).get("transient")))}
     for name, pair in numbers.items():
         row |= entries(name, pair)
     return row

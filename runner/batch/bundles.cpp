@@ -41,7 +41,7 @@ void Bundles::cancel() {
 
 void Bundles::take_back_seeds(const BundleRecord& bundle) {
   for (const BundleSeedRecord& seed : book_.seeds_out(bundle.id)) {
-    if (const std::optional<SeedId> id = ledger_.identify(seed.point, seed.seed)) ledger_.take_back(*id);
+    if (const std::optional<SeedId> id = state_.identify(seed.point, seed.seed)) state_.take_back(*id);
   }
 }
 
@@ -140,10 +140,10 @@ void check_template(const BatchTemplate& scripts, const fs::path& shared, const 
   filled_in(scripts, BundleFolder(shared, "name"), "name", 1, 1, program);
 }
 
-Bundles::Bundles(Database& database, Ledger& ledger, const Campaign& campaign, CampaignDirectory directory,
-                 RunListener& listener)
+Bundles::Bundles(Database& database, CampaignState& state, const Campaign& campaign,
+                 CampaignDirectory directory, RunListener& listener)
     : database_(database),
-      ledger_(ledger),
+      state_(state),
       campaign_(campaign),
       directory_(std::move(directory)),
       listener_(listener),
@@ -160,7 +160,7 @@ std::string Bundles::hand_over(const BundleSettings& settings) {
     return "";
   }
   told_.erase(settings.shared.string());
-  const std::vector<SeedId> seeds = ledger_.draw(settings.ahead);
+  const std::vector<SeedId> seeds = state_.draw(settings.ahead);
   const std::size_t most =
       static_cast<std::size_t>(settings.seeds_per_task) * static_cast<std::size_t>(settings.largest_array);
   for (std::size_t from = 0; from < seeds.size(); from += most) {
@@ -168,21 +168,21 @@ std::string Bundles::hand_over(const BundleSettings& settings) {
     const auto begin = seeds.begin() + static_cast<std::ptrdiff_t>(from);
     const std::string refusal = make(settings, {begin, seeds.begin() + static_cast<std::ptrdiff_t>(end)});
     if (refusal.empty()) continue;
-    for (std::size_t left = end; left < seeds.size(); ++left) ledger_.take_back(seeds[left]);
+    for (std::size_t left = end; left < seeds.size(); ++left) state_.take_back(seeds[left]);
     return refusal;
   }
   return "";
 }
 
 std::string Bundles::describe(const BundleSettings& settings) {
-  const std::vector<SeedId> seeds = ledger_.draw(settings.ahead);
+  const std::vector<SeedId> seeds = state_.draw(settings.ahead);
   const auto per_task = static_cast<std::size_t>(settings.seeds_per_task);
   const std::size_t tasks = (seeds.size() + per_task - 1) / per_task;
   const auto largest = static_cast<std::size_t>(settings.largest_array);
   std::string text =
       fmt::format("{} seeds in {} tasks in {} job{} would be handed over\n", seeds.size(), tasks,
                   (tasks + largest - 1) / largest, (tasks + largest - 1) / largest == 1 ? "" : "s");
-  for (const SeedId& id : seeds) text += ledger_.name(id) + '\n';
+  for (const SeedId& id : seeds) text += state_.name(id) + '\n';
   return text;
 }
 
@@ -206,7 +206,7 @@ Manifest Bundles::manifest_of(const BundleSettings& settings, const std::vector<
   manifest.checkpoint_seconds = settings.checkpoint_seconds;
   manifest.scenes = Json::object();
   for (const SeedId& id : seeds) {
-    const PointRecord& point = ledger_.point(id.point);
+    const PointRecord& point = state_.point(id.point);
     const auto place = static_cast<int>(manifest.seeds.size());
     manifest.scenes[point.hash] = point.scene;
     if (place % settings.seeds_per_task == 0) manifest.tasks.emplace_back();
@@ -250,7 +250,7 @@ std::string Bundles::make(const BundleSettings& settings, const std::vector<Seed
   for (int task = 0; task < bundle.tasks; ++task) {
     for (const int place : manifest.tasks[static_cast<std::size_t>(task)]) {
       const SeedId& id = seeds[static_cast<std::size_t>(place)];
-      rows.push_back({place, task, ledger_.point(id.point).id, id.seed});
+      rows.push_back({place, task, state_.point(id.point).id, id.seed});
     }
   }
   Transaction booking(database_.connection());
@@ -312,13 +312,13 @@ Bundles::SettleReport Bundles::settle() {
     ++settled.unreachable;
     std::error_code unreachable;
     if (!fs::is_directory(CampaignDirectory(bundle.shared).spool(), unreachable))
-      continue;  // the ledger says so
+      continue;  // the state says so
     tell_once(
         bundle.name,
         fmt::format("{}; {} seeds of this bundle are out. `peclet ingest --forget {}` queues them again", why,
                     book_.seeds_out(bundle.id).size(), bundle.name));
   }
-  if (settled.unreachable > 0) ledger_.ingest_spool();  // what there is elsewhere
+  if (settled.unreachable > 0) state_.ingest_spool();  // what there is elsewhere
   return settled;
 }
 
@@ -366,13 +366,13 @@ void Bundles::book(const BundleRecord& bundle, const BundleFolder& folder, const
   reports.reserve(out.size());
   for (const BundleSeedRecord& seed : out) reports.push_back(read_report(folder.ended(seed.place)));
   // After the reports: a result is in the spool when, or soon after, its report says so.
-  ledger_.ingest_spool();
+  state_.ingest_spool();
 
   Transaction booking(database_.connection());
   for (std::size_t i = 0; i < out.size(); ++i) {
     const BundleSeedRecord& seed = out[i];
     const BundledSeed& named = manifest.seeds.at(static_cast<std::size_t>(seed.place));
-    const std::optional<SeedId> id = ledger_.identify(seed.point, seed.seed);
+    const std::optional<SeedId> id = state_.identify(seed.point, seed.seed);
     const bool gone = answer != nullptr && !answer->alive(seed.task);
     const bool has_result = seeds_.has_ended(seed.point, seed.seed);
     if (!reports[i] || (reports[i]->report.outcome == AttemptOutcome::result && !has_result)) {
@@ -385,13 +385,13 @@ void Bundles::book(const BundleRecord& bundle, const BundleFolder& folder, const
     }
     const AttemptReport& report = reports[i]->report;
     if (id) {
-      ledger_.end_handed_over(*id, seed.task, report, folder.shared().checkpoint(named.point, named.seed));
+      state_.end_handed_over(*id, seed.task, report, folder.shared().checkpoint(named.point, named.seed));
     }
     book_.seed_ended(bundle.id, seed.place, to_string(report.outcome));
     ++settled.ended;
   }
   booking.commit();
-  ledger_.after_commit();
+  state_.after_commit();
   tell(bundle, returned, settled);
 
   bool alive = answer == nullptr;
@@ -404,7 +404,7 @@ void Bundles::book(const BundleRecord& bundle, const BundleFolder& folder, const
 
 void Bundles::return_seed(const BundleRecord& bundle, const BundleFolder& folder,
                           const BundleSeedRecord& seed, Returned& returned) {
-  const std::optional<SeedId> id = ledger_.identify(seed.point, seed.seed);
+  const std::optional<SeedId> id = state_.identify(seed.point, seed.seed);
   const std::optional<PlacedReport> cut_off = read_report(folder.running(seed.task));
   if (const std::string trouble = trouble_of(folder, seed.task); !trouble.empty()) {
     returned.troubles.insert(trouble);
@@ -417,12 +417,12 @@ void Bundles::return_seed(const BundleRecord& bundle, const BundleFolder& folder
     AttemptReport report = cut_off->report;
     report.outcome = AttemptOutcome::killed;
     report.message = "its task ended without a word";
-    ledger_.end_handed_over(*id, seed.task, report,
-                            folder.shared().checkpoint(ledger_.point(id->point).hash, id->seed));
+    state_.end_handed_over(*id, seed.task, report,
+                           folder.shared().checkpoint(state_.point(id->point).hash, id->seed));
     book_.seed_ended(bundle.id, seed.place, to_string(report.outcome));
     return;
   }
-  if (id) ledger_.take_back(*id);
+  if (id) state_.take_back(*id);
   book_.seed_ended(bundle.id, seed.place, "returned");
 }
 

@@ -15,7 +15,7 @@
 #include "runner/batch/batch_system.h"
 #include "runner/batch/bundle_files.h"
 #include "runner/campaign/paths.h"
-#include "runner/owner/ledger.h"
+#include "runner/owner/campaign_state.h"
 #include "runner/store/bundle_store.h"
 #include "runner/store/point_store.h"
 #include "runner/store/seed_store.h"
@@ -28,7 +28,7 @@ struct BundleSettings {
   int largest_array = 1000;  // tasks of one bundle
   int threads = 1;
   double lease_seconds = 120, checkpoint_seconds = 60;
-  bool ahead = false;  // also the seeds of the look after the next one
+  bool ahead = false;  // also the seeds of the stop test after the next one
   BatchTemplate scripts;
   std::vector<std::string> options;  // of submit.sh
   std::vector<std::string> engine;   // program and arguments
@@ -44,7 +44,7 @@ void check_template(const BatchTemplate& scripts, const fs::path& shared, const 
 class Bundles {
  public:
   // All references must outlive it.
-  Bundles(Database& database, Ledger& ledger, const Campaign& campaign, CampaignDirectory directory,
+  Bundles(Database& database, CampaignState& state, const Campaign& campaign, CampaignDirectory directory,
           RunListener& listener);
 
   struct SettleReport {
@@ -103,7 +103,7 @@ class Bundles {
   void write(const BundleFolder& folder, const Manifest& manifest, const BundleSettings& settings);
 
   Database& database_;
-  Ledger& ledger_;
+  CampaignState& state_;
   const Campaign& campaign_;
   CampaignDirectory directory_;
   RunListener& listener_;

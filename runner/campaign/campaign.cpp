@@ -13,7 +13,8 @@
 namespace peclet::runner {
 namespace {
 
-// With fewer, intervals of a rule with several looks hold the mean less often than 94 % (results/coverage).
+// With fewer, intervals of a rule with several stop tests hold the mean less often than 94 %
+// (results/coverage).
 constexpr int smallest_minimum = 8;
 
 // What goes into headings and names of files.
@@ -235,9 +236,9 @@ constexpr const char* campaign_rows = R"(
     of shares Clopper and Pearson's.
 /realisations | integer >= 1 and <= {realisations} or object | How many seeds a point may take; a number
     without a target: how many every point gets.
-/realisations/minimum | integer >= 2 and <= {realisations} | Seeds before the first look: 8 or more, because
+/realisations/minimum | integer >= 2 and <= {realisations} | Seeds before the first stop test: 8 or more, because
     the spread of fewer is itself too uncertain to stop by; 2 or more where it equals maximum, so that there
-    is only one look.
+    is only one stop test.
 /realisations/maximum | integer >= 2 and <= {realisations} | Seeds after which a point is capped; not below
     the minimum.
 /show? | array of 1 to {shown} | Where the number of realisations is fixed: numbers in the result's mean that

@@ -29,7 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::milliseconds between_looks{100};
+constexpr std::chrono::milliseconds between_stop_tests{100};
 
 // Nobody runs the campaign: what waits is carried out here. False: somebody was faster.
 bool carry_out_here(const CampaignDirectory& directory) {
@@ -40,8 +40,8 @@ bool carry_out_here(const CampaignDirectory& directory) {
     Database database = Database::open_owner(directory.database());
     const Campaign campaign = parse_campaign(database.campaign().document, directory.database().string());
     Progress progress(Progress::style_of_stderr(true));
-    Ledger ledger(database, campaign, directory, progress, retries);
-    RequestHandler(database, ledger, directory, progress).carry_out();
+    CampaignState state(database, campaign, directory, progress, retries);
+    RequestHandler(database, state, directory, progress).carry_out();
     return true;
   } catch (const OwnedByAnother&) {
     return false;
@@ -61,7 +61,7 @@ bool is_carried_out(const CampaignDirectory& directory, const Request& request, 
     }
     if (!fs::exists(file)) return true;
     if (Clock::now() >= end) return false;
-    std::this_thread::sleep_for(between_looks);
+    std::this_thread::sleep_for(between_stop_tests);
   }
 }
 
@@ -70,7 +70,7 @@ std::string next_step(const CampaignDirectory& directory, Database& database, co
     return fmt::format("process {} goes on with it; `peclet status {}` shows how far it is\n", *owner, words);
   }
   const CampaignStatus status = read_status(database);
-  if (standing(status) != ExitCode::unfinished) return "no point is open: there is nothing to run\n";
+  if (exit_code_of(status) != ExitCode::unfinished) return "no point is open: there is nothing to run\n";
   return fmt::format("go on with: peclet run {}\n", words);
 }
 

@@ -104,9 +104,9 @@ std::string submit(Bundles& bundles, const BundleSettings& settings) {
 // Settles and hands over, turn by turn.
 class Follower {
  public:
-  Follower(Ledger& ledger, Bundles& bundles, RequestHandler& requests, Progress& progress,
+  Follower(CampaignState& state, Bundles& bundles, RequestHandler& requests, Progress& progress,
            const CampaignDirectory& directory, const HandOverOptions& options)
-      : ledger_(ledger),
+      : state_(state),
         bundles_(bundles),
         requests_(requests),
         progress_(progress),
@@ -130,7 +130,7 @@ class Follower {
         const Bundles::SettleReport settled = bundles_.settle();
         give_up_on_lifeless_tasks(settled);
         requests_.carry_out();
-        if (ledger_.scheduler().finished()) break;
+        if (state_.scheduler().finished()) break;
         give_up_on_refusals(submit(bundles_, settings));
         report(settled);
         hindrance_.clear();
@@ -151,7 +151,7 @@ class Follower {
   void wait_out(const std::exception& error) {
     const std::optional<Hindrance> hindrance = hindrance_in(error, root_);
     if (!hindrance) throw;
-    ledger_.roll_back();
+    state_.roll_back();
     if (std::exchange(hindrance_, hindrance->kind()) != hindrance->kind()) {
       progress_.warn(
           fmt::format("{}; jobs go on, and results are taken in {}", hindrance->text, hindrance->end));
@@ -188,14 +188,14 @@ class Follower {
 
   void report(const Bundles::SettleReport& settled) {
     results_ += settled.ended;
-    RunReport report = ledger_.report(1);
+    RunReport report = state_.report(1);
     report.to_go.reset();  // the batch system knows when, if anybody does
     report.results = results_;
     report.elapsed = std::chrono::duration<double>(Clock::now() - started_).count();
     progress_.report(report);
   }
 
-  // What is still out is surplus: cancelled, and taken in when it has gone.
+  // What is still out is extra: cancelled, and taken in when it has gone.
   bool call_back(StopSignals& signals) {
     if (!bundles_.settle().any_awaited()) return true;
     progress_.note("every point is decided; the jobs that are left are cancelled");
@@ -207,7 +207,7 @@ class Follower {
     return true;
   }
 
-  Ledger& ledger_;
+  CampaignState& state_;
   Bundles& bundles_;
   RequestHandler& requests_;
   Progress& progress_;
@@ -219,13 +219,14 @@ class Follower {
   std::string refusal_, hindrance_;  // as they were told
 };
 
-void admit(Ledger& ledger, const OwnedCampaign& owned, const HandOverOptions& options, Progress& progress) {
+void admit(CampaignState& state, const OwnedCampaign& owned, const HandOverOptions& options,
+           Progress& progress) {
   const bool is_accepted = !options.accept_engine.empty();
-  if (is_accepted && !options.dry_run) accept_engine(ledger, owned.engine, progress);
+  if (is_accepted && !options.dry_run) accept_engine(state, owned.engine, progress);
   try {
-    ledger.admit_engine(owned.engine);
+    state.admit_engine(owned.engine);
   } catch (const OtherEngine& error) {
-    // What would be kept apart is not described by what is there now.
+    // What would be set aside is not described by what is there now.
     if (is_accepted) {
       throw OtherEngine(
           error.what() +
@@ -253,7 +254,7 @@ void check_names(const std::vector<std::string>& names, Database& database) {
   }
 }
 
-std::string standing_text(Database& database) {
+std::string status_text(Database& database) {
   std::string text;
   for (const HandedOver& bundle : BundleStore(database.connection()).handed_over()) {
     text += fmt::format("{}: {} seeds are out, job {}\n", bundle.bundle, bundle.seeds,
@@ -274,11 +275,11 @@ int hand_over_campaign(const HandOverOptions& options) {
     Progress progress(Progress::style_of_stderr(options.quiet));
     if (const std::string doubt = doubt_about_file_system(owned.directory.root()); !doubt.empty())
       progress.warn(doubt);
-    Ledger ledger(owned.database, owned.campaign, owned.directory, progress, retries);
-    RequestHandler requests(owned.database, ledger, owned.directory, progress);
+    CampaignState state(owned.database, owned.campaign, owned.directory, progress, retries);
+    RequestHandler requests(owned.database, state, owned.directory, progress);
     if (!options.dry_run) requests.carry_out();
-    admit(ledger, owned, options, progress);
-    Bundles bundles(owned.database, ledger, owned.campaign, owned.directory, progress);
+    admit(state, owned, options, progress);
+    Bundles bundles(owned.database, state, owned.campaign, owned.directory, progress);
     if (options.dry_run) {
       std::fputs(bundles.describe(settings).c_str(), stdout);
       return 0;
@@ -286,12 +287,12 @@ int hand_over_campaign(const HandOverOptions& options) {
     if (!options.follow) {
       bundles.settle();
       const std::string refusal = submit(bundles, settings);
-      std::fputs(standing_text(owned.database).c_str(), stdout);
+      std::fputs(status_text(owned.database).c_str(), stdout);
       if (!refusal.empty()) throw SubmissionRefused(refusal);
       return 0;
     }
     owned.database.connection().wait_for_locks(1000);  // a lock is waited for turn by turn
-    finished = Follower(ledger, bundles, requests, progress, owned.directory, options).run(settings);
+    finished = Follower(state, bundles, requests, progress, owned.directory, options).run(settings);
     code = ending(read_status(owned.database), finished);
   }
   std::fputs(status_table(read_status(owned.database, getpid())).c_str(), stdout);
@@ -302,9 +303,9 @@ int ingest_campaign(const IngestOptions& options) {
   OwnedCampaign owned(options.campaign, options.directory, options.force);
   check_names(options.forget, owned.database);
   Progress progress(Progress::style_of_stderr(options.quiet));
-  Ledger ledger(owned.database, owned.campaign, owned.directory, progress, retries);
-  RequestHandler(owned.database, ledger, owned.directory, progress).carry_out();
-  Bundles bundles(owned.database, ledger, owned.campaign, owned.directory, progress);
+  CampaignState state(owned.database, owned.campaign, owned.directory, progress, retries);
+  RequestHandler(owned.database, state, owned.directory, progress).carry_out();
+  Bundles bundles(owned.database, state, owned.campaign, owned.directory, progress);
   Bundles::SettleReport settled = bundles.settle();
   if (options.cancel) {
     bundles.cancel();
@@ -318,7 +319,7 @@ int ingest_campaign(const IngestOptions& options) {
   if (!options.forget.empty()) settled = bundles.settle();
   const std::string advice = handed_over_advice(BundleStore(owned.database.connection()).handed_over(),
                                                 words_for(options.campaign, options.directory));
-  std::fputs((standing_text(owned.database) + advice).c_str(), stdout);
+  std::fputs((status_text(owned.database) + advice).c_str(), stdout);
   return settled.unreachable > 0 ? ExitCode::error : 0;
 }
 

@@ -54,7 +54,7 @@ void add_all(VerbSet& verbs) {
   app.footer(exit_code_lines({}) + "`peclet help VERB` says more about a verb.");
   app.formatter(std::make_shared<HelpFormatter>());
   add_running_verbs(verbs);
-  add_looking_verbs(verbs);
+  add_viewing_verbs(verbs);
   add_changing_verbs(verbs);
   add_completion(verbs);
 }

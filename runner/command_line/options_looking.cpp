@@ -21,7 +21,7 @@ namespace peclet::runner {
 namespace {
 
 // What verbs that look at a campaign are told; each has the options that it adds.
-struct LookOptions {
+struct ViewOptions {
   std::filesystem::path campaign;  // file or folder
   std::filesystem::path directory;
   std::string point;  // label, or at least 4 digits of the hash; "": all points
@@ -35,21 +35,21 @@ struct LookOptions {
   bool quiet = false;            // does not say where it is
 };
 
-int show_status(const LookOptions& options) {
-  OpenCampaign open = open_to_look(options.campaign, options.directory);
+int show_status(const ViewOptions& options) {
+  OpenCampaign open = open_for_viewing(options.campaign, options.directory);
   const CampaignStatus status = read_status(open.database, current_owner(open.directory));
   print(options.json ? status_json(status).dump(2) + '\n' : status_table(status) + workers_text(status));
   if (const std::string note = difference_from_file(options.campaign, options.directory, status.campaign);
       !note.empty()) {
     say(fmt::format("note: {}\n", note));
   }
-  return options.check ? standing(status) : 0;
+  return options.check ? exit_code_of(status) : 0;
 }
 
 void add_status(VerbSet& verbs) {
-  const auto [verb, options] = verbs.add<LookOptions>(
+  const auto [verb, options] = verbs.add<ViewOptions>(
       show_status, "status", "Show how far every point is, also while it runs", {0, 1, 2, 3, 4, 6}, R"(
-Shows the seeds that have ended, the mean and its standard error so far, the interval at the last look
+Shows the seeds that have ended, the mean and its standard error so far, the interval at the last stop test
 and the verdict of every point. It only reads, and may be used at any time.
 
   peclet status flow-curve.json --check
@@ -75,23 +75,23 @@ it changes.
 )");
   add_campaign(verb, *options);
   add_number(verb, "--interval SECONDS", options->interval_seconds, number_from(0.1, 86'400),
-             "Seconds between looks")
+             "Seconds between stop tests")
       ->capture_default_str();
 }
 
-std::string explanation(const LookOptions& options) {
-  OpenCampaign open = open_to_look(options.campaign, options.directory);
+std::string explanation(const ViewOptions& options) {
+  OpenCampaign open = open_for_viewing(options.campaign, options.directory);
   return options.json ? explain_json(open.database, open.directory, options.point).dump(2) + '\n'
                       : explain(open.database, open.directory, options.point);
 }
 
 void add_explain(VerbSet& verbs) {
-  const auto [verb, options] = verbs.add<LookOptions>(
+  const auto [verb, options] = verbs.add<ViewOptions>(
       explanation, "explain", "Say why points are where they are, and what comes next", {0, 1, 2, 6}, R"(
 A point is named by its label (peclet=10 volume_fraction=0.5), by its values alone as in a row of the
 tables ("10 0.5"), or by the beginning of its hash.
 
-Lists the looks at a point, a bootstrap interval beside Student's, lost seeds with what their engines
+Lists the stop tests at a point, a bootstrap interval beside Student's, lost seeds with what their engines
 said last, whether the window is long enough, and what would bring the point further.
 
   peclet explain flow-curve.json peclet=10
@@ -104,13 +104,13 @@ said last, whether the window is long enough, and what would bring the point fur
   add_json(verb, options->json);
 }
 
-std::string files(const LookOptions& options) {
-  OpenCampaign open = open_to_look(options.campaign, options.directory);
+std::string files(const ViewOptions& options) {
+  OpenCampaign open = open_for_viewing(options.campaign, options.directory);
   return list_files(open.database, open.directory, {options.point, options.paths, options.json});
 }
 
 void add_files(VerbSet& verbs) {
-  const auto [verb, options] = verbs.add<LookOptions>(
+  const auto [verb, options] = verbs.add<ViewOptions>(
       files, "files", "List the files that realisations have left beside their results", {0, 1, 2, 6},
       R"(
 A scene may ask its engine for files beside the numbers, as final.xyz of "files": {"final_configuration":
@@ -128,15 +128,15 @@ listed, and nothing is left of them.
   add_json(verb, options->json)->excludes(paths);
 }
 
-void export_campaign(const LookOptions& options) {
+void export_campaign(const ViewOptions& options) {
   if (!options.bundle.empty()) {
     check_supplement_name(options.bundle);
     check_output(options.bundle);
-    OpenCampaign whole = open_to_look(options.campaign, options.directory);
+    OpenCampaign whole = open_for_viewing(options.campaign, options.directory);
     deliver(supplement(whole.database, current_owner(whole.directory)), options.bundle, options.quiet);
     return;
   }
-  OpenCampaign open = open_to_look(options.campaign, options.directory);
+  OpenCampaign open = open_for_viewing(options.campaign, options.directory);
   deliver(options.csv       ? export_csv(open.database, options.canonical)
           : options.in_long ? export_long_csv(open.database)
                             : export_json(open.database, options.canonical),
@@ -144,14 +144,14 @@ void export_campaign(const LookOptions& options) {
 }
 
 void add_export(VerbSet& verbs) {
-  const auto [verb, options] = verbs.add<LookOptions>(
+  const auto [verb, options] = verbs.add<ViewOptions>(
       export_campaign, "export", "Print the results for programs to read", {0, 1, 2, 6}, R"(
 The canonical form holds what depends on campaign, seeds and engine alone, so that two runs of one
 campaign can be compared byte by byte, however many workers they had and whatever killed them.
 --output replaces a file whole, follows a link, writes to a device, a FIFO or /dev/stdout, and says on
 standard error where it wrote, unless --quiet.
 
-Estimates are of the seeds of each point's last look. --csv has a column for every scalar that was
+Estimates are of the seeds of each point's last stop test. --csv has a column for every scalar that was
 measured, --long a row for every number, with names, units and axes as the engine gives them.
 
 --bundle makes the supplement of a paper: campaign file, JSON and both kinds of CSV in canonical form, the
@@ -187,17 +187,17 @@ rest gives the same bytes at any time.
   add_quiet(verb, options->quiet);
 }
 
-void print_results(const LookOptions& options) {
-  OpenCampaign open = open_to_look(options.campaign, options.directory);
+void print_results(const ViewOptions& options) {
+  OpenCampaign open = open_for_viewing(options.campaign, options.directory);
   for_each_result_line(open.database, options.point, options.seed,
                        [](const std::string& line) { print(line + '\n'); });
 }
 
 void add_results(VerbSet& verbs) {
-  const auto [verb, options] = verbs.add<LookOptions>(
+  const auto [verb, options] = verbs.add<ViewOptions>(
       print_results, "results", "Print every stored result whole, one JSON object a line", {0, 1, 2, 6}, R"(
 The database holds results deflated; this prints them as their engines wrote them, with blocks, costs and where
-they come from, and with the point and whether its last look counts the seed ("deciding"). One that is surplus
+they come from, and with the point and whether its last stop test counts the seed ("deciding"). One that is extra
 must not enter a mean: which seeds end first depends on the machine. Also while the campaign runs.
 
   peclet results flow-curve.json peclet=10 > runs.jsonl
@@ -212,13 +212,13 @@ must not enter a mean: which seeds end first depends on the machine. Also while 
   add_option(verb, "--seed SEED", options->seed, "Of this seed only")->check(CLI::NonNegativeNumber);
 }
 
-void write_report(const LookOptions& options) {
-  OpenCampaign open = open_to_look(options.campaign, options.directory);
+void write_report(const ViewOptions& options) {
+  OpenCampaign open = open_for_viewing(options.campaign, options.directory);
   deliver(report_html(open.database, current_owner(open.directory)), options.output, options.quiet);
 }
 
 void add_report(VerbSet& verbs) {
-  const auto [verb, options] = verbs.add<LookOptions>(
+  const auto [verb, options] = verbs.add<ViewOptions>(
       write_report, "report", "Make one HTML page of a campaign, for a colleague or a notebook", {0, 1, 2, 6},
       R"(
 The page has every measured quantity over any swept parameter with its intervals, how the mean of each
@@ -254,7 +254,7 @@ Ctrl-C or SIGTERM, which does nothing to the campaign, with the exit code that `
 }
 
 // With `json` the numbers, and no picture; with `quiet` it is not said either what is left out.
-struct PlotOptions : LookOptions {
+struct PlotOptions : ViewOptions {
   FigureChoice choice;
 };
 
@@ -265,7 +265,7 @@ void draw_campaign(const PlotOptions& options) {
   const std::filesystem::path beside = into_file ? script_beside(options.output) : "";
   if (!options.output.empty()) check_output(options.output);
   if (into_file) check_output(beside);
-  OpenCampaign open = open_to_look(options.campaign, options.directory);
+  OpenCampaign open = open_for_viewing(options.campaign, options.directory);
   const Json data = figure_data(open.database, options.choice);
   if (options.json) {
     deliver(data.dump(1) + '\n', options.output, options.quiet);
@@ -398,7 +398,7 @@ Without one of them the verb ends with 1, and says what is missing and what it w
 
 }  // namespace
 
-void add_looking_verbs(VerbSet& verbs) {
+void add_viewing_verbs(VerbSet& verbs) {
   add_status(verbs);
   add_watch(verbs);
   add_explain(verbs);

@@ -158,7 +158,7 @@ verb waits for it; points of a finished one that are no longer decided go on wit
   add_number(verb, "--confidence", options->confidence, *campaign_keys().find("/target/confidence"),
              "/target/confidence");
   add_number(verb, "--minimum", options->minimum, *campaign_keys().find("/realisations/minimum"),
-             "/realisations/minimum: seeds before the first look");
+             "/realisations/minimum: seeds before the first stop test");
   add_number(verb, "--maximum", options->maximum, *campaign_keys().find("/realisations/maximum"),
              "/realisations/maximum: seeds after which a point is capped");
   add_number(verb, "--realisations", options->realisations, whole_number(1, most_realisations),
@@ -270,7 +270,7 @@ void add_hand_over(VerbSet& verbs) {
       hand_over_campaign, "hand-over",
       "Give seeds to a batch system: job arrays that need no database and no daemon", {0, 1, 2, 3, 5, 6, 75},
       R"(
-Turns the seeds that the next looks need into job arrays. The database stays on this machine; nodes see
+Turns the seeds that the next stop tests need into job arrays. The database stays on this machine; nodes see
 the folder --shared and the two programs. Without --follow it hands over once, and `peclet ingest` takes
 in what has been done. The answer is the same, byte for byte, as that of `peclet run`.
 
@@ -296,9 +296,9 @@ taken one, the seeds are out until a job of that name has been looked for.
   add_option(verb, "--template FOLDER", options->template_folder,
              "Folder with job.sh and the commands, for other sites")
       ->check(CLI::ExistingDirectory);
-  verb->add_flag("--ahead", options->ahead, "Hand over the seeds of the look after the next one, too");
+  verb->add_flag("--ahead", options->ahead, "Hand over the seeds of the stop test after the next one, too");
   verb->add_flag("--follow", options->follow,
-                 "Take results in and hand over what the next looks need, until every point is decided");
+                 "Take results in and hand over what the next stop tests need, until every point is decided");
   add_seconds(verb, "--interval", options->interval, "Seconds between two turns of --follow");
   add_seconds(verb, "--backup", options->backup_seconds,
               "Seconds between backups of the database, with --follow");

@@ -45,7 +45,7 @@ std::string message_of(const std::exception& error) {
   return printable_lines(error.what());
 }
 
-OpenCampaign open_to_look(const std::filesystem::path& given, const std::filesystem::path& chosen) {
+OpenCampaign open_for_viewing(const std::filesystem::path& given, const std::filesystem::path& chosen) {
   OpenCampaign open = open_campaign(given, chosen);
   if (is_frozen_for_us(open.directory.database())) {
     say(fmt::format(

@@ -33,6 +33,6 @@ std::string message_of(const std::exception& error);
 //
 // As open_campaign(); says on standard error if the database is read as it is, without the locks and the log
 // that a running campaign has.
-OpenCampaign open_to_look(const std::filesystem::path& given, const std::filesystem::path& chosen);
+OpenCampaign open_for_viewing(const std::filesystem::path& given, const std::filesystem::path& chosen);
 
 }  // namespace peclet::runner

@@ -80,14 +80,14 @@ void judge_worker_count(const WorkerCount& size, RunListener& listener) {
 struct OpenedRun {
   OpenedRun(const ClaimedCampaign& claimed, const RunOptions& options, RunListener& listener)
       : database(open_for_owner(claimed, [&](const std::string& text) { listener.note(text); })),
-        ledger(database, claimed.campaign, claimed.directory, listener, retries),
-        requests(database, ledger, claimed.directory, listener) {
+        state(database, claimed.campaign, claimed.directory, listener, retries),
+        requests(database, state, claimed.directory, listener) {
     requests.carry_out();
-    if (!options.accept_engine.empty()) accept_engine(ledger, claimed.engine, listener);
+    if (!options.accept_engine.empty()) accept_engine(state, claimed.engine, listener);
   }
 
   Database database;
-  Ledger ledger;
+  CampaignState state;
   RequestHandler requests;
   SummedError before;  // the run
 };
@@ -157,7 +157,7 @@ int dispatch(OpenedRun& opened, const RunOptions& options, const ClaimedCampaign
                          directory.root().string(), getpid(), size.workers, size.threads,
                          claimed.command.program.string()));
   ProcessPool pool(size.workers, claimed.command, directory, signals);
-  Dispatcher dispatcher(opened.database, opened.ledger, pool, log, settings, steady_clock::now);
+  Dispatcher dispatcher(opened.database, opened.state, pool, log, settings, steady_clock::now);
   const bool finished = dispatcher.run() == Dispatcher::Ending::finished;
   backup.finish();
   return ending(read_status(opened.database), finished);
@@ -203,8 +203,8 @@ int run(const RunOptions& options, std::optional<int> ceiling, const Conclusion&
     try {
       opened = open_when_it_is_possible(claimed, options, log, signals);
       if (opened) {
-        opened->ledger.set_bounds(bounds_of(options, claimed, ceiling));
-        opened->before = summed_error(opened->ledger.scheduler());
+        opened->state.set_bounds(bounds_of(options, claimed, ceiling));
+        opened->before = summed_error(opened->state.scheduler());
         code = dispatch(*opened, options, claimed, log, signals);
       }
     } catch (const OtherEngine& error) {
@@ -245,8 +245,8 @@ int run_and_conclude(const RunOptions& options, std::string& summary) {
     if (options.jsonl) return;
     std::string text = status_table(status);
     if (options.budget_hours) {
-      text += budget_text(opened.ledger.spent_seconds(), seconds_per_hour * *options.budget_hours,
-                          opened.before, summed_error(opened.ledger.scheduler()));
+      text += budget_text(opened.state.spent_seconds(), seconds_per_hour * *options.budget_hours,
+                          opened.before, summed_error(opened.state.scheduler()));
     }
     if (code == ExitCode::stopped) text += how_to_go_on(options, status);
     std::fputs(text.c_str(), stdout);

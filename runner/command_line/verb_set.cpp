@@ -131,7 +131,7 @@ void add_quiet(CLI::App* verb, bool& quiet) {
 void add_accept_engine(CLI::App* verb, std::string& name) {
   add_option(verb, "--accept-engine", name,
              "Version, or 6 or more digits of the hash, of the engine that is there now: results of "
-             "another one at open points are kept apart");
+             "another one at open points are set aside");
 }
 
 void add_seconds(CLI::App* verb, const char* name, double& seconds, const char* meaning) {

@@ -77,7 +77,7 @@ class VerbSet {
 
 // One function a verb, in the file of its group. In the order in which help lists them.
 void add_running_verbs(VerbSet& verbs);
-void add_looking_verbs(VerbSet& verbs);
+void add_viewing_verbs(VerbSet& verbs);
 void add_changing_verbs(VerbSet& verbs);
 
 // Options that several verbs have.

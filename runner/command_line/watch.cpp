@@ -61,7 +61,7 @@ class SilentKeys {
 
 struct Sight {
   std::string text;
-  int standing = 0;
+  int exit_code = 0;
   std::string curve{};  // where there is room for it
 };
 
@@ -99,7 +99,7 @@ Sight sight_of(const WatchOptions& options, std::size_t width) {
   try {
     OpenCampaign open = open_campaign(options.campaign, options.directory);
     const CampaignStatus status = read_status(open.database, current_owner(open.directory));
-    return {status_table(status, width) + workers_text(status, width), standing(status),
+    return {status_table(status, width) + workers_text(status, width), exit_code_of(status),
             curve_text(status, width)};
   } catch (const BeingSetUp& error) {
     return waits(error.what());
@@ -156,7 +156,7 @@ int watch_campaign(const WatchOptions& options) {
       std::fflush(stdout);
       before = sight.text;
     }
-    if (sight.standing != ExitCode::unfinished || signals.wait(interval)) return sight.standing;
+    if (sight.exit_code != ExitCode::unfinished || signals.wait(interval)) return sight.exit_code;
   }
 }
 
@@ -169,8 +169,8 @@ int serve_campaign(const ServeOptions& options) {
   fmt::print(stderr, "peclet: the page of {} is there; Ctrl-C ends it, and does nothing to the campaign\n",
              printable(campaign.name()));
   server.serve(signals.descriptor(), [&](const HttpRequest& request) { return answer(campaign, request); });
-  campaign.look();
-  return campaign.standing();
+  campaign.stop_test();
+  return campaign.exit_code();
 }
 
 }  // namespace peclet::runner

@@ -114,7 +114,7 @@ Json as_json(const Backup& backup) {
 std::string as_text(const Backup& backup, const CampaignDirectory& directory, bool checkpoints) {
   std::string text = fmt::format("{}: {} results, {:.1f} MB, checked, in {:.1f} s\n", backup.file.string(),
                                  backup.results, 1e-6 * static_cast<double>(backup.bytes), backup.seconds);
-  text += "in it: the campaign as last run and every committed result, attempt, look and event\n";
+  text += "in it: the campaign as last run and every committed result, attempt, stop test and event\n";
   if (backup.files.there > 0)
     text += fmt::format("beside it: {} files of realisations\n", backup.files.there);
   if (backup.files.lacking > 0) {

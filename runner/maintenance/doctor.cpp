@@ -101,7 +101,7 @@ void examine_results(Database& database, const CampaignUnderExamination& examine
   }
 }
 
-void examine_looks(Database& database, Findings& findings) {
+void examine_stop_tests(Database& database, Findings& findings) {
   const TargetRecord target = database.campaign().target;
   for (const PointRecord& point : database.points()) {
     if (point.suspect) {
@@ -121,15 +121,15 @@ void examine_looks(Database& database, Findings& findings) {
              "find out why seeds repeat each other (a start list with equal files, an engine that ignores "
              "the seed), and run in another --directory"});
       }
-      checked_look(database, point, target);
+      checked_stop_test(database, point, target);
     } catch (const IntegrityError& error) {
-      findings.push_back({"look-differs", Severity::integrity, error.what(),
-                          "`peclet doctor --repair` looks again at the stored results",
+      findings.push_back({"stop-test-differs", Severity::integrity, error.what(),
+                          "`peclet doctor --repair` tests the stored results again",
                           [id = point.id, target](Database& owner) {
-                            const std::vector<Look> looks = replay_looks(owner.outcomes(id), target.target,
-                                                                         target.minimum, target.maximum);
+                            const std::vector<StopTest> stop_tests = replay_stop_tests(
+                                owner.outcomes(id), target.target, target.minimum, target.maximum);
                             Transaction booking(owner.connection());
-                            ResultStore(owner).store_looks(id, looks);
+                            ResultStore(owner).store_stop_tests(id, stop_tests);
                             EventStore(owner.connection())
                                 .write("repaired", id, std::nullopt, "looked again at the stored results");
                             booking.commit();
@@ -198,7 +198,7 @@ void examine_database(const CampaignUnderExamination& examined, Findings& findin
     Database database = Database::open_reader(examined.directory.database());
     if (const std::string found = damage(database.connection()); !found.empty()) return damaged(found);
     examine_results(database, examined, findings);
-    examine_looks(database, findings);
+    examine_stop_tests(database, findings);
     examine_states(database, examined, findings);
     examine_files(database, examined, findings);
     examine_left_files(database, examined, findings);
@@ -261,7 +261,7 @@ std::string as_json(const CampaignUnderExamination& examined, const Findings& fi
   return Json{{"schema_version", 1},
               {"folder", examined.directory.root().string()},
               {"owner", examined.owner ? Json(*examined.owner) : Json(nullptr)},
-              {"standing", exit_code(findings)},
+              {"exit_code", exit_code(findings)},
               {"findings", list}}
              .dump(2) +
          "\n";

@@ -42,7 +42,7 @@ struct CampaignUnderExamination {
 
 using Findings = std::vector<Finding>;
 
-// Each looks at one side of it (doctor_files.cpp, doctor_machine.cpp). A reader's database.
+// Each stop tests at one side of it (doctor_files.cpp, doctor_machine.cpp). A reader's database.
 void examine_files(Database& database, const CampaignUnderExamination& examined, Findings& findings);
 void examine_left_files(Database& database, const CampaignUnderExamination& examined, Findings& findings);
 void examine_backups(Database& database, const CampaignUnderExamination& examined, Findings& findings);

@@ -69,15 +69,15 @@ void remove_all_of(const std::vector<fs::path>& files) {
 }
 
 enum class Need {
-  open,     // its seed may be wanted
-  surplus,  // its seed lies beyond the look that has decided the point
-  none      // its seed has ended
+  open,   // its seed may be wanted
+  extra,  // its seed lies beyond the stop test that has decided the point
+  none    // its seed has ended
 };
 
-// The seeds below the look all have ended, unless one is to be run again.
-bool is_surplus(const RealisationRecord& record, const std::vector<LookRecord>& looks) {
-  return !looks.empty() && looks.back().look.verdict != Verdict::more &&
-         record.seed >= looks.back().look.seeds;
+// The seeds below the stop test all have ended, unless one is to be run again.
+bool is_extra(const RealisationRecord& record, const std::vector<StopTestRecord>& stop_tests) {
+  return !stop_tests.empty() && stop_tests.back().stop_test.verdict != Verdict::more &&
+         record.seed >= stop_tests.back().stop_test.seeds;
 }
 
 // What each checkpoint is good for, by its name.
@@ -85,12 +85,12 @@ std::map<std::string, Need> checkpoint_names(Database& database, const CampaignD
   std::map<std::string, Need> names;
   for (const auto& points : {database.points(), database.inactive_points()}) {
     for (const PointRecord& point : points) {
-      if (point.kept_apart) continue;  // a checkpoint of its scene is of the engine that is used now
-      const std::vector<LookRecord> looks = database.looks(point.id);
+      if (point.set_aside) continue;  // a checkpoint of its scene is of the engine that is used now
+      const std::vector<StopTestRecord> stop_tests = database.stop_tests(point.id);
       for (const RealisationRecord& record : database.realisations(point.id)) {
-        const Need need = !record.cause.empty()       ? Need::none
-                          : is_surplus(record, looks) ? Need::surplus
-                                                      : Need::open;
+        const Need need = !record.cause.empty()          ? Need::none
+                          : is_extra(record, stop_tests) ? Need::extra
+                                                         : Need::open;
         names[directory.checkpoint(point.hash, record.seed).filename().string()] = need;
       }
     }
@@ -100,12 +100,12 @@ std::map<std::string, Need> checkpoint_names(Database& database, const CampaignD
 
 void examine_checkpoints(Database& database, const CampaignUnderExamination& examined, Findings& findings) {
   const std::map<std::string, Need> names = checkpoint_names(database, examined.directory);
-  std::vector<fs::path> ended, surplus, rejected, strays;
+  std::vector<fs::path> ended, extra, rejected, strays;
   for (const fs::path& file : files_in(examined.directory.checkpoints())) {
     const auto seed = names.find(checkpoint_of(file).filename().string());
     if (seed != names.end()) {
       if (seed->second == Need::none) ended.push_back(file);
-      if (seed->second == Need::surplus) surplus.push_back(file);
+      if (seed->second == Need::extra) extra.push_back(file);
     } else if (file.filename().string().find(".checkpoint.rejected") != std::string::npos) {
       rejected.push_back(file);
     } else if (file.extension() != ".tmp") {
@@ -120,15 +120,15 @@ void examine_checkpoints(Database& database, const CampaignUnderExamination& exa
          "`peclet run` and `peclet doctor --repair` remove them",
          [ended](Database&) { remove_all_of(ended); }});
   }
-  if (!surplus.empty() && !examined.owner) {
+  if (!extra.empty() && !examined.owner) {
     findings.push_back(
-        {"checkpoint-surplus", Severity::note,
+        {"checkpoint-extra", Severity::note,
          fmt::format("{} checkpoints ({:.1f} MB) are of seeds that their points, which are decided, did not "
                      "need: {}",
-                     surplus.size(), megabytes(surplus), listed(surplus)),
+                     extra.size(), megabytes(extra), listed(extra)),
          "`peclet doctor --repair` removes them; kept, they save these seeds' time should a tolerance be "
          "tightened",
-         [surplus](Database&) { remove_all_of(surplus); }});
+         [extra](Database&) { remove_all_of(extra); }});
   }
   if (!rejected.empty()) {
     findings.push_back({"checkpoint-rejected", Severity::note,

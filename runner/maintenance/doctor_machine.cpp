@@ -87,11 +87,11 @@ RoomNeeded still_needed(Database& database, const CampaignDirectory& directory) 
   const TargetRecord target = database.campaign().target;
   std::uintmax_t seeds = 0;
   for (const PointRecord& point : database.points()) {
-    const std::vector<LookRecord> looks = database.looks(point.id);
-    if (!looks.empty() && looks.back().look.verdict != Verdict::more) continue;
+    const std::vector<StopTestRecord> stop_tests = database.stop_tests(point.id);
+    if (!stop_tests.empty() && stop_tests.back().stop_test.verdict != Verdict::more) continue;
     const int ended = database.counts(point.id).terminal();
-    // The next look is what is certain to be needed.
-    const int wanted = looks.empty() ? target.minimum : looks.back().look.seeds * 5 / 4 + 1;
+    // The next stop test is what is certain to be needed.
+    const int wanted = stop_tests.empty() ? target.minimum : stop_tests.back().stop_test.seeds * 5 / 4 + 1;
     seeds += static_cast<std::uintmax_t>(std::max(0, std::min(wanted, target.maximum) - ended));
   }
   std::uintmax_t checkpoint = 0;
@@ -184,7 +184,7 @@ void examine_disk(Database& database, const CampaignUnderExamination& examined, 
   if (free < expected.bytes) {
     findings.push_back(
         {"disk-short", Severity::warning,
-         fmt::format("{:.1f} MB are free, and the campaign may need {:.1f} MB until its next looks",
+         fmt::format("{:.1f} MB are free, and the campaign may need {:.1f} MB until its next stop tests",
                      1e-6 * static_cast<double>(free), 1e-6 * static_cast<double>(expected.bytes)),
          "make room; a run waits when the disk is full, and loses nothing"});
   }

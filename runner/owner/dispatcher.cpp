@@ -23,7 +23,7 @@ constexpr seconds lease_display_interval{2};
 // Workers that have not checkpointed and left by then are killed; the seeds lose what came after the last
 // checkpoint.
 constexpr seconds drain_patience{60};
-constexpr seconds surplus_patience{10};
+constexpr seconds extra_patience{10};
 // An engine that exits by itself this often before it is given anything to do will not do better the next
 // time.
 constexpr int most_early_exits = 3;
@@ -63,10 +63,10 @@ constexpr std::chrono::seconds request_interval{1};
 
 }  // namespace
 
-Dispatcher::Dispatcher(Database& database, Ledger& ledger, WorkerPool& pool, RunListener& listener,
+Dispatcher::Dispatcher(Database& database, CampaignState& state, WorkerPool& pool, RunListener& listener,
                        DispatchSettings settings, Clock clock)
     : database_(database),
-      ledger_(ledger),
+      state_(state),
       pool_(pool),
       listener_(listener),
       settings_(std::move(settings)),
@@ -80,7 +80,7 @@ Dispatcher::Dispatcher(Database& database, Ledger& ledger, WorkerPool& pool, Run
 }
 
 Dispatcher::Ending Dispatcher::run() {
-  while (!ledger_.scheduler().finished() && stopping_ == Stopping::no) {
+  while (!state_.scheduler().finished() && stopping_ == Stopping::no) {
     turn();
     if (has_nothing_to_do()) {
       listener_.note(why_nothing());
@@ -90,7 +90,7 @@ Dispatcher::Ending Dispatcher::run() {
   if (stopping_ == Stopping::no) stop(Stopping::finished);
   while (anyone_there() || (unbooked_ && stopping_ == Stopping::finished)) turn();
   settle_spool();
-  return ledger_.scheduler().finished() ? Ending::finished : Ending::stopped;
+  return state_.scheduler().finished() ? Ending::finished : Ending::stopped;
 }
 
 // A process that has ended is no longer there, even if that could not be booked yet.
@@ -105,7 +105,7 @@ bool Dispatcher::anyone_there() const {
 
 // Nobody here has work, there is none to give out, and yet some point is open.
 bool Dispatcher::has_nothing_to_do() const {
-  return busy() == 0 && !unbooked_ && !ledger_.scheduler().finished() && !ledger_.next();
+  return busy() == 0 && !unbooked_ && !state_.scheduler().finished() && !state_.next();
 }
 
 int Dispatcher::busy() const {
@@ -114,7 +114,7 @@ int Dispatcher::busy() const {
 }
 
 const char* Dispatcher::why_nothing() const {
-  if (ledger_.scheduler().next()) return "no seed that is still needed fits into what is left of the budget";
+  if (state_.scheduler().next()) return "no seed that is still needed fits into what is left of the budget";
   return "every seed that is still to be run is handed over; `peclet ingest` takes results in";
 }
 
@@ -155,7 +155,7 @@ void Dispatcher::judge_time() {
     listener_.note("the time limit is reached: workers checkpoint and stop");
     stop(Stopping::draining);
   }
-  const seconds patience = stopping_ == Stopping::finished ? surplus_patience : drain_patience;
+  const seconds patience = stopping_ == Stopping::finished ? extra_patience : drain_patience;
   if ((stopping_ == Stopping::finished || stopping_ == Stopping::draining) &&
       awake_.awake() - stopping_since_ > patience) {
     stop(Stopping::at_once);
@@ -168,7 +168,7 @@ void Dispatcher::show_leases() {
   for (Worker& worker : now_.workers) {
     if (!worker.assignment || worker.assignment->shown) continue;
     Assignment& about = *worker.assignment;
-    ledger_.renew_lease(about.given_seed, worker.watch.progress());
+    state_.renew_lease(about.given_seed, worker.watch.progress());
     about.shown = true;
   }
 }
@@ -190,7 +190,7 @@ void Dispatcher::report() {
   const Time now = clock_();
   if (now - reported_ < report_interval) return;
   reported_ = now;
-  RunReport report = ledger_.report(pool_.size());
+  RunReport report = state_.report(pool_.size());
   report.workers = pool_.size();
   report.busy = busy();
   report.results = now_.results;
@@ -210,7 +210,7 @@ void Dispatcher::handle(const Hello& event) {
     condemn(event.worker, {AttemptOutcome::garbled, "said hello twice"});
     return;
   }
-  worker.engine = ledger_.admit_engine(event.engine);
+  worker.engine = state_.admit_engine(event.engine);
   worker.takes_ahead = event.ahead;
   worker.watch.rest(awake_.awake());
 }
@@ -229,8 +229,8 @@ void Dispatcher::handle(const ResultSpooled& event) {
   std::string why;
   if (event.spool != about.given_seed.job.spool) {
     condemn(event.worker, {AttemptOutcome::garbled, "spooled its result elsewhere"});
-  } else if (ledger_.take_result(about.given_seed, event.sha256, worker.watch.progress().step,
-                                 processor_seconds_since(about.given), why)) {
+  } else if (state_.take_result(about.given_seed, event.sha256, worker.watch.progress().step,
+                                processor_seconds_since(about.given), why)) {
     ++now_.results;
     now_.early_exits = 0;
     go_on(event.worker);
@@ -311,8 +311,8 @@ void Dispatcher::exited_without_job(int number, const ExitStatus& ending) {
   if (stopping_ != Stopping::no || watch.is_recalled()) return;
   const bool own_doing = watch.condemned() || outcome_of(ending) != AttemptOutcome::killed;
   const std::string how = watch.condemned() ? watch.condemned()->message : to_string(ending);
-  ledger_.warn(fmt::format("worker {} ended {}: {}", number,
-                           watch.is_starting() ? "before it said hello" : "without a job", how));
+  state_.warn(fmt::format("worker {} ended {}: {}", number,
+                          watch.is_starting() ? "before it said hello" : "without a job", how));
   now_.early_exits += own_doing ? most_early_kills / most_early_exits + 1 : 1;
   if (now_.early_exits > most_early_kills) {
     throw EngineError(
@@ -334,7 +334,7 @@ void Dispatcher::obey_stop_signal() {
 
 // Idle workers first: a seed waits for none that could begin it.
 void Dispatcher::give_out_seeds() {
-  if (stopping_ != Stopping::no || pause_.lasts() || ledger_.scheduler().finished()) return;
+  if (stopping_ != Stopping::no || pause_.lasts() || state_.scheduler().finished()) return;
   for (int number = 0; number < pool_.size(); ++number) {
     Worker& worker = at(number);
     if (!worker.watch.is_idle() || worker.watch.is_recalled()) continue;
@@ -352,7 +352,7 @@ void Dispatcher::give_out_seeds() {
 
 // Books the next seed as this worker's, to be sent after the commit; nothing when there is none.
 std::optional<Dispatcher::Assignment> Dispatcher::next_assignment(int number) {
-  std::optional<GivenSeed> given_seed = ledger_.give_out(number, pool_.process(number), at(number).engine);
+  std::optional<GivenSeed> given_seed = state_.give_out(number, pool_.process(number), at(number).engine);
   if (!given_seed) return std::nullopt;
   given_seed->job.threads = settings_.threads;
   given_seed->job.checkpoint_seconds = settings_.checkpoint_seconds;
@@ -368,7 +368,7 @@ std::optional<Dispatcher::Assignment> Dispatcher::next_assignment(int number) {
 bool Dispatcher::takes_a_second_job(const Worker& worker) const {
   if (!worker.watch.is_busy() || !worker.takes_ahead || worker.waiting) return false;
   if (worker.watch.condemned() || worker.watch.is_recalled()) return false;
-  const std::optional<double> seconds = ledger_.wall_seconds(worker.assignment->given_seed);
+  const std::optional<double> seconds = state_.wall_seconds(worker.assignment->given_seed);
   return seconds && *seconds < longest_job_to_queue_behind;
 }
 
@@ -407,7 +407,7 @@ void Dispatcher::end_assignment(int number, const AttemptEnd& end) {
   AttemptEnd complete = end;
   complete.step = at(number).watch.progress().step;
   complete.held_seconds = processor_seconds_since(about.begun);
-  ledger_.end_attempt(about.given_seed, complete);
+  state_.end_attempt(about.given_seed, complete);
   go_on(number);
 }
 
@@ -416,7 +416,7 @@ bool Dispatcher::left_result(int number, const Assignment& about, std::int64_t s
   const std::optional<AttemptReason>& condemned = at(number).watch.condemned();
   std::string why;
   if ((condemned && condemned->outcome == AttemptOutcome::garbled) || !is_there(about.given_seed.job.spool) ||
-      !ledger_.take_result(about.given_seed, "", step, processor_seconds_since(about.given), why)) {
+      !state_.take_result(about.given_seed, "", step, processor_seconds_since(about.given), why)) {
     return false;
   }
   ++now_.results;
@@ -424,7 +424,7 @@ bool Dispatcher::left_result(int number, const Assignment& about, std::int64_t s
 }
 
 void Dispatcher::give_back(const Assignment& waiting) {
-  ledger_.end_attempt(waiting.given_seed, {AttemptOutcome::drained, 0, {}, "waited behind another job"});
+  state_.end_attempt(waiting.given_seed, {AttemptOutcome::drained, 0, {}, "waited behind another job"});
 }
 
 // Signals are obeyed at once, whatever may become of the booking.
@@ -464,7 +464,7 @@ bool Dispatcher::book() {
     const std::optional<Hindrance> hindrance = hindrance_in(error, root(), bytes_of_news());
     if (!hindrance) throw;
     now_ = std::move(before);
-    ledger_.roll_back();
+    state_.roll_back();
     find_running_seeds();
     unbooked_ = true;
     begin_pause(*hindrance);
@@ -476,7 +476,7 @@ bool Dispatcher::book() {
 
 bool Dispatcher::follow_up() {
   try {
-    ledger_.after_commit();  // a checkpoint that is discarded goes before its seed's next attempt begins
+    state_.after_commit();  // a checkpoint that is discarded goes before its seed's next attempt begins
   } catch (const std::exception& error) {
     const std::optional<Hindrance> hindrance = hindrance_in(error, root());
     if (!hindrance) throw;
@@ -556,11 +556,11 @@ bool Dispatcher::lacked_room(int number) {
 // be booked any more.
 void Dispatcher::settle_spool() {
   try {
-    ledger_.ingest_spool();
+    state_.ingest_spool();
   } catch (const std::exception& error) {
     const std::optional<Hindrance> hindrance = hindrance_in(error, root());
     if (!hindrance) throw;
-    ledger_.roll_back();  // nothing of it counts: what is decided is what the database says
+    state_.roll_back();  // nothing of it counts: what is decided is what the database says
     listener_.warn(hindrance->text + "; what workers did last is booked by the next run");
   }
 }
@@ -586,7 +586,7 @@ void Dispatcher::find_running_seeds() {
     Worker& worker = at(number);
     bool wanted = true;
     for (std::optional<Assignment>* const about : {&worker.assignment, &worker.waiting}) {
-      if (*about && !ledger_.find_place((*about)->given_seed)) wanted = false;
+      if (*about && !state_.find_place((*about)->given_seed)) wanted = false;
     }
     if (wanted || worker.watch.is_recalled()) continue;
     worker.watch.recall();

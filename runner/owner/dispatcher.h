@@ -20,7 +20,7 @@
 
 #include "runner/campaign/paths.h"
 #include "runner/engines/worker_process.h"
-#include "runner/owner/ledger.h"
+#include "runner/owner/campaign_state.h"
 #include "runner/owner/pause.h"
 
 namespace peclet::runner {
@@ -33,7 +33,7 @@ struct DispatchSettings {
   // Called at every turn, about twice a second or more often. True when folders into which engines write had
   // been deleted and were made anew.
   std::function<bool()> chore = [] { return false; };
-  // Called about once a second, between two bookings: carries out what people ask for. True when the ledger's
+  // Called about once a second, between two bookings: carries out what people ask for. True when the state's
   // picture was taken again; a hindrance that passes leaves it taken again, and nothing changed.
   std::function<bool()> requests = [] { return false; };
 };
@@ -44,7 +44,7 @@ class Dispatcher {
   using Clock = std::function<Time()>;
 
   // All references must outlive the dispatcher.
-  Dispatcher(Database& database, Ledger& ledger, WorkerPool& pool, RunListener& listener,
+  Dispatcher(Database& database, CampaignState& state, WorkerPool& pool, RunListener& listener,
              DispatchSettings settings, Clock clock);
 
   enum class Ending { finished, stopped };
@@ -102,7 +102,7 @@ class Dispatcher {
   void settle_spool();
   void obey_stop_signal();
   void hear_requests();
-  // Finds the seeds that workers have in the ledger's new picture, and recalls workers with one that nobody
+  // Finds the seeds that workers have in the state's new picture, and recalls workers with one that nobody
   // wants.
   void find_running_seeds();
   void start_workers();
@@ -138,7 +138,7 @@ class Dispatcher {
   const char* why_nothing() const;
 
   Database& database_;
-  Ledger& ledger_;
+  CampaignState& state_;
   WorkerPool& pool_;
   RunListener& listener_;
   DispatchSettings settings_;

@@ -52,15 +52,17 @@ Json json_of(const AttemptFailed& event) {
           {"message", event.message}};
 }
 
-Json json_of(const Looked& event) {
-  return {{"event", "look"}, {"point", point_json(event.point)}, {"look", look_json(event.look)}};
+Json json_of(const StopTestMade& event) {
+  return {{"event", "stop_test"},
+          {"point", point_json(event.point)},
+          {"stop_test", stop_test_json(event.stop_test)}};
 }
 
 Json json_of(const Decided& event) {
   return {{"event", "decided"},
           {"point", point_json(event.point)},
-          {"verdict", to_string(event.look.verdict)},
-          {"look", look_json(event.look)}};
+          {"verdict", to_string(event.stop_test.verdict)},
+          {"stop_test", stop_test_json(event.stop_test)}};
 }
 
 Json json_of(const ShortageBegan& event) {
@@ -75,7 +77,7 @@ Json json_of(const RunEnded& event) {
           {"message", event.message.empty() ? Json(nullptr) : Json(event.message)}};
 }
 
-// {point}: rows of a point; {look}: of a look.
+// {point}: rows of a point; {stop_test}: of a stop test.
 constexpr const char* event_rows = R"(
 /at | string | UTC, as 2026-11-27T07:31:15Z.
 /schema_version | integer = 1
@@ -103,14 +105,14 @@ constexpr const char* event_rows = R"(
 /blamed, /given_up | true or false
 /message | string
 
--- look | A closed cohort was looked at.
+-- stop_test | A stop test was made.
 {point}
-{look}
+{stop_test}
 
 -- decided | The point needs no more seeds.
 {point}
 /verdict | one of converged, converged-with-losses, capped, failed, complete, complete-with-losses
-{look}
+{stop_test}
 
 -- shortage-begins | The run pauses: a disk or quota is full or fails, or another program has locked the
     database. May come again, of something else in its way, before shortage-ends.
@@ -129,19 +131,19 @@ constexpr const char* point_rows = R"(
 /point/label | string
 )";
 
-constexpr const char* look_rows = R"(
-/look | object | As in the export.
-/look/count, /look/seeds, /look/lost | count
-/look/mean, /look/standard_error, /look/half_width, /look/skewness | number or null
-/look/transient | true or false or null
-/look/near_maximum | true or false
-/look/repeated_seeds | array
-/look/repeated_seeds/* | count
-/look/verdict | one of more, converged, converged-with-losses, capped, failed, complete, complete-with-losses
-/look/observables? | array | If there are several.
-/look/uncontrolled | object
-/look/uncontrolled/count | count
-/look/uncontrolled/mean, /look/uncontrolled/standard_error, /look/uncontrolled/half_width | number or null
+constexpr const char* stop_test_rows = R"(
+/stop_test | object | As in the export.
+/stop_test/count, /stop_test/seeds, /stop_test/lost | count
+/stop_test/mean, /stop_test/standard_error, /stop_test/half_width, /stop_test/skewness | number or null
+/stop_test/transient | true or false or null
+/stop_test/near_maximum | true or false
+/stop_test/repeated_seeds | array
+/stop_test/repeated_seeds/* | count
+/stop_test/verdict | one of more, converged, converged-with-losses, capped, failed, complete, complete-with-losses
+/stop_test/observables? | array | If there are several.
+/stop_test/plain | object
+/stop_test/plain/count | count
+/stop_test/plain/mean, /stop_test/plain/standard_error, /stop_test/plain/half_width | number or null
 )";
 
 }  // namespace
@@ -149,7 +151,7 @@ constexpr const char* look_rows = R"(
 const KindTables& event_keys() {
   static const KindTables tables(
       "One line of peclet run --jsonl", "event",
-      fmt::format(event_rows, fmt::arg("point", point_rows), fmt::arg("look", look_rows)));
+      fmt::format(event_rows, fmt::arg("point", point_rows), fmt::arg("stop_test", stop_test_rows)));
   return tables;
 }
 

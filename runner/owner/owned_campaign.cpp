@@ -133,8 +133,8 @@ OwnedCampaign::OwnedCampaign(const fs::path& file, const fs::path& chosen, bool 
                              const std::string& accepted_engine)
     : ClaimedCampaign(file, chosen, force, accepted_engine), database(open_for_owner(*this)) {}
 
-void accept_engine(Ledger& ledger, const Json& engine, RunListener& listener) {
-  if (ledger.accept_engine(engine_identity(engine)) == 0) {
+void accept_engine(CampaignState& state, const Json& engine, RunListener& listener) {
+  if (state.accept_engine(engine_identity(engine)) == 0) {
     listener.note(
         "no point that is still to be run has results of another engine: there was nothing to accept");
   }
@@ -143,7 +143,7 @@ void accept_engine(Ledger& ledger, const Json& engine, RunListener& listener) {
 std::string acceptance_hint(const std::string& verb_and_file, const Json& engine) {
   return fmt::format(
       ". Run with the engine it was begun with, or accept this one with `peclet {} --accept-engine {}`: what "
-      "points that are still to be run have is then kept apart, and they begin again",
+      "points that are still to be run have is then set aside, and they begin again",
       verb_and_file, engine.at("binary_sha256").get<std::string>().substr(0, 12));
 }
 

@@ -8,7 +8,7 @@
 #include "runner/campaign/paths.h"
 #include "runner/engines/engine_process.h"
 #include "runner/engines/scene_check.h"
-#include "runner/owner/ledger.h"
+#include "runner/owner/campaign_state.h"
 #include "runner/owner/run_listener.h"
 #include "runner/statistics/scheduler.h"
 #include "runner/store/campaign_directory.h"
@@ -50,7 +50,7 @@ struct OwnedCampaign : ClaimedCampaign {
 };
 
 // Keeps the results of other engines than this one apart at the points that are still to be run.
-void accept_engine(Ledger& ledger, const Json& engine, RunListener& listener);
+void accept_engine(CampaignState& state, const Json& engine, RunListener& listener);
 
 // What accepts the engine that an OtherEngine was thrown for: "; accept it with `peclet run FILE
 // --accept-engine 1a2b3c4d5e6f`: ...".

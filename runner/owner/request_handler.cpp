@@ -231,7 +231,7 @@ bool RequestHandler::carry_out() {
       listener_.warn(fmt::format("requests/{}: is no request: {}; it is {}", plain_name(file),
                                  plain(error.what()), now));
     } catch (const DatabaseError&) {
-      ledger_.roll_back();
+      state_.roll_back();
       throw;
     }
   }
@@ -243,10 +243,10 @@ void RequestHandler::carry_out(const Request& request) {
   try {
     Transaction booking(database_.connection());
     Done done = std::visit([&](const auto& wish) { return apply(wish); }, request.wish);
-    ledger_.refresh();
+    state_.refresh();
     EventStore(database_.connection()).write(done.kind, done.point, std::nullopt, done.message, request.name);
     booking.commit();
-    ledger_.after_commit();
+    state_.after_commit();
     listener_.note(fmt::format("{}: {}", done.kind, done.message));
     return;
   } catch (const InputError& error) {
@@ -254,7 +254,7 @@ void RequestHandler::carry_out(const Request& request) {
   } catch (const OtherEngine& error) {
     why = fmt::format("{}: stop the run first, then `peclet run` says how to accept it", error.what());
   }
-  ledger_.roll_back();
+  state_.roll_back();
   Transaction refusal(database_.connection());
   EventStore(database_.connection()).write("refused", std::nullopt, std::nullopt, why, request.name);
   refusal.commit();
@@ -274,12 +274,12 @@ RequestHandler::Done RequestHandler::apply(const TakeOver& wish) {
                                wish.file.string())};
   }
   const Campaign campaign = parse_campaign(parse_json(text, wish.file.string()), wish.file.string());
-  if (ledger_.has_engine() && campaign.engine != ledger_.campaign().engine) {
+  if (state_.has_engine() && campaign.engine != state_.campaign().engine) {
     throw InputError(wish.file.string(), "/engine", Json(campaign.engine).dump(),
                      "cannot be changed while the campaign runs: stop it, and start it again");
   }
   const std::string changes = describe_changes(database_, campaign);
-  ledger_.take_over(campaign);
+  state_.take_over(campaign);
   return {"set", changes};
 }
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "runner/campaign/paths.h"
-#include "runner/owner/ledger.h"
+#include "runner/owner/campaign_state.h"
 #include "runner/owner/request.h"
 #include "runner/owner/run_listener.h"
 #include "runner/store/campaign_directory.h"
@@ -26,15 +26,15 @@ std::size_t find_point(const std::vector<PointRecord>& points, const std::string
 class RequestHandler {
  public:
   // All references must outlive it.
-  RequestHandler(Database& database, Ledger& ledger, CampaignDirectory directory, RunListener& listener)
-      : database_(database), ledger_(ledger), directory_(std::move(directory)), listener_(listener) {}
+  RequestHandler(Database& database, CampaignState& state, CampaignDirectory directory, RunListener& listener)
+      : database_(database), state_(state), directory_(std::move(directory)), listener_(listener) {}
 
   bool any_waits() const { return !waiting_requests(directory_).empty(); }
 
   // Carries out what waits, each request in a transaction of its own. One that cannot be carried out becomes
   // an event `refused` that says why; a file that is no request is set aside with a warning. True when the
-  // ledger's picture was taken again: the seeds that workers have are then to be found again. Throws
-  // DatabaseError: the request it came with waits on, and the ledger's picture was taken again.
+  // state's picture was taken again: the seeds that workers have are then to be found again. Throws
+  // DatabaseError: the request it came with waits on, and the state's picture was taken again.
   bool carry_out();
 
  private:
@@ -50,7 +50,7 @@ class RequestHandler {
   Done apply(const Retry& wish);
 
   Database& database_;
-  Ledger& ledger_;
+  CampaignState& state_;
   CampaignDirectory directory_;
   RunListener& listener_;
   std::set<fs::path> left_alone_;  // no requests, and could not be set aside

@@ -40,15 +40,16 @@ struct AttemptFailed {
   bool given_up = false;
 };
 
-struct Looked {
+struct StopTestMade {
   PointName point;
-  Look look;
+  StopTest stop_test;
 };
 
-// No more seeds are needed: the last look is within the tolerance, or all seeds that are allowed have ended.
+// No more seeds are needed: the last stop test is within the tolerance, or all seeds that are allowed have
+// ended.
 struct Decided {
   PointName point;
-  Look look;
+  StopTest stop_test;
 };
 
 // Something is in the run's way: it pauses. Told again of whatever else gets in its way before ShortageEnded.
@@ -62,14 +63,14 @@ struct RunEnded {
   std::string message;  // of the error that ended it, or ""
 };
 
-using RunEvent =
-    std::variant<RunBegan, SeedEnded, AttemptFailed, Looked, Decided, ShortageBegan, ShortageEnded, RunEnded>;
+using RunEvent = std::variant<RunBegan, SeedEnded, AttemptFailed, StopTestMade, Decided, ShortageBegan,
+                              ShortageEnded, RunEnded>;
 
 struct RunReport {
   int points = 0, decided = 0, converged = 0;  // converged, or complete: also with losses
   bool has_target = true;
   int cancelled = 0;                      // before they were decided
-  int seeds_ended = 0, seeds_wanted = 0;  // of the looks that are next or have decided
+  int seeds_ended = 0, seeds_wanted = 0;  // of the stop tests that are next or have decided
   int workers = 0, busy = 0;
   int results = 0;     // of this run
   double elapsed = 0;  // seconds of this run

@@ -29,9 +29,9 @@ void require_tolerance(const Target& target, const std::string& path) {
 
 // "converged" of a point that has converged or is complete, "undecided" of one that has ended otherwise,
 // "provisional" of one still open.
-const char* standing_of(const Json& point) {
+const char* state_of(const Json& point) {
   if (!point.at("decided").get<bool>()) return "provisional";
-  const std::optional<Verdict> verdict = verdict_of(point.at("standing").get<std::string>());
+  const std::optional<Verdict> verdict = verdict_of(point.at("state").get<std::string>());
   return verdict && is_reached(*verdict) ? "converged" : "undecided";
 }
 
@@ -53,7 +53,7 @@ Json point_json(const Json& point, const Json& estimate, const std::string& path
           {"half_width", number(2)},
           {"good_enough", is_known ? point.at("good_enough").value(path, Json()) : Json(nullptr)},
           {"count", is_known ? estimate[3] : point.at("endings").at("ended")},
-          {"standing", standing_of(point)},
+          {"state", state_of(point)},
           {"jammed", point.at("endings").at("has_jammed")}};
 }
 

@@ -40,9 +40,9 @@ std::string state_of(const PointSummary& point, const Json& known, double softes
   return is_soft(known, softest) ? "soft" : "flowing";
 }
 
-// Sets what the seeds of the look, or all that have ended, say.
+// Sets what the seeds of the stop test, or all that have ended, say.
 void add_seeds(Json& made, Database& database, const PointSummary& point) {
-  const int end = point.looks.empty() ? std::numeric_limits<int>::max() : point.looks.back().seeds;
+  const int end = point.stop_tests.empty() ? std::numeric_limits<int>::max() : point.stop_tests.back().seeds;
   RunningEstimate overlaps;
   double cpu_seconds = 0;
   for (const RealisationRecord& seed : database.realisations(point.point.id)) {

@@ -1,7 +1,7 @@
 // The points of a campaign as curves of viscosity over volume fraction, each point with what is known of
 // whether it flows.
 //
-// A point is judged by the seeds of its last look, before the first one by all that have ended:
+// A point is judged by the seeds of its last stop test, before the first one by all that have ended:
 // clang-format off
 //   suspect        a seed gave two different results
 //   open           no seed has ended

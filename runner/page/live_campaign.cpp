@@ -69,7 +69,7 @@ LiveCampaign::LiveCampaign(fs::path campaign, fs::path directory)
   read();
 }
 
-void LiveCampaign::look() {
+void LiveCampaign::stop_test() {
   const Clock::time_point begun = Clock::now();
   if (begun < next_) return;
   const DatabaseStamp stamp = stamp_of(folder_of(campaign_, directory_));
@@ -112,7 +112,7 @@ void LiveCampaign::wait_for_beginning(const std::string& set_up) {
 
 void LiveCampaign::become(Json document) {
   name_ = document.at("campaign").get<std::string>();
-  standing_ =
+  exit_code_ =
       document.contains("progress") ? document["progress"]["check"].get<int>() : int{ExitCode::unfinished};
   Json points = Json::array();
   if (const auto found = document.find("points"); found != document.end()) {

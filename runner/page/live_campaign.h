@@ -49,7 +49,7 @@ class LiveCampaign {
   // Looks whether there is something new, and reads it. Reading takes at most a tenth of the time, so that
   // what runs the campaign hardly notices. What goes wrong meanwhile is told, as "fault", beside what was
   // known.
-  void look();
+  void stop_test();
 
   // The whole page. Its document has "live": {"token", "program"}; before the first run it has "waiting",
   // what is waited for, in the place of points.
@@ -63,7 +63,7 @@ class LiveCampaign {
 
   const std::string& name() const { return name_; }
   // What `status --check` would leave with.
-  int standing() const { return standing_; }
+  int exit_code() const { return exit_code_; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -88,7 +88,7 @@ class LiveCampaign {
 
   std::filesystem::path campaign_, directory_;
   std::string name_;
-  int standing_ = 0;
+  int exit_code_ = 0;
   PageReader reader_;
   std::optional<DatabaseStamp> stamp_;
   bool doubtful_ = false;         // whether it may have changed although the stamp has not

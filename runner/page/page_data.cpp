@@ -36,7 +36,7 @@ Json warnings_json(const CampaignStatus& status, const KnownPoints& known) {
 }
 
 Json details_of(Database& database, const PointSummary& point, const TargetRecord& target, int seeds) {
-  const int end = point.looks.empty() ? std::numeric_limits<int>::max() : point.looks.back().seeds;
+  const int end = point.stop_tests.empty() ? std::numeric_limits<int>::max() : point.stop_tests.back().seeds;
   return point_details(database, point.point.id, end, target, seeds);
 }
 
@@ -55,12 +55,12 @@ Json progress_json(const CampaignStatus& status) {
   const CampaignTotals totals = totals_of(status);
   return {{"points", status.points.size()},
           {"decided", totals.decided},
-          {"standings", totals.standings},
-          {"check", standing(status)},
+          {"states", totals.states},
+          {"check", exit_code_of(status)},
           {"seeds",
            {{"ended", totals.ended},
             {"lost", totals.lost},
-            {"surplus", totals.surplus},
+            {"extra", totals.extra},
             {"running", totals.running},
             {"handed_over", totals.handed_over}}},
           {"cpu_seconds", totals.cpu_seconds},
@@ -226,8 +226,9 @@ std::string meaning(const std::string& mark) {
        "all values are one and the same number, so that there is no spread to make an interval from"},
       {"repeated-seeds",
        "some seeds ended in the same state, so that their values are not independent and have no interval"},
-      {"earlier-look",
-       "the target was tighter before: the first look within the present one decides, as if there had been "
+      {"earlier-stop-test",
+       "the target was tighter before: the first stop test within the present one decides, as if there had "
+       "been "
        "no other, and leaves out seeds that ended later"},
       {"suspect", "a seed gave two different results; no number of this point can be trusted"},
       {"flagged jammed", "seeds that stood still under the given stress; their rate 0 is part of the mean"},
@@ -244,10 +245,10 @@ std::string meaning(const std::string& mark) {
 Json meanings_json(const CampaignStatus& status) {
   Json meanings = Json::object();
   for (const PointSummary& point : status.points) {
-    const std::string standing = standing_word(point);
+    const std::string state = state_word(point);
     const bool explains_itself =
-        standing == to_string(Verdict::converged) || standing == to_string(Verdict::complete);
-    if (!explains_itself) meanings[standing] = meaning(standing);
+        state == to_string(Verdict::converged) || state == to_string(Verdict::complete);
+    if (!explains_itself) meanings[state] = meaning(state);
     for (const std::string& mark : reservations(point)) {
       const std::string code = mark.substr(mark.rfind(' ') + 1);
       const std::string kind = code == mark ? mark : "flagged " + code;

@@ -68,8 +68,8 @@ Json page_parameters(const CampaignStatus& status, const Vocabulary& words);
 class PageReader {
  public:
   // `whole`: with the details of every point and the hash of the results, which take seconds in a large
-  // campaign. `owner`: the process that runs it now. Throws IntegrityError when stored looks are not what the
-  // stored results say.
+  // campaign. `owner`: the process that runs it now. Throws IntegrityError when stored stop tests are not
+  // what the stored results say.
   Json read(Database& database, std::optional<std::int64_t> owner, bool whole);
 
   // Of a point that was there when it was last read, by its hash: a word that changes when its results do,

@@ -30,7 +30,7 @@ std::string page_program();
 // script, whatever the document says.
 std::string page_html(const Json& data);
 
-// Throws IntegrityError when stored looks are not what the stored results say.
+// Throws IntegrityError when stored stop tests are not what the stored results say.
 std::string report_html(Database& database, std::optional<std::int64_t> owner = std::nullopt);
 
 }  // namespace peclet::runner

@@ -182,29 +182,29 @@ Json scatter(const Values& found) {
   return {{"low", *low}, {"high", *high}, {"counts", counts}};
 }
 
-// The half-width that is good enough for a criterion, around the means of a look: what the rule allowed, or,
-// where there is no interval, what the means allow.
-Json good_enough(const Criterion& criterion, const Look& look, const Target& target) {
-  for (const ObservableLook& one : each_of(look, target)) {
+// The half-width that is good enough for a criterion, around the means of a stop test: what the rule allowed,
+// or, where there is no interval, what the means allow.
+Json good_enough(const Criterion& criterion, const StopTest& stop_test, const Target& target) {
+  for (const ObservableStopTest& one : each_of(stop_test, target)) {
     if (one.observable == criterion.observable && one.share > 0)
       return number_json(one.half_width / one.share);
   }
   const std::vector<std::string> observables = target.observables();
-  const std::vector<Estimate> estimates = estimates_of(look, target);
+  const std::vector<Estimate> estimates = estimates_of(stop_test, target);
   const std::string& measure =
       criterion.tolerance.relative_to.empty() ? criterion.observable : criterion.tolerance.relative_to;
   const auto place = std::find(observables.begin(), observables.end(), measure) - observables.begin();
   return number_json(criterion.tolerance.half_width(estimates.at(static_cast<std::size_t>(place)).mean));
 }
 
-Json looks_json(const std::vector<Look>& looks, const Target& target) {
+Json stop_tests_json(const std::vector<StopTest>& stop_tests, const Target& target) {
   Json list = Json::array();
-  for (const Look& look : looks) {
-    list.push_back({{"seeds", look.seeds},
-                    {"mean", number_json(look.controlled.mean)},
-                    {"half_width", number_json(look.controlled_half_width)},
-                    {"good_enough", good_enough(target.criteria().front(), look, target)},
-                    {"verdict", to_string(look.verdict)}});
+  for (const StopTest& stop_test : stop_tests) {
+    list.push_back({{"seeds", stop_test.seeds},
+                    {"mean", number_json(stop_test.controlled.mean)},
+                    {"half_width", number_json(stop_test.controlled_half_width)},
+                    {"good_enough", good_enough(target.criteria().front(), stop_test, target)},
+                    {"verdict", to_string(stop_test.verdict)}});
   }
   return list;
 }
@@ -243,13 +243,13 @@ Json first_result(Database& database, const PointRecord& point) {
   return database.result(point.id, completed.front()).value_or(Json::object());
 }
 
-// Seeds that have ended, their values and the looks, in a few words.
+// Seeds that have ended, their values and the stop tests, in a few words.
 std::string key_of(const PointSummary& point, const TargetRecord& target) {
   const StateCounts& counts = point.counts;
   return fmt::format("{} {} {} {} {:a} {} {:a} {:a} {} {}", target.id, counts.done, counts.failed,
-                     counts.quarantined, counts.cpu_seconds, point.so_far.count, point.so_far.mean,
-                     point.so_far.standard_error, point.looks.size(),
-                     point.looks.empty() ? 0 : point.looks.back().seeds);
+                     counts.quarantined, counts.cpu_seconds, point.all_seeds.count, point.all_seeds.mean,
+                     point.all_seeds.standard_error, point.stop_tests.size(),
+                     point.stop_tests.empty() ? 0 : point.stop_tests.back().seeds);
 }
 
 class PointPage {
@@ -259,7 +259,7 @@ class PointPage {
         book_(book),
         target_(target),
         point_(point),
-        look_(checked_look(database, point.point, target)) {}
+        stop_test_(checked_stop_test(database, point.point, target)) {}
 
   KnownPoint read() {
     const Target& target = target_.target;
@@ -269,19 +269,19 @@ class PointPage {
     known_.key = key_of(point_, target_);
     known_.warnings = first.value("warnings", Json::array());
     known_.json = {{"groups", first.value("derived", Json())},
-                   {"looks", looks_json(point_.looks, target)},
+                   {"stop_tests", stop_tests_json(point_.stop_tests, target)},
                    {"running_mean", running_mean(found, rule)},
                    {"scatter", scatter(found)},
-                   {"uncontrolled", Json::object()},
+                   {"plain", Json::object()},
                    {"good_enough", Json::object()}};
     add_estimates();
-    if (look_) add_deciding();
+    if (stop_test_) add_deciding();
     return std::move(known_);
   }
 
  private:
-  // Seeds of the look; before the first one, all that have ended.
-  int end() const { return look_ ? look_->seeds : std::numeric_limits<int>::max(); }
+  // Seeds of the stop test; before the first one, all that have ended.
+  int end() const { return stop_test_ ? stop_test_->seeds : std::numeric_limits<int>::max(); }
 
   void add_estimates() {
     QuantityEstimates sums;
@@ -294,26 +294,26 @@ class PointPage {
       for (std::size_t k = 0; k < drawables.size(); ++k) {
         known_.estimates.push_back(of(found.estimates[k]));
         known_.drawables.push_back(drawables[k]);
-        if (!found.uncontrolled.empty()) {
-          known_.json["uncontrolled"][drawables[k].path] = of(found.uncontrolled[k]);
+        if (!found.plain.empty()) {
+          known_.json["plain"][drawables[k].path] = of(found.plain[k]);
         }
       }
     }
   }
 
-  // What the look says of the target's observables goes before: its intervals are those that decide.
+  // What the stop test says of the target's observables goes before: its intervals are those that decide.
   void add_deciding() {
     const Target& target = target_.target;
-    for (const ObservableLook& one : each_of(*look_, target)) {
+    for (const ObservableStopTest& one : each_of(*stop_test_, target)) {
       const std::size_t place = place_of(one.observable);
       known_.estimates[place] = numbers(one.estimate, one.half_width);
-      if (one.observable == target.observable && has_control(*look_)) {
-        known_.json["uncontrolled"][known_.drawables[place].path] =
-            numbers(look_->estimate, look_->half_width);
+      if (one.observable == target.observable && has_control(*stop_test_)) {
+        known_.json["plain"][known_.drawables[place].path] =
+            numbers(stop_test_->estimate, stop_test_->half_width);
       }
     }
     for (const Criterion& criterion : target.criteria()) {
-      known_.json["good_enough"][bare(criterion.observable)] = good_enough(criterion, *look_, target);
+      known_.json["good_enough"][bare(criterion.observable)] = good_enough(criterion, *stop_test_, target);
     }
   }
 
@@ -333,7 +333,7 @@ class PointPage {
   NumberStore& book_;
   const TargetRecord& target_;
   const PointSummary& point_;
-  std::optional<Look> look_;
+  std::optional<StopTest> stop_test_;
   KnownPoint known_;
 };
 
@@ -366,17 +366,17 @@ Json point_json(const PointSummary& point) {
   return {{"label", point.point.label},
           {"hash", point.point.hash},
           {"settings", point.point.settings},
-          {"standing", standing_word(point)},
+          {"state", state_word(point)},
           {"verdict", verdict_text(point)},
           {"marks", reservations(point)},
           {"decided", point.decided},
           {"seeds",
-           {{"looked_at", point.looks.empty() ? Json(nullptr) : Json(point.looks.back().seeds)},
+           {{"tested", point.stop_tests.empty() ? Json(nullptr) : Json(point.stop_tests.back().seeds)},
             {"wanted", point.wanted},
             {"wanted_ended", point.wanted_ended},
             {"ended", counts.terminal()},
             {"running", counts.running},
-            {"surplus", point.surplus()}}},
+            {"extra", point.extra()}}},
           {"endings", to_json(point.endings)},
           {"losses", point.losses},
           {"loss_reasons", point.loss_reasons},

@@ -45,7 +45,7 @@ A campaign of peclet {1}: averages over independent realisations, each with its 
 ## Which number
 
 `mean` and `half_width` in `results.csv` are those by which the campaign stopped, with the control variate where there is one.
-The table above, the page, the figure and `points/*/look` in `results.json` have the same two numbers. Means in `numbers.csv` and
+The table above, the page, the figure and `points/*/stop_test` in `results.json` have the same two numbers. Means in `numbers.csv` and
 `points/*/quantities` are of the same seeds, and their half-widths of the same level.
 
 ## Make it again
@@ -104,7 +104,7 @@ Json figure_of(Database& database) try { return figure_data(database, {}); } cat
 std::vector<ArchivedFile> files_of(Database& database, std::optional<std::int64_t> owner) {
   const CampaignStatus status = read_status(database);
   const CampaignRecord& campaign = status.campaign;
-  const auto has_number = [](const PointSummary& point) { return point.so_far.count > 0; };
+  const auto has_number = [](const PointSummary& point) { return point.all_seeds.count > 0; };
   if (std::none_of(status.points.begin(), status.points.end(), has_number)) {
     throw InputError(
         "", "--bundle", campaign.name,

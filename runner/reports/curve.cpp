@@ -94,7 +94,7 @@ std::string curve_text(const CampaignStatus& status, std::size_t width) {
   std::vector<double> means;
   for (const PointSummary& point : status.points) {
     if (axis.empty()) break;
-    const double estimate = point.decided ? point.looks.back().controlled.mean : point.so_far.mean;
+    const double estimate = point.decided ? point.stop_tests.back().controlled.mean : point.all_seeds.mean;
     const double mean = point.endings.has_jammed() ? jammed : estimate;
     curves[name_beside(point, axis)][point.point.settings[axis].get<double>()] = mean;
     if (std::isfinite(mean)) means.push_back(mean);

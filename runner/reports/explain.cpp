@@ -25,30 +25,30 @@ std::vector<PointSummary> selected(std::vector<PointSummary> points, const std::
   return {std::move(points[find_point(records, name)])};
 }
 
-// An observable of the last look, and how well it is to be known.
+// An observable of the last stop test, and how well it is to be known.
 struct Known {
-  ObservableLook look;
+  ObservableStopTest stop_test;
   Criterion criterion;
-  ObservableLook measure;  // of the mean that the tolerance is a share of
+  ObservableStopTest measure;  // of the mean that the tolerance is a share of
 };
 
-std::vector<Known> known_of(const Look& look, const Target& target) {
-  const std::vector<ObservableLook> each = each_of(look, target);
-  const auto look_at = [&](const std::string& name) {
+std::vector<Known> known_of(const StopTest& stop_test, const Target& target) {
+  const std::vector<ObservableStopTest> each = each_of(stop_test, target);
+  const auto stop_test_at = [&](const std::string& name) {
     return *std::find_if(each.begin(), each.end(),
-                         [&](const ObservableLook& one) { return one.observable == name; });
+                         [&](const ObservableStopTest& one) { return one.observable == name; });
   };
   std::vector<Known> all;
   for (const Criterion& criterion : target.criteria()) {
     const std::string& relative_to = criterion.tolerance.relative_to;
-    all.push_back({look_at(criterion.observable), criterion,
-                   look_at(relative_to.empty() ? criterion.observable : relative_to)});
+    all.push_back({stop_test_at(criterion.observable), criterion,
+                   stop_test_at(relative_to.empty() ? criterion.observable : relative_to)});
   }
   return all;
 }
 
 std::string width_text(const Known& known) {
-  return width_text(known.criterion.tolerance, known.look.half_width, known.measure.estimate.mean);
+  return width_text(known.criterion.tolerance, known.stop_test.half_width, known.measure.estimate.mean);
 }
 
 // "2 %"; of several "relative_viscosity 2 %, pressure 0.1".
@@ -56,26 +56,26 @@ std::string widths_text(const std::vector<Known>& all) {
   if (all.size() == 1) return width_text(all.front());
   std::vector<std::string> widths;
   widths.reserve(all.size());
-  for (const Known& known : all) widths.push_back(known.look.observable + ' ' + width_text(known));
+  for (const Known& known : all) widths.push_back(known.stop_test.observable + ' ' + width_text(known));
   return fmt::format("{}", fmt::join(widths, ", "));
 }
 
-// "5 %"; of several "5 % for relative_viscosity, 0.2 for pressure": those on whose observable the look said
-// `verdict`, or all of them.
+// "5 %"; of several "5 % for relative_viscosity, 0.2 for pressure": those on whose observable the stop test
+// said `verdict`, or all of them.
 std::string tolerances_text(const std::vector<Known>& all, std::optional<Verdict> verdict = {}) {
   if (all.size() == 1) return to_string(all.front().criterion.tolerance);
   std::vector<std::string> tolerances;
   for (const Known& known : all) {
-    if (verdict && known.look.verdict != verdict) continue;
-    tolerances.push_back(to_string(known.criterion.tolerance) + " for " + known.look.observable);
+    if (verdict && known.stop_test.verdict != verdict) continue;
+    tolerances.push_back(to_string(known.criterion.tolerance) + " for " + known.stop_test.observable);
   }
   return fmt::format("{}", fmt::join(tolerances, ", "));
 }
 
 // Seeds that the tolerances would take, as half-widths fall with 1 / sqrt(n).
-std::string seeds_for(const Look& look, const Target& target) {
-  const double ratio = largest_share(look, target);
-  return std::isfinite(ratio) ? fmt::format("about {}", rough(std::ceil(look.seeds * ratio * ratio)))
+std::string seeds_for(const StopTest& stop_test, const Target& target) {
+  const double ratio = largest_share(stop_test, target);
+  return std::isfinite(ratio) ? fmt::format("about {}", rough(std::ceil(stop_test.seeds * ratio * ratio)))
                               : "more";
 }
 
@@ -84,7 +84,7 @@ std::string seeds_for(const Look& look, const Target& target) {
 // own noise.
 const Known* that_may_be_zero(const std::vector<Known>& all) {
   const auto found = std::find_if(all.begin(), all.end(), [](const Known& known) {
-    const ObservableLook& of = known.measure;
+    const ObservableStopTest& of = known.measure;
     return known.criterion.tolerance.needs_a_mean() && of.half_width >= std::abs(of.estimate.mean);
   });
   return found == all.end() ? nullptr : &*found;
@@ -96,8 +96,8 @@ std::string place_of(const Target& target, const Criterion& criterion) {
   return observable.substr(0, observable.rfind('/') + 1);
 }
 
-std::string advice_when_capped(const Look& look, const Target& target) {
-  const std::vector<Known> all = known_of(look, target);
+std::string advice_when_capped(const StopTest& stop_test, const Target& target) {
+  const std::vector<Known> all = known_of(stop_test, target);
   if (const Known* const zero = that_may_be_zero(all)) {
     return fmt::format(
         "{0}absolute_tolerance, or another {0}observable: the interval contains zero, and as long as it does "
@@ -105,21 +105,21 @@ std::string advice_when_capped(const Look& look, const Target& target) {
         place_of(target, zero->criterion));
   }
   const auto worst = std::max_element(all.begin(), all.end(), [](const Known& one, const Known& other) {
-    return one.look.share < other.look.share;
+    return one.stop_test.share < other.stop_test.share;
   });
   return fmt::format("a larger /realisations/maximum ({} seeds) or {}{} (`peclet set`), and run again",
-                     seeds_for(look, target), place_of(target, worst->criterion),
+                     seeds_for(stop_test, target), place_of(target, worst->criterion),
                      key_of(worst->criterion.tolerance));
 }
 
-// Why observables of the last look have no interval; nothing where all have one.
+// Why observables of the last stop test have no interval; nothing where all have one.
 std::string missing_interval_text(const PointSummary& point) {
   if (point.without_interval.empty()) return "";
-  const Look& look = point.looks.back();
-  if (!look.repeated.empty()) {
+  const StopTest& stop_test = point.stop_tests.back();
+  if (!stop_test.repeated.empty()) {
     return fmt::format(
         "seed{} {} ended in the same state as an earlier one, so that these values are not independent",
-        look.repeated.size() == 1 ? "" : "s", fmt::join(look.repeated, ", "));
+        stop_test.repeated.size() == 1 ? "" : "s", fmt::join(stop_test.repeated, ", "));
   }
   return fmt::format("all values of {} are equal, so that they have no spread to judge by",
                      fmt::join(point.without_interval, ", "));
@@ -128,10 +128,10 @@ std::string missing_interval_text(const PointSummary& point) {
 // What makes a share of another observable's mean less sure.
 std::string measure_text(const std::vector<Known>& all) {
   for (const Known& known : all) {
-    const bool is_its_own = known.measure.observable == known.look.observable;
+    const bool is_its_own = known.measure.observable == known.stop_test.observable;
     const double mean = known.measure.estimate.mean;
-    if (is_its_own || known.criterion.tolerance.share(known.look.half_width, mean) > 1) continue;
-    if (!(known.look.share <= 1)) {
+    if (is_its_own || known.criterion.tolerance.share(known.stop_test.half_width, mean) > 1) continue;
+    if (!(known.stop_test.share <= 1)) {
       return fmt::format(", because {} itself is known to {} only", known.measure.observable,
                          percent(known.measure.half_width / std::abs(mean)));
     }
@@ -139,18 +139,19 @@ std::string measure_text(const std::vector<Known>& all) {
   return "";
 }
 
-std::string luck_text(const Look& look) {
-  if (!look.near_maximum) return "";
+std::string luck_text(const StopTest& stop_test) {
+  if (!stop_test.near_maximum) return "";
   return "; perhaps by luck: with a spread as large as these values leave open it would need more seeds than "
          "are allowed, and intervals of such points hold the mean less often";
 }
 
-std::string earlier_look_text(const PointSummary& point) {
-  if (point.earlier_look == 0) return "";
+std::string earlier_stop_test_text(const PointSummary& point) {
+  if (point.earlier_stop_test == 0) return "";
   return fmt::format(
-      ": the first look that is; it decides as if the target had always been this one, and leaves out later "
+      ": the first stop test that is; it decides as if the target had always been this one, and leaves out "
+      "later "
       "seeds; all {} with a value give {} (± standard error)",
-      point.so_far.count, with_error(point.so_far.mean, point.so_far.standard_error));
+      point.all_seeds.count, with_error(point.all_seeds.mean, point.all_seeds.standard_error));
 }
 
 std::string reason(const PointSummary& point, const Target& target) {
@@ -158,39 +159,42 @@ std::string reason(const PointSummary& point, const Target& target) {
     const std::string missing = missing_interval_text(point);
     return fmt::format(
         "{} of the {} seeds{} have ended, {}{}", point.wanted_ended, point.wanted,
-        target.has_tolerance() ? " of the next look" : "",
+        target.has_tolerance() ? " of the next stop test" : "",
         point.point.cancelled ? "and it gets no more" : fmt::format("{} run", point.counts.running),
         missing.empty() ? "" : "; " + missing);
   }
-  const Look& look = point.looks.back();
-  const std::vector<Known> all = known_of(look, target);
-  const auto lost_to = [&](const Known& known) { return look.seeds - known.look.estimate.count; };
+  const StopTest& stop_test = point.stop_tests.back();
+  const std::vector<Known> all = known_of(stop_test, target);
+  const auto lost_to = [&](const Known& known) { return stop_test.seeds - known.stop_test.estimate.count; };
   const auto name_of = [&](const Known& known) {
-    return all.size() == 1 ? "" : " to " + known.look.observable;
+    return all.size() == 1 ? "" : " to " + known.stop_test.observable;
   };
-  switch (look.verdict) {
+  switch (stop_test.verdict) {
     case Verdict::converged:
     case Verdict::converged_with_losses:
-      return fmt::format("{} seeds give {}, within the tolerance of {}{}{}", look.seeds, widths_text(all),
-                         tolerances_text(all), luck_text(look), earlier_look_text(point));
+      return fmt::format("{} seeds give {}, within the tolerance of {}{}{}", stop_test.seeds,
+                         widths_text(all), tolerances_text(all), luck_text(stop_test),
+                         earlier_stop_test_text(point));
     case Verdict::capped:
       if (const std::string missing = missing_interval_text(point); !missing.empty())
-        return fmt::format("all {} seeds that are allowed have ended, and {}", look.seeds, missing);
+        return fmt::format("all {} seeds that are allowed have ended, and {}", stop_test.seeds, missing);
       return fmt::format("all {} seeds that are allowed give {}, not within the tolerance of {}{}",
-                         look.seeds, widths_text(all), tolerances_text(all, look.verdict), measure_text(all));
+                         stop_test.seeds, widths_text(all), tolerances_text(all, stop_test.verdict),
+                         measure_text(all));
     case Verdict::failed: {
-      const auto failed = std::find_if(
-          all.begin(), all.end(), [&](const Known& known) { return known.look.verdict == look.verdict; });
-      return fmt::format("{} of {} seeds are lost{}", lost_to(*failed), look.seeds, name_of(*failed));
+      const auto failed = std::find_if(all.begin(), all.end(), [&](const Known& known) {
+        return known.stop_test.verdict == stop_test.verdict;
+      });
+      return fmt::format("{} of {} seeds are lost{}", lost_to(*failed), stop_test.seeds, name_of(*failed));
     }
     case Verdict::complete:
-      return fmt::format("all {} seeds have ended", look.seeds);
+      return fmt::format("all {} seeds have ended", stop_test.seeds);
     case Verdict::complete_with_losses: {
       const auto fewest = std::min_element(all.begin(), all.end(), [](const Known& one, const Known& other) {
-        return one.look.estimate.count < other.look.estimate.count;
+        return one.stop_test.estimate.count < other.stop_test.estimate.count;
       });
-      return fmt::format("all {} seeds have ended, and {} of them are lost{}", look.seeds, lost_to(*fewest),
-                         name_of(*fewest));
+      return fmt::format("all {} seeds have ended, and {} of them are lost{}", stop_test.seeds,
+                         lost_to(*fewest), name_of(*fewest));
     }
     case Verdict::more:
       break;
@@ -206,26 +210,27 @@ std::string next_step(const PointSummary& point, const TargetRecord& target,
   if (point.point.cancelled && !point.decided) return "nothing; `peclet cancel --undo` takes it up again";
   if (!point.decided) {
     if (!target.target.has_tolerance()) return fmt::format("the other seeds of {}", point.wanted);
-    if (point.looks.empty()) return fmt::format("the first look, at {} seeds", point.wanted);
+    if (point.stop_tests.empty()) return fmt::format("the first stop test, at {} seeds", point.wanted);
     if (!point.without_interval.empty()) {
-      return fmt::format("the look at {} seeds; how many will be enough cannot be told without an interval",
-                         point.wanted);
+      return fmt::format(
+          "the stop test at {} seeds; how many will be enough cannot be told without an interval",
+          point.wanted);
     }
     return fmt::format(
-        "the look at {} seeds; {}", point.wanted,
-        that_may_be_zero(known_of(point.looks.back(), target.target)) != nullptr
+        "the stop test at {} seeds; {}", point.wanted,
+        that_may_be_zero(known_of(point.stop_tests.back(), target.target)) != nullptr
             ? "how many will be enough cannot be told while the interval contains zero"
             : fmt::format("{} are expected to be enough",
-                          expected_seeds(point.looks, target.target, target.minimum, target.maximum)));
+                          expected_seeds(point.stop_tests, target.target, target.minimum, target.maximum)));
   }
-  const Look& look = point.looks.back();
-  switch (look.verdict) {
+  const StopTest& stop_test = point.stop_tests.back();
+  switch (stop_test.verdict) {
     case Verdict::complete:
     case Verdict::converged:
-      if (look.transient) return "a longer /scene/duration/equilibration: see transient above";
-      if (look.verdict == Verdict::complete)
+      if (stop_test.transient) return "a longer /scene/duration/equilibration: see transient above";
+      if (stop_test.verdict == Verdict::complete)
         return "nothing; more realisations (`peclet set --realisations`) reopen it";
-      if (look.near_maximum) {
+      if (stop_test.near_maximum) {
         return "a larger /realisations/maximum and a smaller tolerance (`peclet set`), or nothing";
       }
       return "nothing; a smaller tolerance (`peclet set`) reopens it";
@@ -235,7 +240,7 @@ std::string next_step(const PointSummary& point, const TargetRecord& target,
           "see why seeds are lost: the mean leaves them out (states in {}){}", directory.failures().string(),
           point.counts.quarantined > 0 ? "; `peclet retry` runs those again that were given up" : "");
     case Verdict::capped:
-      if (!look.repeated.empty()) {
+      if (!stop_test.repeated.empty()) {
         return "find out why seeds give the same: a start list with one file twice, or an engine without "
                "noise";
       }
@@ -243,7 +248,7 @@ std::string next_step(const PointSummary& point, const TargetRecord& target,
         return fmt::format("a larger /realisations/maximum than {} (`peclet set`), or another observable",
                            target.maximum);
       }
-      return advice_when_capped(look, target.target);
+      return advice_when_capped(stop_test, target.target);
     case Verdict::failed:
       return fmt::format("change the scene: states are in {}, logs in {}", directory.failures().string(),
                          directory.logs().string());
@@ -253,50 +258,51 @@ std::string next_step(const PointSummary& point, const TargetRecord& target,
   return "";
 }
 
-std::string looks_table(const std::vector<Look>& looks, const Target& target) {
-  if (looks.empty()) return "  no look yet\n";
-  const bool with_control = std::any_of(looks.begin(), looks.end(), has_control);
+std::string stop_tests_table(const std::vector<StopTest>& stop_tests, const Target& target) {
+  if (stop_tests.empty()) return "  no stop test yet\n";
+  const bool with_control = std::any_of(stop_tests.begin(), stop_tests.end(), has_control);
   TextTable table;
   for (const char* const title : {"seeds", "lost", "mean ± half-width"}) table.add_column(title);
   if (target.has_tolerance()) {
     table.add_column(target.tolerance.is_relative() ? "relative" : "half-width");
     table.add_column("tolerance");
   }
-  if (with_control) table.add_column("uncontrolled");
+  if (with_control) table.add_column("plain");
   table.add_column("verdict", TextTable::Align::left);
-  for (const Look& look : looks) {
-    std::vector<std::string> row{fmt::format("{}", look.seeds), fmt::format("{}", look.lost),
-                                 with_error(look.controlled.mean, look.controlled_half_width)};
+  for (const StopTest& stop_test : stop_tests) {
+    std::vector<std::string> row{fmt::format("{}", stop_test.seeds), fmt::format("{}", stop_test.lost),
+                                 with_error(stop_test.controlled.mean, stop_test.controlled_half_width)};
     if (target.has_tolerance()) {
-      row.push_back(width_text(known_of(look, target).front()));
+      row.push_back(width_text(known_of(stop_test, target).front()));
       row.push_back(to_string(target.tolerance));
     }
-    if (with_control) row.push_back(with_error(look.estimate.mean, look.half_width));
-    row.emplace_back(to_string(look.verdict));
+    if (with_control) row.push_back(with_error(stop_test.estimate.mean, stop_test.half_width));
+    row.emplace_back(to_string(stop_test.verdict));
     table.add_row(std::move(row));
   }
   return table.text("  ");
 }
 
-// Of a target of several observables, each at the last look.
-std::string observables_table(const std::vector<Look>& looks, const Target& target) {
-  if (looks.empty() || looks.back().each.empty()) return "";
+// Of a target of several observables, each at the last stop test.
+std::string observables_table(const std::vector<StopTest>& stop_tests, const Target& target) {
+  if (stop_tests.empty() || stop_tests.back().each.empty()) return "";
   TextTable table;
-  table.add_column("at the last look", TextTable::Align::left);
+  table.add_column("at the last stop test", TextTable::Align::left);
   for (const char* const title : {"values", "mean ± half-width"}) table.add_column(title);
   if (target.has_tolerance()) {
     table.add_column("half-width");
     table.add_column("tolerance");
   }
   table.add_column("verdict", TextTable::Align::left);
-  for (const Known& known : known_of(looks.back(), target)) {
-    std::vector<std::string> row{known.look.observable, fmt::format("{}", known.look.estimate.count),
-                                 with_error(known.look.estimate.mean, known.look.half_width)};
+  for (const Known& known : known_of(stop_tests.back(), target)) {
+    std::vector<std::string> row{known.stop_test.observable,
+                                 fmt::format("{}", known.stop_test.estimate.count),
+                                 with_error(known.stop_test.estimate.mean, known.stop_test.half_width)};
     if (target.has_tolerance()) {
       row.push_back(width_text(known));
       row.push_back(to_string(known.criterion.tolerance));
     }
-    row.emplace_back(to_string(*known.look.verdict));
+    row.emplace_back(to_string(*known.stop_test.verdict));
     table.add_row(std::move(row));
   }
   return table.text("  ");
@@ -346,16 +352,16 @@ Json explain_json(Database& database, const CampaignDirectory& directory, const 
   const CampaignRecord campaign = database.campaign();
   Json points = Json::array();
   for (const PointSummary& summary : selected(summarise_points(database, campaign.target), point)) {
-    Json looks = Json::array();
-    for (const Look& look : summary.looks) looks.push_back(look_json(look));
+    Json stop_tests = Json::array();
+    for (const StopTest& stop_test : summary.stop_tests) stop_tests.push_back(stop_test_json(stop_test));
     points.push_back(
         {{"label", summary.point.label},
          {"hash", summary.point.hash},
-         {"verdict", summary.decided ? Json(to_string(summary.looks.back().verdict)) : Json(nullptr)},
+         {"verdict", summary.decided ? Json(to_string(summary.stop_tests.back().verdict)) : Json(nullptr)},
          {"reservations", reservations(summary)},
          {"reason", reason(summary, campaign.target.target)},
          {"next", next_step(summary, campaign.target, directory)},
-         {"looks", looks},
+         {"stop_tests", stop_tests},
          {"losses", lost_seeds(database, summary.point.id)},
          {"loss_reasons", summary.loss_reasons},
          {"files", files_json(database, directory, summary.point.id)},
@@ -371,15 +377,15 @@ std::string explain(Database& database, const CampaignDirectory& directory, cons
     text += text.empty() ? "" : "\n";
     text += fmt::format("{}  ({})\n", summary.point.label, summary.point.hash.substr(0, 12));
     text += fmt::format("  {}: {}\n", verdict_text(summary), reason(summary, target.target));
-    text += looks_table(summary.looks, target.target);
-    text += observables_table(summary.looks, target.target);
+    text += stop_tests_table(summary.stop_tests, target.target);
+    text += observables_table(summary.stop_tests, target.target);
     text += prediction_text(summary);
     text += estimate_text(database, summary, target);
     text += losses_text(database, summary);
     text += attempts_text(database, summary.point.id);
     text += files_text(files_json(database, directory, summary.point.id));
-    for (const KeptApart& kept : summary.kept_apart)
-      text += fmt::format("  kept apart: {} results of engine {}\n", kept.results, kept.engine);
+    for (const SetAside& kept : summary.set_aside)
+      text += fmt::format("  set aside: {} results of engine {}\n", kept.results, kept.engine);
     text += fmt::format("  next: {}\n", next_step(summary, target, directory));
   }
   return text;

@@ -19,7 +19,7 @@ Json explain_json(Database& database, const CampaignDirectory& directory, const 
 // What it says of an estimate: how far its interval can be trusted, what the control variate does for it, and
 // whether longer windows would be cheaper than more seeds.
 //
-// Lines of the last look at a point; nothing before the first one.
+// Lines of the last stop test at a point; nothing before the first one.
 std::string estimate_text(Database& database, const PointSummary& point, const TargetRecord& target);
 
 // Seeds that are lost, by cause.

@@ -16,10 +16,10 @@
 namespace peclet::runner {
 namespace {
 
-// The values of the last look that completed, in order of their seeds.
+// The values of the last stop test that completed, in order of their seeds.
 std::vector<Outcome> completed(Database& database, const PointSummary& point) {
   const std::vector<std::optional<Outcome>> outcomes = database.outcomes(point.point.id);
-  const auto seeds = std::min(outcomes.size(), static_cast<std::size_t>(point.looks.back().seeds));
+  const auto seeds = std::min(outcomes.size(), static_cast<std::size_t>(point.stop_tests.back().seeds));
   std::vector<Outcome> found;
   for (std::size_t seed = 0; seed < seeds; ++seed) {
     if (outcomes[seed] && !outcomes[seed]->is_lost()) found.push_back(*outcomes[seed]);
@@ -27,12 +27,12 @@ std::vector<Outcome> completed(Database& database, const PointSummary& point) {
   return found;
 }
 
-std::string interval_text(const Look& look, const std::vector<Outcome>& outcomes,
+std::string interval_text(const StopTest& stop_test, const std::vector<Outcome>& outcomes,
                           const TargetRecord& target) {
   const double level = target.level();
-  if (!std::isfinite(look.controlled_half_width)) return "";
-  if (look.controlled.values == Estimate::Values::share) {
-    const Interval interval = share_interval(look.controlled.count, look.controlled.mean, level);
+  if (!std::isfinite(stop_test.controlled_half_width)) return "";
+  if (stop_test.controlled.values == Estimate::Values::share) {
+    const Interval interval = share_interval(stop_test.controlled.count, stop_test.controlled.mean, level);
     return fmt::format(
         "  interval: {} .. {} of the share (Clopper and Pearson); the half-width is its larger side\n",
         rough(interval.low), rough(interval.high));
@@ -43,11 +43,11 @@ std::string interval_text(const Look& look, const std::vector<Outcome>& outcomes
   std::string text;
   if (const std::optional<Interval> interval = bootstrap_t(values, level)) {
     text = fmt::format("  interval of {:.3g} %: Student {} .. {}, bootstrap-t {} .. {}; skewness {}\n",
-                       100 * level, rough(look.controlled.mean - look.controlled_half_width),
-                       rough(look.controlled.mean + look.controlled_half_width), rough(interval->low),
-                       rough(interval->high), rough(look.skewness));
+                       100 * level, rough(stop_test.controlled.mean - stop_test.controlled_half_width),
+                       rough(stop_test.controlled.mean + stop_test.controlled_half_width),
+                       rough(interval->low), rough(interval->high), rough(stop_test.skewness));
   }
-  if (is_skewed(look, target.target.confidence)) {
+  if (is_skewed(stop_test, target.target.confidence)) {
     text += fmt::format(
         "  skewed: some values are far from the rest on one side, and Student's interval holds the mean less "
         "often\n    than it says; trust the bootstrap interval more, and ask for {}\n",
@@ -73,8 +73,9 @@ std::string contrasts_text(const std::vector<Outcome>& outcomes, std::size_t pla
       with_error(quarter.mean, quarter.standard_error), with_error(half.mean, half.standard_error), name);
 }
 
-std::string transient_text(const Look& look, const std::vector<Outcome>& outcomes, const Target& target) {
-  const std::vector<ObservableLook> each = each_of(look, target);
+std::string transient_text(const StopTest& stop_test, const std::vector<Outcome>& outcomes,
+                           const Target& target) {
+  const std::vector<ObservableStopTest> each = each_of(stop_test, target);
   std::string text, untested;
   for (std::size_t place = 0; place < each.size(); ++place) {
     const std::string& name = each[place].observable;
@@ -142,10 +143,10 @@ std::string window_text(Database& database, const PointSummary& point, const std
 }  // namespace
 
 std::string estimate_text(Database& database, const PointSummary& point, const TargetRecord& target) {
-  if (point.looks.empty()) return "";
-  const Look& look = point.looks.back();
+  if (point.stop_tests.empty()) return "";
+  const StopTest& stop_test = point.stop_tests.back();
   const std::vector<Outcome> outcomes = completed(database, point);
-  return interval_text(look, outcomes, target) + transient_text(look, outcomes, target.target) +
+  return interval_text(stop_test, outcomes, target) + transient_text(stop_test, outcomes, target.target) +
          control_text(outcomes) + window_text(database, point, outcomes);
 }
 

@@ -30,18 +30,18 @@ std::vector<PointRecord> named_points(Database& database, const std::string& nam
   return {points[find_point(points, name)]};
 }
 
-// Seeds that the last look counts.
-int seeds_of_last_look(Database& database, const PointRecord& point) {
-  const std::vector<LookRecord> looks = database.looks(point.id);
-  return looks.empty() ? 0 : looks.back().look.seeds;
+// Seeds that the last stop test counts.
+int seeds_of_last_stop_test(Database& database, const PointRecord& point) {
+  const std::vector<StopTestRecord> stop_tests = database.stop_tests(point.id);
+  return stop_tests.empty() ? 0 : stop_tests.back().stop_test.seeds;
 }
 
-std::string line_of(const PointRecord& point, int seed, int looked_at, const Json& result) {
+std::string line_of(const PointRecord& point, int seed, int tested, const Json& result) {
   return canonical_json({{"label", point.label},
                          {"hash", point.hash},
                          {"settings", point.settings},
                          {"seed", seed},
-                         {"deciding", seed < looked_at},
+                         {"deciding", seed < tested},
                          {"result", result}});
 }
 
@@ -51,16 +51,16 @@ void for_each_result_line(Database& database, const std::string& name, std::opti
                           const std::function<void(const std::string& line)>& take) {
   bool any = false;
   for (const PointRecord& point : named_points(database, name)) {
-    const int looked_at = seeds_of_last_look(database, point);
+    const int tested = seeds_of_last_stop_test(database, point);
     if (seed) {
       const std::optional<Json> result = database.result(point.id, *seed);
       if (!result) continue;
       any = true;
-      take(line_of(point, *seed, looked_at, *result));
+      take(line_of(point, *seed, tested, *result));
       continue;
     }
     database.for_each_result(point.id, std::numeric_limits<int>::max(), [&](int number, const Json& result) {
-      take(line_of(point, number, looked_at, result));
+      take(line_of(point, number, tested, result));
     });
   }
   if (seed && !any) {
@@ -147,7 +147,7 @@ class PointExport {
       : database_(database),
         point_(point),
         canonical_(canonical),
-        look_(checked_look(database, point, target)),
+        stop_test_(checked_stop_test(database, point, target)),
         level_(target.level()) {
     if (!canonical_) {
       for (const AttemptRecord& attempt : database.attempts(point.id)) {
@@ -163,29 +163,30 @@ class PointExport {
   }
 
   Json json() const {
-    Json json = {{"label", point_.label},
-                 {"hash", point_.hash},
-                 {"scene", point_.scene},
-                 {"settings", point_.settings},
-                 {"engine", point_.engine_identity.empty() ? Json(nullptr) : Json(point_.engine_identity)},
-                 {"look", look_ ? look_json(*look_) : Json(nullptr)},
-                 {"verdict",
-                  look_ && look_->verdict != Verdict::more ? Json(to_string(look_->verdict)) : Json(nullptr)},
-                 {"derived", derived_},
-                 {"warnings", warnings_},
-                 {"quantities", estimates_.json(level_)},
-                 {"realisations", realisations_}};
+    Json json = {
+        {"label", point_.label},
+        {"hash", point_.hash},
+        {"scene", point_.scene},
+        {"settings", point_.settings},
+        {"engine", point_.engine_identity.empty() ? Json(nullptr) : Json(point_.engine_identity)},
+        {"stop_test", stop_test_ ? stop_test_json(*stop_test_) : Json(nullptr)},
+        {"verdict", stop_test_ && stop_test_->verdict != Verdict::more ? Json(to_string(stop_test_->verdict))
+                                                                       : Json(nullptr)},
+        {"derived", derived_},
+        {"warnings", warnings_},
+        {"quantities", estimates_.json(level_)},
+        {"realisations", realisations_}};
     if (!canonical_) {
       json["suspect"] = point_.suspect;
       json["cancelled"] = point_.cancelled;
-      json["kept_apart"] = to_json(database_.kept_apart(point_.hash));
-      json["surplus"] = surplus_;
+      json["set_aside"] = to_json(database_.set_aside(point_.hash));
+      json["extra"] = extra_;
     }
     return json;
   }
 
  private:
-  int seeds() const { return look_ ? look_->seeds : 0; }
+  int seeds() const { return stop_test_ ? stop_test_->seeds : 0; }
 
   void read_results() {
     const int end = canonical_ ? seeds() : std::numeric_limits<int>::max();
@@ -216,17 +217,17 @@ class PointExport {
         json["attempts"] = attempts_[record.seed];
         json["engine"] = record.engine ? Json(*record.engine) : Json(nullptr);
       }
-      (record.seed < seeds() ? realisations_ : surplus_).push_back(std::move(json));
+      (record.seed < seeds() ? realisations_ : extra_).push_back(std::move(json));
     }
   }
 
   Database& database_;
   const PointRecord& point_;
   bool canonical_;
-  std::optional<Look> look_;
+  std::optional<StopTest> stop_test_;
   std::map<int, Json> attempts_, files_, results_;
   Json derived_, warnings_;
-  Json realisations_ = Json::array(), surplus_ = Json::array();
+  Json realisations_ = Json::array(), extra_ = Json::array();
   double level_;
   QuantityEstimates estimates_;
 };
@@ -325,43 +326,44 @@ class SettingColumns {
   std::set<std::string> pointers_;
 };
 
-// Returns the estimates of every quantity over the seeds of the look; nothing before the first one.
+// Returns the estimates of every quantity over the seeds of the stop test; nothing before the first one.
 std::vector<QuantityEstimate> point_estimates(Database& database, const PointRecord& point,
-                                              const std::optional<Look>& look) {
+                                              const std::optional<StopTest>& stop_test) {
   QuantityEstimates estimates;
-  if (look) {
-    database.for_each_result(point.id, look->seeds, [&](int, const Json& result) { estimates.add(result); });
+  if (stop_test) {
+    database.for_each_result(point.id, stop_test->seeds,
+                             [&](int, const Json& result) { estimates.add(result); });
   }
   return estimates.estimates();
 }
 
 // Returns those of scalars alone, for which no result is read.
 std::vector<QuantityEstimate> scalar_estimates(NumberStore& numbers, const PointRecord& point,
-                                               const std::optional<Look>& look) {
+                                               const std::optional<StopTest>& stop_test) {
   QuantityEstimates estimates(QuantityEstimates::Wanted::scalars);
-  if (look) {
-    numbers.for_each(point.id, look->seeds, [&](const NumberStore::Entry& seed) {
+  if (stop_test) {
+    numbers.for_each(point.id, stop_test->seeds, [&](const NumberStore::Entry& seed) {
       estimates.add(seed.layout, seed.numbers, seed.has_jammed);
     });
   }
   return estimates.estimates();
 }
 
-Fields look_fields(const std::optional<Look>& look) {
-  if (!look) return Fields(10);
-  Fields fields{look->verdict == Verdict::more ? "" : to_string(look->verdict),
-                fmt::format("{}", look->seeds), fmt::format("{}", look->lost),
-                fmt::format("{}", look->estimate.count)};
-  append(fields, mean_fields(look->controlled));
-  fields.push_back(csv_number(look->controlled_half_width));
-  append(fields, mean_fields(look->estimate));
-  fields.push_back(csv_number(look->half_width));
+Fields stop_test_fields(const std::optional<StopTest>& stop_test) {
+  if (!stop_test) return Fields(10);
+  Fields fields{stop_test->verdict == Verdict::more ? "" : to_string(stop_test->verdict),
+                fmt::format("{}", stop_test->seeds), fmt::format("{}", stop_test->lost),
+                fmt::format("{}", stop_test->estimate.count)};
+  append(fields, mean_fields(stop_test->controlled));
+  fields.push_back(csv_number(stop_test->controlled_half_width));
+  append(fields, mean_fields(stop_test->estimate));
+  fields.push_back(csv_number(stop_test->half_width));
   return fields;
 }
 
 Fields full_fields(const PointSummary& point) {
-  Fields fields = estimate_fields(point.so_far);
-  append(fields, {fmt::format("{}", point.surplus()), csv_number(point.counts.cpu_seconds),
+  Fields fields = estimate_fields(point.all_seeds);
+  append(fields, {fmt::format("{}", point.extra()), csv_number(point.counts.cpu_seconds),
                   point.point.suspect ? "1" : "0", point.endings.has_jammed() ? "1" : "0"});
   return fields;
 }
@@ -416,10 +418,10 @@ std::string export_csv(Database& database, bool canonical) {
   if (!canonical) summaries = summarise_points(database, target);
   const SettingColumns settings(points);
   Fields titles = settings.titles();
-  append(titles, {"verdict", "seeds", "lost", "count", "mean", "standard_error", "half_width",
-                  "uncontrolled_mean", "uncontrolled_standard_error", "uncontrolled_half_width"});
+  append(titles, {"verdict", "seeds", "lost", "count", "mean", "standard_error", "half_width", "plain_mean",
+                  "plain_standard_error", "plain_half_width"});
   if (!canonical) {
-    append(titles, {"so_far_count", "so_far_mean", "so_far_standard_error", "surplus", "cpu_seconds",
+    append(titles, {"all_seeds_count", "all_seeds_mean", "all_seeds_standard_error", "extra", "cpu_seconds",
                     "suspect", "jammed"});
   }
   std::vector<Fields> rows;
@@ -427,10 +429,10 @@ std::string export_csv(Database& database, bool canonical) {
   NumberStore numbers(database.connection());
   for (const PointRecord& point : points) {
     Fields fields = settings.fields(point);
-    const std::optional<Look> look = checked_look(database, point, target);
-    append(fields, look_fields(look));
+    const std::optional<StopTest> stop_test = checked_stop_test(database, point, target);
+    append(fields, stop_test_fields(stop_test));
     if (!canonical) append(fields, full_fields(summaries[rows.size()]));
-    scalars.add(rows.size(), scalar_estimates(numbers, point, look));
+    scalars.add(rows.size(), scalar_estimates(numbers, point, stop_test));
     rows.push_back(std::move(fields));
   }
   append(titles, scalars.titles(titles));
@@ -468,8 +470,8 @@ Fields number_fields(const QuantityEstimate& found, std::size_t element, double 
   const Estimate& estimate = found.estimates[element];
   Fields fields = estimate_fields(estimate);
   fields.push_back(csv_number(half_width(estimate, confidence)));
-  const bool is_controlled = !found.uncontrolled.empty();
-  append(fields, is_controlled ? mean_fields(found.uncontrolled[element]) : Fields(2));
+  const bool is_controlled = !found.plain.empty();
+  append(fields, is_controlled ? mean_fields(found.plain[element]) : Fields(2));
   return fields;
 }
 
@@ -482,8 +484,8 @@ std::string export_long_csv(Database& database) {
   std::vector<Point> points;
   std::size_t most_axes = 1;
   for (const PointRecord& record : records) {
-    points.push_back(
-        {settings.fields(record), point_estimates(database, record, checked_look(database, record, target))});
+    points.push_back({settings.fields(record),
+                      point_estimates(database, record, checked_stop_test(database, record, target))});
     for (const QuantityEstimate& found : points.back().estimates) {
       most_axes = std::max(most_axes, found.quantity.axes.size());
     }
@@ -494,8 +496,7 @@ std::string export_long_csv(Database& database) {
     const std::string name = fmt::format("axis_{}", axis);
     append(titles, {name, name + "_unit", name + "_value"});
   }
-  append(titles, {"count", "mean", "standard_error", "half_width", "uncontrolled_mean",
-                  "uncontrolled_standard_error"});
+  append(titles, {"count", "mean", "standard_error", "half_width", "plain_mean", "plain_standard_error"});
   std::string text = csv_line(titles);
   for (const Point& point : points) {
     for (const QuantityEstimate& found : point.estimates) {

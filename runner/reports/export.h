@@ -1,8 +1,9 @@
 // The verb `peclet export`: what a campaign has found, for programs to read.
 //
-// The canonical form holds what depends on campaign, seeds and engine alone: the seeds of the deciding look
-// (of a point that is still open, those of its last look) and nothing of time, cost, machines or attempts.
-// Two runs with other numbers of workers, killed or not, give the same bytes. The full form adds the rest.
+// The canonical form holds what depends on campaign, seeds and engine alone: the seeds of the deciding stop
+// test (of a point that is still open, those of its last stop test) and nothing of time, cost, machines or
+// attempts. Two runs with other numbers of workers, killed or not, give the same bytes. The full form adds
+// the rest.
 #pragma once
 
 #include <functional>
@@ -18,7 +19,7 @@ namespace peclet::runner {
 // that cannot inflate what the database holds.
 //
 // Gives `take` the lines in the order of points and seeds, one at a time, without their newlines. Each is an
-// object of `label`, `hash`, `settings`, `seed`, `deciding` (whether the last look counts the seed) and
+// object of `label`, `hash`, `settings`, `seed`, `deciding` (whether the last stop test counts the seed) and
 // `result`. Throws InputError for a point that is not there, or when there is no result of `seed`.
 void for_each_result_line(Database& database, const std::string& point, std::optional<int> seed,
                           const std::function<void(const std::string& line)>& take);
@@ -34,7 +35,7 @@ struct FileChoice {
 // for a point that there is not.
 std::string list_files(Database& database, const CampaignDirectory& directory, const FileChoice& options);
 
-// Documents as schema/README.md describes them. Throw IntegrityError when stored looks are not what the
+// Documents as schema/README.md describes them. Throw IntegrityError when stored stop tests are not what the
 // stored results say.
 std::string export_json(Database& database, bool canonical);
 // One row per point, with the mean of every scalar quantity.

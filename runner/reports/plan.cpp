@@ -74,11 +74,11 @@ Totals totals_of(const Plan& plan, const Target& target) {
 // Looks at what is known as a run for the campaign's target would.
 void predict_point(PointPlan& point, const Campaign& campaign,
                    const std::vector<std::optional<Outcome>>& outcomes) {
-  const std::vector<Look> looks =
-      replay_looks(outcomes, campaign.target, campaign.minimum_realisations, campaign.maximum_realisations);
-  if (!looks.empty() && looks.back().verdict != Verdict::more) {
-    point.decided = looks.back();
-    point.ended = looks.back().seeds;
+  const std::vector<StopTest> stop_tests = replay_stop_tests(
+      outcomes, campaign.target, campaign.minimum_realisations, campaign.maximum_realisations);
+  if (!stop_tests.empty() && stop_tests.back().verdict != Verdict::more) {
+    point.decided = stop_tests.back();
+    point.ended = stop_tests.back().seeds;
     return;
   }
   point.ended = static_cast<int>(std::count_if(outcomes.begin(), outcomes.end(),
@@ -235,7 +235,7 @@ std::string legend(const Plan& plan, bool predicted) {
   for (const std::string& trial : plan.broke_off) text += fmt::format("the trial of {}\n", trial);
   if (predicted && plan.minimum < plan.maximum) {
     text +=
-        "seeds: of the look that will decide, expected (range that holds it 95 % of the time)\n"
+        "seeds: of the stop test that will decide, expected (range that holds it 95 % of the time)\n"
         "CPU h: of these seeds; all: expected and range of the sum, which are not the sums of those above\n";
   }
   return text;

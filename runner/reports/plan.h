@@ -30,8 +30,8 @@ struct PointPlan {
   std::string label;
   double particle_steps = 0;  // of one realisation
   MeasuredCost cost;          // cpu_seconds is NaN when nothing is known; count 0: scaled from other points
-  int ended = 0;              // seeds of the looks up to the deciding one, or so far
-  std::optional<Look> decided{};
+  int ended = 0;              // seeds of the stop tests up to the deciding one, or so far
+  std::optional<StopTest> decided{};
   Prediction prediction{};  // of a point that is not decided
   // Processor time over that of the same error at rest, where the engine says so (its derived
   // flow_over_rest).
@@ -45,9 +45,10 @@ struct PointPlan {
 
 // Of the points that are predicted or decided, in seconds. What is still to come takes
 //   max(sum over the points of seeds to come * wall time of one / workers,
-//       the largest sum over the looks to come of a point of ceil(seeds of the look / workers) * wall time)
-// with the workers, since a look waits for all its seeds; its range leaves room for a machine whose speed
-// changes (machine_allowance).
+//       the largest sum over the stop tests to come of a point of ceil(seeds of the stop test / workers) *
+//       wall time)
+// with the workers, since a stop test waits for all its seeds; its range leaves room for a machine whose
+// speed changes (machine_allowance).
 struct Totals {
   int points = 0, predicted = 0, likely_capped = 0;
   Expected<double> seeds, cpu_seconds, cpu_seconds_to_come, wall_seconds_to_come;

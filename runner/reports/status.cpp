@@ -36,11 +36,11 @@ Json point_json(const PointSummary& point) {
   return {{"label", point.point.label},
           {"hash", point.point.hash},
           {"settings", point.point.settings},
-          {"verdict", point.decided ? Json(to_string(point.looks.back().verdict)) : Json(nullptr)},
+          {"verdict", point.decided ? Json(to_string(point.stop_tests.back().verdict)) : Json(nullptr)},
           {"suspect", point.point.suspect},
           {"cancelled", point.point.cancelled},
           {"priority", point.point.priority},
-          {"kept_apart", to_json(point.kept_apart)},
+          {"set_aside", to_json(point.set_aside)},
           {"seeds",
            {{"wanted", point.wanted},
             {"wanted_ended", point.wanted_ended},
@@ -49,14 +49,14 @@ Json point_json(const PointSummary& point) {
             {"done", counts.done},
             {"failed", counts.failed},
             {"quarantined", counts.quarantined},
-            {"surplus", point.surplus()}}},
+            {"extra", point.extra()}}},
           {"losses", point.losses},
           {"loss_reasons", point.loss_reasons},
           {"flags", point.flags},
           {"reservations", reservations(point)},
           {"endings", to_json(point.endings)},
-          {"so_far", estimate_json(point.so_far)},
-          {"look", point.looks.empty() ? Json(nullptr) : look_json(point.looks.back())},
+          {"all_seeds", estimate_json(point.all_seeds)},
+          {"stop_test", point.stop_tests.empty() ? Json(nullptr) : stop_test_json(point.stop_tests.back())},
           {"cpu_seconds", counts.cpu_seconds},
           {"prediction", prediction_json(point)},
           {"workers", workers}};
@@ -64,9 +64,9 @@ Json point_json(const PointSummary& point) {
 
 }  // namespace
 
-Json to_json(const std::vector<KeptApart>& results) {
+Json to_json(const std::vector<SetAside>& results) {
   Json list = Json::array();
-  for (const KeptApart& kept : results) list.push_back({{"engine", kept.engine}, {"results", kept.results}});
+  for (const SetAside& kept : results) list.push_back({{"engine", kept.engine}, {"results", kept.results}});
   return list;
 }
 
@@ -93,23 +93,23 @@ CampaignTotals totals_of(const CampaignStatus& status) {
     totals.ended += point.counts.terminal();
     totals.running += point.counts.running;
     totals.lost += point.lost();
-    totals.surplus += point.surplus();
+    totals.extra += point.extra();
     totals.cpu_seconds += point.counts.cpu_seconds;
-    ++totals.standings[standing_word(point)];
+    ++totals.states[state_word(point)];
     for (const auto& [cause, count] : point.losses) totals.losses[cause] += count;
   }
   for (const HandedOver& bundle : status.handed_over) totals.handed_over += bundle.seeds;
   return totals;
 }
 
-int standing(const CampaignStatus& status) {
+int exit_code_of(const CampaignStatus& status) {
   const auto any = [&](auto is) { return std::any_of(status.points.begin(), status.points.end(), is); };
   if (any([](const PointSummary& point) { return point.point.suspect; })) return ExitCode::integrity;
   if (any([](const PointSummary& point) { return point.open(); })) return ExitCode::unfinished;
-  // A point that was cancelled early may have no look.
+  // A point that was cancelled early may have no stop test.
   const auto is_whole = [](const PointSummary& point) {
     if (!point.decided) return false;
-    const Verdict verdict = point.looks.back().verdict;
+    const Verdict verdict = point.stop_tests.back().verdict;
     return is_reached(verdict) && !has_losses(verdict);
   };
   return std::all_of(status.points.begin(), status.points.end(), is_whole) ? ExitCode::done
@@ -117,21 +117,21 @@ int standing(const CampaignStatus& status) {
 }
 
 int ending(const CampaignStatus& status, bool finished) {
-  const int code = standing(status);
+  const int code = exit_code_of(status);
   if (code == ExitCode::integrity) return code;
   if (!finished) return ExitCode::stopped;
   return code == ExitCode::unfinished ? ExitCode::unconverged : code;
 }
 
-std::string standing_word(const PointSummary& point) {
-  if (point.decided) return to_string(point.looks.back().verdict);
+std::string state_word(const PointSummary& point) {
+  if (point.decided) return to_string(point.stop_tests.back().verdict);
   return point.point.cancelled ? "cancelled" : "open";
 }
 
 std::string verdict_text(const PointSummary& point) {
-  std::string text = standing_word(point);
-  if (point.decided && has_losses(point.looks.back().verdict)) {
-    text += fmt::format("({})", point.looks.back().lost);
+  std::string text = state_word(point);
+  if (point.decided && has_losses(point.stop_tests.back().verdict)) {
+    text += fmt::format("({})", point.stop_tests.back().lost);
   } else if (point.lost() > 0) {
     text += fmt::format(", {} lost", point.lost());
   }
@@ -144,13 +144,13 @@ std::string verdict_text(const PointSummary& point) {
 std::vector<std::string> reservations(const PointSummary& point) {
   std::vector<std::string> found;
   if (point.endings.has_jammed()) found.emplace_back("jammed");
-  if (!point.looks.empty() && point.looks.back().transient) found.emplace_back("transient");
-  if (!point.looks.empty() && point.looks.back().untested) found.emplace_back("no-transient-test");
-  if (point.decided && is_skewed(point.looks.back(), point.confidence)) found.emplace_back("skewed");
-  if (!point.looks.empty() && point.looks.back().near_maximum) found.emplace_back("near-maximum");
+  if (!point.stop_tests.empty() && point.stop_tests.back().transient) found.emplace_back("transient");
+  if (!point.stop_tests.empty() && point.stop_tests.back().untested) found.emplace_back("no-transient-test");
+  if (point.decided && is_skewed(point.stop_tests.back(), point.confidence)) found.emplace_back("skewed");
+  if (!point.stop_tests.empty() && point.stop_tests.back().near_maximum) found.emplace_back("near-maximum");
   if (!point.without_interval.empty())
-    found.emplace_back(point.looks.back().repeated.empty() ? "equal-values" : "repeated-seeds");
-  if (point.earlier_look > 0) found.emplace_back("earlier-look");
+    found.emplace_back(point.stop_tests.back().repeated.empty() ? "equal-values" : "repeated-seeds");
+  if (point.earlier_stop_test > 0) found.emplace_back("earlier-stop-test");
   for (const auto& [code, count] : point.flags) {
     if (code == "jammed" && point.endings.has_jammed()) continue;  // said already
     found.push_back(fmt::format("{} flagged {}", count, code));
@@ -168,7 +168,7 @@ Json status_json(const CampaignStatus& status) {
           {"target", to_json(target.target)},
           {"realisations", {{"minimum", target.minimum}, {"maximum", target.maximum}}},
           {"owner", status.owner ? Json(*status.owner) : Json(nullptr)},
-          {"standing", standing(status)},
+          {"exit_code", exit_code_of(status)},
           {"seconds_to_go", to_json(status.to_go)},
           {"handed_over", bundles_json(status.handed_over)},
           {"points", points}};
@@ -179,33 +179,34 @@ Json status_json(const CampaignStatus& status) {
 namespace {
 
 // With its share of the mean, where the tolerance is one.
-std::string interval(const Look& look, const Tolerance& tolerance) {
-  const bool has_interval = std::isfinite(look.controlled_half_width);
-  if (!has_interval && look.controlled.count < 2) return "-";
-  const std::string text = with_error(look.controlled.mean, look.controlled_half_width);
-  return tolerance.is_relative() && has_interval ? fmt::format("{} ({})", text, percent(relative_width(look)))
-                                                 : text;
+std::string interval(const StopTest& stop_test, const Tolerance& tolerance) {
+  const bool has_interval = std::isfinite(stop_test.controlled_half_width);
+  if (!has_interval && stop_test.controlled.count < 2) return "-";
+  const std::string text = with_error(stop_test.controlled.mean, stop_test.controlled_half_width);
+  return tolerance.is_relative() && has_interval
+             ? fmt::format("{} ({})", text, percent(relative_width(stop_test)))
+             : text;
 }
 
 // "pressure 2.6 x": the observable whose half-width is the largest multiple of what is good enough.
-std::string farthest(const Look& look) {
-  const ObservableLook* found = nullptr;
-  for (const ObservableLook& one : look.each) {
+std::string farthest(const StopTest& stop_test) {
+  const ObservableStopTest* found = nullptr;
+  for (const ObservableStopTest& one : stop_test.each) {
     if (one.verdict && (found == nullptr || !(one.share <= found->share))) found = &one;
   }
   return fmt::format("{} {} x", found->observable, rough(found->share));
 }
 
-// Of a fixed number of realisations: each observable that is shown, over the seeds of the look or those so
-// far.
-std::vector<std::string> shown_cells(const PointSummary& point, const std::vector<Estimate>& so_far,
+// Of a fixed number of realisations: each observable that is shown, over the seeds of the stop test or those
+// so far.
+std::vector<std::string> shown_cells(const PointSummary& point, const std::vector<Estimate>& all_seeds,
                                      const Target& target) {
   std::vector<std::string> cells{fmt::format("{}/{}", point.wanted_ended, point.wanted)};
-  if (point.looks.empty()) {
-    for (const Estimate& one : so_far)
+  if (point.stop_tests.empty()) {
+    for (const Estimate& one : all_seeds)
       cells.push_back(with_error(one.mean, half_width(one, target.confidence)));
   } else {
-    for (const ObservableLook& one : each_of(point.looks.back(), target))
+    for (const ObservableStopTest& one : each_of(point.stop_tests.back(), target))
       cells.push_back(with_error(one.estimate.mean, one.half_width));
   }
   cells.push_back(verdict_text(point));
@@ -215,14 +216,14 @@ std::vector<std::string> shown_cells(const PointSummary& point, const std::vecto
 std::vector<std::string> cells(const PointSummary& point, const Target& target) {
   const bool with_others = target.observables().size() > 1;
   std::vector<std::string> cells{fmt::format("{}/{}", point.wanted_ended, point.wanted),
-                                 with_error(point.so_far.mean, point.so_far.standard_error)};
-  if (point.looks.empty()) {
+                                 with_error(point.all_seeds.mean, point.all_seeds.standard_error)};
+  if (point.stop_tests.empty()) {
     cells.emplace_back("-");
     if (with_others) cells.emplace_back("-");
   } else {
-    const Look& look = point.looks.back();
-    cells.push_back(interval(look, target.tolerance));
-    if (with_others) cells.push_back(farthest(look));
+    const StopTest& stop_test = point.stop_tests.back();
+    cells.push_back(interval(stop_test, target.tolerance));
+    if (with_others) cells.push_back(farthest(stop_test));
   }
   cells.push_back(verdict_text(point));
   return cells;
@@ -239,7 +240,7 @@ std::string heading(const CampaignStatus& status) {
 
 // Columns as a narrow terminal does without them; which point and which verdict are always there.
 namespace importance {
-constexpr int so_far = 1, seeds = 2, look = 3, farthest = 4;
+constexpr int all_seeds = 1, seeds = 2, stop_test = 3, farthest = 4;
 }
 
 // Of the columns that are shown.
@@ -256,10 +257,12 @@ std::string legend(const CampaignStatus& status, const std::vector<std::string>&
     parts.push_back(fmt::format("mean ± half-width of the {:g} % interval of the seeds that have ended",
                                 100 * target.confidence));
   } else {
-    if (shows("so far")) parts.emplace_back("so far: mean ± standard error of all seeds that have ended");
-    if (shows("look")) {
-      parts.push_back(fmt::format("look: mean ± half-width of the{}{:g} % interval at the last look", blank,
-                                  100 * target.confidence));
+    if (shows("all seeds"))
+      parts.emplace_back("all seeds: mean ± standard error of all seeds that have ended");
+    if (shows("stop test")) {
+      parts.push_back(
+          fmt::format("stop test: mean ± half-width of the{}{:g} % interval at the last stop test", blank,
+                      100 * target.confidence));
     }
     if (shows("farthest") && target.observables().size() > 1) {
       parts.emplace_back("farthest: the largest half-width, as a multiple of its tolerance");
@@ -270,16 +273,17 @@ std::string legend(const CampaignStatus& status, const std::vector<std::string>&
   return folded(text, width);
 }
 
-// A loosened target is met by the look by which it would have been met from the beginning: whoever could
-// choose the look afterwards could choose the answer.
-std::string earlier_looks_text(const CampaignStatus& status) {
+// A loosened target is met by the stop test by which it would have been met from the beginning: whoever could
+// choose the stop test afterwards could choose the answer.
+std::string earlier_stop_test_text(const CampaignStatus& status) {
   std::string text;
   for (const PointSummary& point : status.points) {
-    if (point.earlier_look == 0) continue;
+    if (point.earlier_stop_test == 0) continue;
     text += fmt::format(
-        "{}: the look at {} seeds decides, the first within the present target; all {} that have ended are "
-        "in \"so far\"\n",
-        point.point.label, point.looks.back().seeds, point.counts.terminal());
+        "{}: the stop test at {} seeds decides, the first within the present target; \"all seeds\" has all "
+        "{} "
+        "that have ended\n",
+        point.point.label, point.stop_tests.back().seeds, point.counts.terminal());
   }
   return text;
 }
@@ -308,11 +312,11 @@ std::string handed_over_text(const CampaignStatus& status) {
                      all > shown ? fmt::format(" and {} more", all - shown) : "");
 }
 
-std::string kept_apart_text(const CampaignStatus& status) {
+std::string set_aside_text(const CampaignStatus& status) {
   std::string text;
   for (const PointSummary& point : status.points) {
-    for (const KeptApart& kept : point.kept_apart) {
-      text += fmt::format("{}: {} results of engine {} are kept apart\n", point.point.label, kept.results,
+    for (const SetAside& kept : point.set_aside) {
+      text += fmt::format("{}: {} results of engine {} are set aside\n", point.point.label, kept.results,
                           kept.engine);
     }
   }
@@ -323,7 +327,7 @@ std::string seed_totals(const CampaignStatus& status) {
   const CampaignTotals totals = totals_of(status);
   std::string text = fmt::format("{} seeds ended", totals.ended);
   if (totals.lost > 0) text += fmt::format(", {} of them lost ({})", totals.lost, listed(totals.losses));
-  if (totals.surplus > 0) text += fmt::format(", {} surplus", totals.surplus);
+  if (totals.extra > 0) text += fmt::format(", {} extra", totals.extra);
   if (totals.running > 0) {
     text += fmt::format("; {} {}", totals.running,
                         status.owner ? "running" : "were running when the run was killed");
@@ -350,7 +354,7 @@ std::string losses_text(const CampaignStatus& status) {
 }  // namespace
 
 std::string point_totals(const CampaignStatus& status) {
-  return fmt::format("{}: {}", counted(status.points.size(), "point"), listed(totals_of(status).standings));
+  return fmt::format("{}: {}", counted(status.points.size(), "point"), listed(totals_of(status).states));
 }
 
 std::string status_table(const CampaignStatus& status, std::size_t width) {
@@ -363,13 +367,13 @@ std::string status_table(const CampaignStatus& status, std::size_t width) {
   const Target& target = status.campaign.target.target;
   const std::vector<std::string> observables = target.observables();
   if (target.has_tolerance()) {
-    table.add_column("so far", TextTable::Align::right, importance::so_far);
-    table.add_column("look", TextTable::Align::right, importance::look);
+    table.add_column("all seeds", TextTable::Align::right, importance::all_seeds);
+    table.add_column("stop test", TextTable::Align::right, importance::stop_test);
     if (observables.size() > 1) table.add_column("farthest", TextTable::Align::left, importance::farthest);
   } else {
     for (const std::string& name : observables) {
       table.add_column(name, TextTable::Align::right,
-                       name == target.observable ? importance::look : importance::so_far);
+                       name == target.observable ? importance::stop_test : importance::all_seeds);
     }
   }
   table.add_column("verdict", TextTable::Align::left);
@@ -377,12 +381,12 @@ std::string status_table(const CampaignStatus& status, std::size_t width) {
     std::vector<std::string> row = points.cells(i);
     const std::vector<std::string> rest =
         target.has_tolerance() ? cells(status.points[i], target)
-                               : shown_cells(status.points[i], status.forecasts[i].so_far, target);
+                               : shown_cells(status.points[i], status.forecasts[i].all_seeds, target);
     row.insert(row.end(), rest.begin(), rest.end());
     table.add_row(std::move(row));
   }
   const std::string totals = point_totals(status) + '\n' + seed_totals(status) + losses_text(status) +
-                             earlier_looks_text(status) + kept_apart_text(status) +
+                             earlier_stop_test_text(status) + set_aside_text(status) +
                              predictions_text(status.points);
   return folded(heading(status), width) + table.text_within(width) + '\n' +
          legend(status, table.left_out(width), width) + '\n' + folded(totals, width);
@@ -393,7 +397,7 @@ std::string workers_text(const CampaignStatus& status, std::size_t width) {
   std::string to_go = status.to_go ? to_string(*status.to_go) : "";
   if (!to_go.empty()) to_go = ": " + to_go;
   if (!status.owner) {
-    if (standing(status) != 4) return "";
+    if (exit_code_of(status) != 4) return "";
     return status.handed_over.empty() ? fmt::format("\nnobody runs it now; `peclet run` goes on{}\n", to_go)
                                       : "\nnobody takes results in now; `peclet ingest` does\n";
   }
@@ -424,7 +428,7 @@ std::string workers_text(const CampaignStatus& status, std::size_t width) {
 
 namespace {
 
-// Seeds that an open point still needs, if it needs as many as expected; its next look in any case.
+// Seeds that an open point still needs, if it needs as many as expected; its next stop test in any case.
 int seeds_to_come(const PointSummary& point) {
   return std::max(point.wanted, point.prediction->seeds.likely) - point.wanted_ended;
 }

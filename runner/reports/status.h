@@ -30,31 +30,31 @@ CampaignStatus read_status(Database& database, std::optional<std::int64_t> owner
 // What all points have together.
 struct CampaignTotals {
   int decided = 0, workers = 0;
-  int ended = 0, running = 0, lost = 0, surplus = 0, handed_over = 0;  // seeds
+  int ended = 0, running = 0, lost = 0, extra = 0, handed_over = 0;  // seeds
   double cpu_seconds = 0;
-  std::map<std::string, int> standings;  // points by standing_word()
-  std::map<std::string, int> losses;     // seeds by cause
+  std::map<std::string, int> states;  // points by state_word()
+  std::map<std::string, int> losses;  // seeds by cause
 };
 CampaignTotals totals_of(const CampaignStatus& status);
 
 // 0 every point converged or complete; 3 decided, but some capped, failed, cancelled or with losses; 4 not
 // finished; 6 some point is suspect: a seed gave two different results.
-int standing(const CampaignStatus& status);
-// The exit code of a process that has run it: standing(), or 75 when it did not finish what it was to do.
+int exit_code_of(const CampaignStatus& status);
+// The exit code of a process that has run it: exit_code_of(), or 75 when it did not finish what it was to do.
 int ending(const CampaignStatus& status, bool finished);
 
 // "3 points: 1 capped, 2 open"
 std::string point_totals(const CampaignStatus& status);
 
 // The verdict in a word; "open" or "cancelled" without one.
-std::string standing_word(const PointSummary& point);
+std::string state_word(const PointSummary& point);
 
 // "converged", "converged-with-losses(2)", "complete", "capped, 2 lost", "failed, 10 lost", "open"; "open,
 // suspect"; "cancelled".
 std::string verdict_text(const PointSummary& point);
 // What speaks against its estimate: "jammed", "transient", "no-transient-test", "skewed", "near-maximum",
-// "equal-values", "repeated-seeds", "2 flagged timestep", "suspect"; and "earlier-look" where a target that
-// was loosened is met by an earlier look than there are seeds for.
+// "equal-values", "repeated-seeds", "2 flagged timestep", "suspect"; and "earlier-stop-test" where a target
+// that was loosened is met by an earlier stop test than there are seeds for.
 std::vector<std::string> reservations(const PointSummary& point);
 
 // The table and its totals; as the process that owns the campaign prints them at the end. In few columns of a
@@ -64,7 +64,7 @@ std::string status_table(const CampaignStatus& status, std::size_t width = unlim
 std::string workers_text(const CampaignStatus& status, std::size_t width = unlimited_width);
 Json status_json(const CampaignStatus& status);
 // [{"engine", "results"}]
-Json to_json(const std::vector<KeptApart>& results);
+Json to_json(const std::vector<SetAside>& results);
 
 // How good the predictions of `peclet plan --pilot` were.
 //

@@ -38,7 +38,7 @@ Estimate estimate_of(const std::vector<Observation>& observed, const std::vector
 }
 
 // All but half-width, share and verdict, which are the rule's.
-ObservableLook look_at(const std::vector<Observation>& observed) {
+ObservableStopTest stop_test_at(const std::vector<Observation>& observed) {
   std::vector<double> controlled;
   controlled.reserve(observed.size());
   int contrasts = 0;
@@ -46,12 +46,12 @@ ObservableLook look_at(const std::vector<Observation>& observed) {
     controlled.push_back(observation.controlled());
     if (std::isfinite(observation.first_half)) ++contrasts;
   }
-  ObservableLook look;
-  look.estimate = estimate_of(observed, controlled);
-  look.skewness = skewness(controlled);
-  look.transient = has_transient(observed);
-  look.untested = lacks_blocks(look.estimate.count, contrasts);
-  return look;
+  ObservableStopTest stop_test;
+  stop_test.estimate = estimate_of(observed, controlled);
+  stop_test.skewness = skewness(controlled);
+  stop_test.transient = has_transient(observed);
+  stop_test.untested = lacks_blocks(stop_test.estimate.count, contrasts);
+  return stop_test;
 }
 
 Estimate without_control(const std::vector<Observation>& observed) {
@@ -61,43 +61,43 @@ Estimate without_control(const std::vector<Observation>& observed) {
   return estimate_of(observed, values);
 }
 
-Look look_at(std::span<const std::optional<Outcome>> cohort, StopRule& rule,
-             const std::vector<std::string>& observables, const Target& target) {
-  std::vector<ObservableLook> each;
+StopTest stop_test_at(std::span<const std::optional<Outcome>> cohort, StopRule& rule,
+                      const std::vector<std::string>& observables, const Target& target) {
+  std::vector<ObservableStopTest> each;
   std::vector<Estimate> estimates;
-  Look look;
-  look.seeds = static_cast<int>(cohort.size());
+  StopTest stop_test;
+  stop_test.seeds = static_cast<int>(cohort.size());
   for (std::size_t place = 0; place < observables.size(); ++place) {
     const std::vector<Observation> observed = observed_in(cohort, place);
-    if (place == 0) look.estimate = without_control(observed);
-    each.push_back(look_at(observed));
+    if (place == 0) stop_test.estimate = without_control(observed);
+    each.push_back(stop_test_at(observed));
     each.back().observable = observables[place];
   }
-  look.repeated = repeated_seeds(cohort);
-  if (!look.repeated.empty()) {
-    look.estimate.values = Estimate::Values::repeated;
-    for (ObservableLook& one : each) one.estimate.values = Estimate::Values::repeated;
+  stop_test.repeated = repeated_seeds(cohort);
+  if (!stop_test.repeated.empty()) {
+    stop_test.estimate.values = Estimate::Values::repeated;
+    for (ObservableStopTest& one : each) one.estimate.values = Estimate::Values::repeated;
   }
   estimates.reserve(each.size());
-  for (const ObservableLook& one : each) estimates.push_back(one.estimate);
-  const StopRule::Judgement judgement = rule.judge(look.seeds, estimates);
+  for (const ObservableStopTest& one : each) estimates.push_back(one.estimate);
+  const StopRule::Judgement judgement = rule.judge(stop_test.seeds, estimates);
   for (std::size_t place = 0; place < each.size(); ++place) {
     const StopRule::Finding& finding = judgement.findings[place];
     each[place].half_width = finding.half_width;
     each[place].share = finding.share;
     each[place].verdict = finding.verdict;
-    look.transient = look.transient || each[place].transient;
-    look.untested = look.untested || each[place].untested;
+    stop_test.transient = stop_test.transient || each[place].transient;
+    stop_test.untested = stop_test.untested || each[place].untested;
   }
-  look.lost = look.seeds - look.estimate.count;
-  look.half_width = rule.half_width(look.estimate);
-  look.controlled = each.front().estimate;
-  look.controlled_half_width = each.front().half_width;
-  look.skewness = each.front().skewness;
-  look.verdict = judgement.verdict;
-  if (each.size() > 1) look.each = std::move(each);
-  look.near_maximum = is_near_maximum(look, target, rule.schedule().back());
-  return look;
+  stop_test.lost = stop_test.seeds - stop_test.estimate.count;
+  stop_test.half_width = rule.half_width(stop_test.estimate);
+  stop_test.controlled = each.front().estimate;
+  stop_test.controlled_half_width = each.front().half_width;
+  stop_test.skewness = each.front().skewness;
+  stop_test.verdict = judgement.verdict;
+  if (each.size() > 1) stop_test.each = std::move(each);
+  stop_test.near_maximum = is_near_maximum(stop_test, target, rule.schedule().back());
+  return stop_test;
 }
 
 }  // namespace
@@ -135,16 +135,16 @@ Observation Outcome::of(std::size_t place) const {
   return place <= further.size() ? further[place - 1] : Observation{};
 }
 
-std::vector<ObservableLook> each_of(const Look& look, const Target& target) {
-  if (!look.each.empty()) return look.each;
-  return {{target.observable, look.controlled, look.controlled_half_width,
-           target.tolerance.share(look.controlled_half_width, look.controlled.mean), look.skewness,
-           look.transient, look.untested, look.verdict}};
+std::vector<ObservableStopTest> each_of(const StopTest& stop_test, const Target& target) {
+  if (!stop_test.each.empty()) return stop_test.each;
+  return {{target.observable, stop_test.controlled, stop_test.controlled_half_width,
+           target.tolerance.share(stop_test.controlled_half_width, stop_test.controlled.mean),
+           stop_test.skewness, stop_test.transient, stop_test.untested, stop_test.verdict}};
 }
 
-double largest_share(const Look& look, const Target& target) {
+double largest_share(const StopTest& stop_test, const Target& target) {
   double largest = 0;
-  for (const ObservableLook& one : each_of(look, target)) {
+  for (const ObservableStopTest& one : each_of(stop_test, target)) {
     if (!one.verdict) continue;
     if (std::isnan(one.share)) return one.share;
     largest = std::max(largest, one.share);
@@ -152,23 +152,23 @@ double largest_share(const Look& look, const Target& target) {
   return largest;
 }
 
-std::vector<Estimate> estimates_of(const Look& look, const Target& target) {
+std::vector<Estimate> estimates_of(const StopTest& stop_test, const Target& target) {
   std::vector<Estimate> estimates;
-  for (const ObservableLook& one : each_of(look, target)) estimates.push_back(one.estimate);
+  for (const ObservableStopTest& one : each_of(stop_test, target)) estimates.push_back(one.estimate);
   return estimates;
 }
 
-bool is_near_maximum(const Look& look, const Target& target, int maximum) {
-  if (!is_reached(look.verdict)) return false;
-  const std::vector<ObservableLook> each = each_of(look, target);
-  return std::any_of(each.begin(), each.end(), [&](const ObservableLook& one) {
-    return one.verdict && is_near_maximum(look.seeds, one.estimate.count, one.share, maximum);
+bool is_near_maximum(const StopTest& stop_test, const Target& target, int maximum) {
+  if (!is_reached(stop_test.verdict)) return false;
+  const std::vector<ObservableStopTest> each = each_of(stop_test, target);
+  return std::any_of(each.begin(), each.end(), [&](const ObservableStopTest& one) {
+    return one.verdict && is_near_maximum(stop_test.seeds, one.estimate.count, one.share, maximum);
   });
 }
 
-std::vector<std::string> without_interval(const Look& look, const Target& target) {
+std::vector<std::string> without_interval(const StopTest& stop_test, const Target& target) {
   std::vector<std::string> found;
-  for (const ObservableLook& one : each_of(look, target)) {
+  for (const ObservableStopTest& one : each_of(stop_test, target)) {
     if (one.verdict && one.estimate.count > 1 && !std::isfinite(one.half_width))
       found.push_back(one.observable);
   }
@@ -186,37 +186,38 @@ std::vector<int> repeated_seeds(std::span<const std::optional<Outcome>> cohort) 
   return repeated;
 }
 
-double relative_width(const Look& look) {
-  return look.controlled_half_width / std::abs(look.controlled.mean);
+double relative_width(const StopTest& stop_test) {
+  return stop_test.controlled_half_width / std::abs(stop_test.controlled.mean);
 }
 
-bool is_skewed(const Look& look, double confidence) {
-  const double n = look.controlled.count;
-  if (!std::isfinite(look.skewness) || look.controlled.values == Estimate::Values::share) return false;
+bool is_skewed(const StopTest& stop_test, double confidence) {
+  const double n = stop_test.controlled.count;
+  if (!std::isfinite(stop_test.skewness) || stop_test.controlled.values == Estimate::Values::share)
+    return false;
   const double chance = std::sqrt(6 * n * (n - 1) / ((n - 2) * (n + 1) * (n + 3)));  // of a normal population
   const boost::math::normal standard;
   const double z = boost::math::quantile(standard, (1 + confidence) / 2);
   const double loss = 2 * boost::math::pdf(standard, z) * z * (std::pow(z, 4) + 2 * z * z - 3) *
-                      look.skewness * look.skewness / (18 * n);
-  return std::abs(look.skewness) > 2.5 * chance && loss > 0.01;
+                      stop_test.skewness * stop_test.skewness / (18 * n);
+  return std::abs(stop_test.skewness) > 2.5 * chance && loss > 0.01;
 }
 
-bool has_control(const Look& look) {
-  return look.estimate.count > 0 && look.controlled.mean != look.estimate.mean;
+bool has_control(const StopTest& stop_test) {
+  return stop_test.estimate.count > 0 && stop_test.controlled.mean != stop_test.estimate.mean;
 }
 
-std::vector<Look> replay_looks(const std::vector<std::optional<Outcome>>& outcomes, const Target& target,
-                               int minimum, int maximum) {
+std::vector<StopTest> replay_stop_tests(const std::vector<std::optional<Outcome>>& outcomes,
+                                        const Target& target, int minimum, int maximum) {
   StopRule rule(target, minimum, maximum);
   const std::vector<std::string> observables = target.observables();
-  std::vector<Look> looks;
+  std::vector<StopTest> stop_tests;
   for (const int seeds : rule.schedule()) {
     if (!is_closed(outcomes, seeds)) break;
-    looks.push_back(
-        look_at(std::span(outcomes).first(static_cast<std::size_t>(seeds)), rule, observables, target));
-    if (looks.back().verdict != Verdict::more) break;
+    stop_tests.push_back(
+        stop_test_at(std::span(outcomes).first(static_cast<std::size_t>(seeds)), rule, observables, target));
+    if (stop_tests.back().verdict != Verdict::more) break;
   }
-  return looks;
+  return stop_tests;
 }
 
 Json number_json(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -240,9 +241,9 @@ Estimate::Values stored_values(const Estimate& estimate, double half_width) {
   return is_share ? Estimate::Values::share : Estimate::Values::spread;
 }
 
-Json observables_json(const Look& look) {
+Json observables_json(const StopTest& stop_test) {
   Json json = Json::array();
-  for (const ObservableLook& one : look.each) {
+  for (const ObservableStopTest& one : stop_test.each) {
     Json& of = json.emplace_back(estimate_json(one.estimate));
     of["observable"] = one.observable;
     of["half_width"] = number_json(one.half_width);
@@ -254,11 +255,11 @@ Json observables_json(const Look& look) {
   return json;
 }
 
-std::vector<ObservableLook> observables_of(const Json& json) {
+std::vector<ObservableStopTest> observables_of(const Json& json) {
   const auto number = [](const Json& value) { return value.is_null() ? std::nan("") : value.get<double>(); };
-  std::vector<ObservableLook> each;
+  std::vector<ObservableStopTest> each;
   for (const Json& of : json) {
-    ObservableLook& one = each.emplace_back();
+    ObservableStopTest& one = each.emplace_back();
     one.observable = of.at("observable").get<std::string>();
     one.estimate = {of.at("count").get<int>(), number(of.at("mean")), number(of.at("standard_error"))};
     one.half_width = number(of.at("half_width"));
@@ -272,19 +273,19 @@ std::vector<ObservableLook> observables_of(const Json& json) {
   return each;
 }
 
-Json look_json(const Look& look) {
-  Json json = estimate_json(look.controlled);
-  json["seeds"] = look.seeds;
-  json["lost"] = look.lost;
-  json["half_width"] = number_json(look.controlled_half_width);
-  json["uncontrolled"] = estimate_json(look.estimate);
-  json["uncontrolled"]["half_width"] = number_json(look.half_width);
-  json["skewness"] = number_json(look.skewness);
-  json["transient"] = look.untested ? Json(nullptr) : Json(look.transient);
-  json["verdict"] = to_string(look.verdict);
-  json["near_maximum"] = look.near_maximum;
-  json["repeated_seeds"] = look.repeated;
-  if (!look.each.empty()) json["observables"] = observables_json(look);
+Json stop_test_json(const StopTest& stop_test) {
+  Json json = estimate_json(stop_test.controlled);
+  json["seeds"] = stop_test.seeds;
+  json["lost"] = stop_test.lost;
+  json["half_width"] = number_json(stop_test.controlled_half_width);
+  json["plain"] = estimate_json(stop_test.estimate);
+  json["plain"]["half_width"] = number_json(stop_test.half_width);
+  json["skewness"] = number_json(stop_test.skewness);
+  json["transient"] = stop_test.untested ? Json(nullptr) : Json(stop_test.transient);
+  json["verdict"] = to_string(stop_test.verdict);
+  json["near_maximum"] = stop_test.near_maximum;
+  json["repeated_seeds"] = stop_test.repeated;
+  if (!stop_test.each.empty()) json["observables"] = observables_json(stop_test);
   return json;
 }
 

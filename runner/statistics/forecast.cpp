@@ -28,9 +28,9 @@ double share_at(const Estimate& known, double quantile) {
 
 // Returns the estimates that are expected of `seeds` seeds: Student's factor and the standard error both
 // fall.
-std::vector<Estimate> expected_at(const std::vector<Estimate>& so_far, int ended, int seeds,
+std::vector<Estimate> expected_at(const std::vector<Estimate>& all_seeds, int ended, int seeds,
                                   const Truth& truth) {
-  std::vector<Estimate> expected = so_far;
+  std::vector<Estimate> expected = all_seeds;
   for (Estimate& one : expected) {
     const double growth = static_cast<double>(seeds) / ended;
     const auto values = static_cast<int>(std::lround(one.count * growth));
@@ -127,9 +127,9 @@ Spread spread(const PointForecast& point, const Spread& of_all) {
 // and 90 % of what is open.
 Expected<int> seeds_of(const PointForecast& point, StopRule& rule) {
   const int minimum = rule.schedule().front(), maximum = rule.schedule().back();
-  const int values = least_count(point.so_far);
-  if (values < 2 || !rule.has_measure(point.so_far)) return {minimum, minimum, maximum};
-  const auto at = [&](const Truth& truth) { return stop_after(point.so_far, point.ended, rule, truth); };
+  const int values = least_count(point.all_seeds);
+  if (values < 2 || !rule.has_measure(point.all_seeds)) return {minimum, minimum, maximum};
+  const auto at = [&](const Truth& truth) { return stop_after(point.all_seeds, point.ended, rule, truth); };
   constexpr double outside = 0.1;
   return {at({}), at(truth_at(values - 1, outside)), at(truth_at(values - 1, 1 - outside))};
 }
@@ -140,10 +140,10 @@ Truth truth_at(double degrees, double quantile) {
   return {std::isnan(degrees) ? 1 : variance_excess(degrees, 1 - quantile), quantile};
 }
 
-int stop_after(const std::vector<Estimate>& so_far, int ended, StopRule& rule, const Truth& truth) {
+int stop_after(const std::vector<Estimate>& all_seeds, int ended, StopRule& rule, const Truth& truth) {
   const std::vector<int>& schedule = rule.schedule();
   if (!rule.has_tolerance()) return schedule.back();
-  const auto stops = [&](int seeds) { return rule.is_met(expected_at(so_far, ended, seeds, truth)); };
+  const auto stops = [&](int seeds) { return rule.is_met(expected_at(all_seeds, ended, seeds, truth)); };
   const auto later = std::upper_bound(schedule.begin(), schedule.end(), ended);
   const auto enough = std::find_if(later, schedule.end(), stops);
   return enough == schedule.end() ? schedule.back() : *enough;
@@ -151,10 +151,10 @@ int stop_after(const std::vector<Estimate>& so_far, int ended, StopRule& rule, c
 
 double rounds_until(int ended, int seeds, const std::vector<int>& schedule, int workers) {
   double rounds = 0;
-  for (const int look : schedule) {
-    if (look <= ended || look > seeds) continue;
-    rounds += std::ceil(static_cast<double>(look - ended) / workers);
-    ended = look;
+  for (const int stop_test : schedule) {
+    if (stop_test <= ended || stop_test > seeds) continue;
+    rounds += std::ceil(static_cast<double>(stop_test - ended) / workers);
+    ended = stop_test;
   }
   return rounds;
 }
@@ -202,12 +202,12 @@ std::string obstacle_text(const Prediction& prediction) {
   return "";
 }
 
-int expected_seeds(const std::vector<Look>& looks, const Target& target, int minimum, int maximum) {
-  if (looks.empty()) return minimum;
+int expected_seeds(const std::vector<StopTest>& stop_tests, const Target& target, int minimum, int maximum) {
+  if (stop_tests.empty()) return minimum;
   StopRule rule(target, minimum, maximum);
-  const std::vector<Estimate> known = estimates_of(looks.back(), target);
+  const std::vector<Estimate> known = estimates_of(stop_tests.back(), target);
   if (least_count(known) < 2 || !rule.has_measure(known)) return maximum;
-  return stop_after(known, looks.back().seeds, rule);
+  return stop_after(known, stop_tests.back().seeds, rule);
 }
 
 Cost::Cost(std::vector<double> seconds) : seconds_(std::move(seconds)) {

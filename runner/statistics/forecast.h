@@ -4,9 +4,9 @@
 // Seeds. Of n values with the sample variance s^2 the true variance is distributed as
 //   (n - 1) s^2 / chi^2(n - 1),
 // and the true share of k ones in n values as Beta(k + 1/2, n - k + 1/2). For each quantile of these the stop
-// rule, carried out with the estimates that are expected of more seeds, gives the look at which the point
-// stops: stop_after(). The median is what is expected, and two outer quantiles are the ends of the range. All
-// observables of a target have the same quantile.
+// rule, carried out with the estimates that are expected of more seeds, gives the stop test at which the
+// point stops: stop_after(). The median is what is expected, and two outer quantiles are the ends of the
+// range. All observables of a target have the same quantile.
 //
 // A sum over points is known better than each of them, since their errors partly cancel. There the variances
 // of all points are off by one factor, f / chi^2(f), with Satterthwaite's degrees of freedom of a sum of
@@ -49,7 +49,7 @@ struct Truth {
 Truth truth_at(double degrees, double quantile);
 
 // Returns numbers_at(quantile) at the median and at the ends of the range. These lie beyond 2.5 and 97.5 %,
-// because the estimates at the looks scatter, too (results/planning).
+// because the estimates at the stop tests scatter, too (results/planning).
 template <typename Numbers>
 auto expected(const Numbers& numbers_at) {
   constexpr double outside = 0.02;
@@ -58,11 +58,11 @@ auto expected(const Numbers& numbers_at) {
 }
 
 // Returns the first look after `ended` seeds at which the point stops if it goes on as its first `ended`
-// seeds, which have these estimates, let expect; the last look if none stops it. Requires two values of each
-// observable, unless the rule has no tolerance.
-int stop_after(const std::vector<Estimate>& so_far, int ended, StopRule& rule, const Truth& truth = {});
-// Returns the rounds of all workers in which a point comes from `ended` to `seeds` ended seeds: a look waits
-// for all its seeds.
+// seeds, which have these estimates, let expect; the last stop test if none stops it. Requires two values of
+// each observable, unless the rule has no tolerance.
+int stop_after(const std::vector<Estimate>& all_seeds, int ended, StopRule& rule, const Truth& truth = {});
+// Returns the rounds of all workers in which a point comes from `ended` to `seeds` ended seeds: a stop test
+// waits for all its seeds.
 double rounds_until(int ended, int seeds, const std::vector<int>& schedule, int workers);
 
 // Why nothing can be predicted of a point.
@@ -79,23 +79,23 @@ struct Prediction {
   int pilot = 0;  // seeds that it was made from: 0 .. pilot - 1
   int lost = 0;   // of them, to the observable that lacks most; later ones are taken to be lost as often
   std::vector<Estimate> estimates{};  // of the pilot
-  Expected<int> seeds;                // of the deciding look
+  Expected<int> seeds;                // of the deciding stop test
   double capped = 0;                  // probability of ending at the maximum without convergence
 
   int fewest_values() const { return pilot - lost; }
 };
 
-// Predicts the seeds of a point that is not decided from outcomes as of replay_looks(), up to the first seed
-// that has not ended. Without a tolerance there is no obstacle, and the number of seeds is sure.
+// Predicts the seeds of a point that is not decided from outcomes as of replay_stop_tests(), up to the first
+// seed that has not ended. Without a tolerance there is no obstacle, and the number of seeds is sure.
 Prediction predict(const std::vector<std::optional<Outcome>>& outcomes, const Target& target, int minimum,
                    int maximum);
 
 // "2 of 4 seeds are lost", for people; "" without an obstacle.
 std::string obstacle_text(const Prediction& prediction);
 
-// Returns the number of seeds at which a point with these looks is expected to stop if its spread stays that
-// of the last look.
-int expected_seeds(const std::vector<Look>& looks, const Target& target, int minimum, int maximum);
+// Returns the number of seeds at which a point with these stop tests is expected to stop if its spread stays
+// that of the last stop test.
+int expected_seeds(const std::vector<StopTest>& stop_tests, const Target& target, int minimum, int maximum);
 
 // The factor by which the mean speed of a machine may change, either way. Chosen so that ranges hold the time
 // to go 93 to 98 % of the time if the speed wanders between 1 and 1/2 (results/planning).
@@ -134,9 +134,9 @@ double mean_cost(const Cost& ended, const std::vector<Unfinished>& running);
 // What the time to go of a point depends on.
 struct PointForecast {
   Cost cost;
-  std::vector<Estimate> so_far{};  // of the values that have ended, of Target::observables() in that order
-  int ended = 0;                   // seeds, lost ones included
-  int running = 0;                 // seeds that workers have
+  std::vector<Estimate> all_seeds{};  // of the values that have ended, of Target::observables() in that order
+  int ended = 0;                      // seeds, lost ones included
+  int running = 0;                    // seeds that workers have
   bool decided = false;
   std::vector<Unfinished> unfinished{};  // of the running seeds those of which something is known
 };
@@ -148,8 +148,8 @@ std::string to_string(const TimeToGo& to_go);
 // {"likely": 720, "low": 600, "high": 1080}; null if nothing is known.
 Json to_json(const std::optional<TimeToGo>& to_go);
 
-// Returns the longer one of two times: of the work, shared by the workers, and of the looks of a point, which
-// come one after another and wait for all of their seeds. Nothing if no realisation has ended yet.
+// Returns the longer one of two times: of the work, shared by the workers, and of the stop tests of a point,
+// which come one after another and wait for all of their seeds. Nothing if no realisation has ended yet.
 std::optional<TimeToGo> time_to_go(const std::vector<PointForecast>& points, const Target& target,
                                    int minimum, int maximum, int workers);
 

@@ -99,7 +99,7 @@ void QuantityEstimates::add_numbers(Sums& sums, std::span<const double> numbers,
   }
   for (std::size_t k = 0; k < elements; ++k) add_number(sums.plain[k], values[k], quantity.is_share);
   if (!quantity.control) return;
-  // As in a look: a value without its control counts as it is.
+  // As in a stop test: a value without its control counts as it is.
   for (std::size_t k = 0; k < elements; ++k) {
     add_number(sums.controlled[k], values[k] + (std::isnan(second[k]) ? 0 : second[k]));
   }
@@ -160,7 +160,7 @@ std::vector<QuantityEstimate> QuantityEstimates::estimates() const {
     QuantityEstimate found{sums.quantity, {}, {}, sums.unlike};
     if (sums.quantity.control) {
       found.estimates = estimates_of(sums.controlled);
-      found.uncontrolled = estimates_of(sums.plain);
+      found.plain = estimates_of(sums.plain);
     } else if (!sums.quantity.ratio) {
       found.estimates = estimates_of(sums.plain);
     } else {
@@ -191,7 +191,7 @@ Json QuantityEstimates::json(double confidence) const {
     json["unit"] = quantity.unit;
     json["estimator"] = estimator_of(quantity);
     json["axes"] = quantity.axes;
-    if (quantity.control) json["uncontrolled"] = columns(found.uncontrolled, quantity, confidence);
+    if (quantity.control) json["plain"] = columns(found.plain, quantity, confidence);
     if (found.unlike > 0) json["unlike"] = found.unlike;
     all[quantity.name] = std::move(json);
   }

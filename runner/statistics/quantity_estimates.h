@@ -1,8 +1,8 @@
 // What the results of a point say together: for every quantity, element by element, the mean over the seeds
 // and its standard error.
 //
-// A mean is that of value + control variate - its known mean where the quantity has one, as in a look, and
-// beside it stands the one without. A ratio of means R = sum N / sum D has the standard error of the
+// A mean is that of value + control variate - its known mean where the quantity has one, as in a stop test,
+// and beside it stands the one without. A ratio of means R = sum N / sum D has the standard error of the
 // jackknife (Efron & Tibshirani, An Introduction to the Bootstrap, 1993, eq. 11.5),
 //   s^2 = (n - 1) / n sum_i (R_i - mean of R_i)^2,
 // R_i the ratio without seed i. Both errors are those of independent seeds; s of a constant D is the standard
@@ -26,9 +26,9 @@ namespace peclet::runner {
 // Lists of as many as the quantity has elements, the last axis running fastest.
 struct QuantityEstimate {
   Quantity quantity;
-  std::vector<Estimate> estimates;     // NaN where there are no values
-  std::vector<Estimate> uncontrolled;  // empty without a control variate
-  int unlike = 0;                      // results that describe it otherwise than the first one; left out
+  std::vector<Estimate> estimates;  // NaN where there are no values
+  std::vector<Estimate> plain;      // empty without a control variate
+  int unlike = 0;                   // results that describe it otherwise than the first one; left out
 };
 
 class QuantityEstimates {
@@ -46,7 +46,7 @@ class QuantityEstimates {
   // In the order of the names.
   std::vector<QuantityEstimate> estimates() const;
   // {"NAME": {"symbol", "unit", "estimator", "axes", "count", "mean", "standard_error", "half_width",
-  // "uncontrolled"}}, the numbers as lists over the axes; half-widths as of half_width().
+  // "plain"}}, the numbers as lists over the axes; half-widths as of half_width().
   Json json(double confidence) const;
 
  private:

@@ -18,8 +18,8 @@ namespace peclet::runner {
 
 namespace {
 
-bool decides(const std::vector<Look>& looks) {
-  return !looks.empty() && looks.back().verdict != Verdict::more;
+bool decides(const std::vector<StopTest>& stop_tests) {
+  return !stop_tests.empty() && stop_tests.back().verdict != Verdict::more;
 }
 
 std::string sum_text(const SummedError& error) {
@@ -36,12 +36,13 @@ Scheduler::Scheduler(std::vector<std::vector<std::optional<Outcome>>> outcomes, 
       minimum_(minimum),
       maximum_(maximum),
       ceiling_(maximum),
-      schedule_(look_schedule(minimum, maximum)) {
+      schedule_(stop_test_schedule(minimum, maximum)) {
   for (std::vector<std::optional<Outcome>>& known : outcomes) {
     Point point;
-    point.so_far.resize(target_.observables().size());
+    point.all_seeds.resize(target_.observables().size());
     point.outcomes = std::move(known);
-    // Seeds beyond the maximum (it was larger once) are kept by the database and have no part in the looks.
+    // Seeds beyond the maximum (it was larger once) are kept by the database and have no part in the stop
+    // tests.
     if (std::ssize(point.outcomes) > maximum_) point.outcomes.resize(static_cast<std::size_t>(maximum_));
     for (const std::optional<Outcome>& outcome : point.outcomes) {
       point.phases.push_back(outcome ? Phase::ended : Phase::waiting);
@@ -50,7 +51,7 @@ Scheduler::Scheduler(std::vector<std::vector<std::optional<Outcome>>> outcomes, 
       ++point.all_ended;
       count_in(point, *outcome);
     }
-    look_at(point);
+    stop_test_at(point);
     points_.push_back(std::move(point));
   }
 }
@@ -71,34 +72,37 @@ void Scheduler::close(Point& point) {
     ++point.closed;
 }
 
-void Scheduler::look_at(Point& point) {
+void Scheduler::stop_test_at(Point& point) {
   close(point);
-  point.looks = replay_looks(point.outcomes, target_, minimum_, maximum_);
-  point.expected = expected_seeds(point.looks, target_, minimum_, maximum_);
-  point.fall = decides(point.looks) ? 0 : expected_fall(point);
+  point.stop_tests = replay_stop_tests(point.outcomes, target_, minimum_, maximum_);
+  point.expected = expected_seeds(point.stop_tests, target_, minimum_, maximum_);
+  point.fall = decides(point.stop_tests) ? 0 : expected_fall(point);
 }
 
 void Scheduler::count_in(Point& point, const Outcome& outcome) {
-  for (std::size_t place = 0; place < point.so_far.size(); ++place)
-    add(point.so_far[place], outcome.of(place));
+  for (std::size_t place = 0; place < point.all_seeds.size(); ++place)
+    add(point.all_seeds[place], outcome.of(place));
 }
 
-std::vector<Estimate> Scheduler::so_far(int point) const { return estimates_of(point_at(point).so_far); }
+std::vector<Estimate> Scheduler::all_seeds(int point) const {
+  return estimates_of(point_at(point).all_seeds);
+}
 
-bool Scheduler::decided(int point) const { return decides(point_at(point).looks); }
+bool Scheduler::decided(int point) const { return decides(point_at(point).stop_tests); }
 
 bool Scheduler::finished() const {
   return std::none_of(points_.begin(), points_.end(), [this](const Point& point) { return is_open(point); });
 }
 
-int Scheduler::look_ahead(const Point& point, int steps) const {
-  const std::size_t index = point.looks.size() + static_cast<std::size_t>(steps);
+int Scheduler::stop_test_ahead(const Point& point, int steps) const {
+  const std::size_t index = point.stop_tests.size() + static_cast<std::size_t>(steps);
   return schedule_[std::min(index, schedule_.size() - 1)];
 }
 
 int Scheduler::wanted(int point) const {
   const Point& about = point_at(point);
-  return decides(about.looks) ? about.looks.back().seeds : std::min(look_ahead(about, 0), ceiling_);
+  return decides(about.stop_tests) ? about.stop_tests.back().seeds
+                                   : std::min(stop_test_ahead(about, 0), ceiling_);
 }
 
 int Scheduler::ended(int point) const {
@@ -108,7 +112,7 @@ int Scheduler::ended(int point) const {
 }
 
 bool Scheduler::is_open(const Point& point) const {
-  return !point.cancelled && !decides(point.looks) && point.closed < ceiling_;
+  return !point.cancelled && !decides(point.stop_tests) && point.closed < ceiling_;
 }
 
 std::optional<SeedId> Scheduler::next() const {
@@ -133,7 +137,7 @@ std::optional<double> Scheduler::seconds_per_work() const {
 }
 
 double Scheduler::expected_seconds(const std::vector<int>& running) const {
-  const double scale = seconds_per_work().value_or(0);  // a look at all points, once
+  const double scale = seconds_per_work().value_or(0);  // a stop test at all points, once
   double seconds = 0;
   for (int number = 0; number < points(); ++number) {
     const Point& about = point_at(number);
@@ -143,17 +147,17 @@ double Scheduler::expected_seconds(const std::vector<int>& running) const {
 }
 
 double Scheduler::expected_fall(const Point& point) const {
-  // Before the first look nothing is known, and nothing tells more.
+  // Before the first stop test nothing is known, and nothing tells more.
   constexpr double of_unknown = 1e6;
-  if (point.looks.empty()) return of_unknown;
-  const Look& last = point.looks.back();
+  if (point.stop_tests.empty()) return of_unknown;
+  const StopTest& last = point.stop_tests.back();
   const double width = largest_share(last, target_);
   if (!std::isfinite(width)) {  // as if the half-width were 100 % of the mean
     return target_.tolerance.is_relative() ? 1 / target_.tolerance.value : of_unknown;
   }
   // Student's factor counts: it falls from 4 to 10 seeds by as much as the square root's.
   const double confidence = adjusted_confidence(target_.confidence, minimum_, maximum_);
-  const double share = static_cast<double>(look_ahead(point, 0)) / last.seeds;
+  const double share = static_cast<double>(stop_test_ahead(point, 0)) / last.seeds;
   const int count = last.controlled.count, later = static_cast<int>(std::lround(count * share));
   return width * (1 - student_quantile(later - 1, confidence) * std::sqrt(count) /
                           (student_quantile(count - 1, confidence) * std::sqrt(later)));
@@ -169,7 +173,7 @@ Scheduler::Rank Scheduler::rank(const Point& point, double seconds) const {
 }
 
 Scheduler::Stretch Scheduler::still_open(const Point& point, int steps) const {
-  const auto end = static_cast<std::ptrdiff_t>(std::min(look_ahead(point, steps), ceiling_));
+  const auto end = static_cast<std::ptrdiff_t>(std::min(stop_test_ahead(point, steps), ceiling_));
   const std::ptrdiff_t size = std::ssize(point.phases);
   const std::ptrdiff_t known = std::clamp<std::ptrdiff_t>(end, point.closed, size);
   return {std::span(point.phases.begin() + point.closed, point.phases.begin() + known),
@@ -238,13 +242,13 @@ bool Scheduler::end(SeedId id, const Outcome& outcome) {
   point.all_ended += again ? 0 : 1;
   known = outcome;
   if (again) {
-    look_at(point);
+    stop_test_at(point);
     return true;
   }
-  if (id.seed != point.closed || decides(point.looks)) return false;
+  if (id.seed != point.closed || decides(point.stop_tests)) return false;
   close(point);
-  if (point.closed < look_ahead(point, 0)) return false;
-  look_at(point);
+  if (point.closed < stop_test_ahead(point, 0)) return false;
+  stop_test_at(point);
   return true;
 }
 
@@ -254,8 +258,8 @@ SummedError summed_error(const Scheduler& scheduler) {
   for (int point = 0; point < scheduler.points(); ++point) {
     if (scheduler.cancelled(point)) continue;
     ++error.points;
-    const std::vector<Look>& looks = scheduler.looks(point);
-    const double width = looks.empty() ? std::nan("") : relative_width(looks.back());
+    const std::vector<StopTest>& stop_tests = scheduler.stop_tests(point);
+    const double width = stop_tests.empty() ? std::nan("") : relative_width(stop_tests.back());
     error.sum += std::isfinite(width) ? width : 1;
     error.unknown += std::isfinite(width) ? 0 : 1;
   }
@@ -268,9 +272,10 @@ std::string budget_text(double spent_seconds, double budget_seconds, const Summe
       fmt::format("budget: {} of {} h of processor time spent", rough(spent_seconds / seconds_per_hour),
                   rough(budget_seconds / seconds_per_hour));
   if (after.points == 0) return spent + '\n';
-  return fmt::format("{}; relative half-widths of the {}{} last looks sum to {},\n        before to {}\n",
-                     spent, counted(static_cast<std::size_t>(after.points), "point"),
-                     after.points == 1 ? "'s" : "'", sum_text(after), sum_text(before));
+  return fmt::format(
+      "{}; relative half-widths of the {}{} last stop tests sum to {},\n        before to {}\n", spent,
+      counted(static_cast<std::size_t>(after.points), "point"), after.points == 1 ? "'s" : "'",
+      sum_text(after), sum_text(before));
 }
 
 }  // namespace peclet::runner

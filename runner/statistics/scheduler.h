@@ -1,13 +1,13 @@
 // Which seed runs next, and when a point is decided. Pure: no clock, no process, no database.
 //
-// A point that is neither decided nor cancelled needs the seeds of its next look. Among such points those of
-// the highest priority go first, and among these the one that the allocation ranks first (then the order of
-// the sweep, then the order of the seeds). When every needed seed is out, workers run ahead with the seeds of
-// the look after that: surplus, which costs nothing when the point goes on, and which does not count when it
-// stops.
+// A point that is neither decided nor cancelled needs the seeds of its next stop test. Among such points
+// those of the highest priority go first, and among these the one that the allocation ranks first (then the
+// order of the sweep, then the order of the seeds). When every needed seed is out, workers run ahead with the
+// seeds of the look after that: extra, which costs nothing when the point goes on, and which does not count
+// when it stops.
 //
-// Under a budget no point runs ahead of its next look, and a seed is given out only while the expected cost
-// of what runs is within what is left. Under a ceiling only the first seeds of each point are given out.
+// Under a budget no point runs ahead of its next stop test, and a seed is given out only while the expected
+// cost of what runs is within what is left. Under a ceiling only the first seeds of each point are given out.
 //
 // Priorities, costs and the allocation decide when a seed runs; what it counts for they cannot touch.
 #pragma once
@@ -35,10 +35,12 @@ enum class Allocation {
   // sooner the earlier its longest point is begun.
   longest_first,
   // The point whose half-width w, as a share of the tolerance, will fall most, for a second of processor
-  // time, by its next look:
+  // time, by its next stop test:
   //   w (1 - t(n' - 1) sqrt(n) / (t(n - 1) sqrt(n'))) / (seeds still to be begun * seconds of each)
-  // with n values now and n' then. What is begun counts only when its look is reached, so a look once begun
-  // is seen through. Points without a look come before, the cheapest first. For a budget that will not see
+  // with n values now and n' then. What is begun counts only when its stop test is reached, so a stop test
+  // once begun
+  // is seen through. Points without a stop test come before, the cheapest first. For a budget that will not
+  // see
   // all points converged.
   steepest_first
 };
@@ -67,9 +69,9 @@ class Scheduler {
 
   // The next seed for an idle worker; nothing when every seed that could be wanted now is out or ended.
   std::optional<SeedId> next() const;
-  // The same under a budget of which so many seconds are left: a seed that a look needs and that is expected
-  // to cost no more, if possible of a look that can be paid for as a whole. While no cost is known at all
-  // every seed is expected to cost nothing.
+  // The same under a budget of which so many seconds are left: a seed that a stop test needs and that is
+  // expected to cost no more, if possible of a stop test that can be paid for as a whole. While no cost is
+  // known at all every seed is expected to cost nothing.
   std::optional<SeedId> next_within(double seconds) const;
   // Of seeds that are out, so many of each point; 0 while no cost is known at all.
   double expected_seconds(const std::vector<int>& running) const;
@@ -79,23 +81,24 @@ class Scheduler {
   // The seed has come back without an outcome.
   void give_back(SeedId id);
   // The seed has ended, for the first time or (a late result of a quarantined seed) for the second.
-  // True when the looks of its point may have changed.
+  // True when the stop tests of its point may have changed.
   bool end(SeedId id, const Outcome& outcome);
 
-  // All looks that the outcomes allow. The last one decides unless its verdict is `more`.
-  const std::vector<Look>& looks(int point) const { return point_at(point).looks; }
+  // All stop tests that the outcomes allow. The last one decides unless its verdict is `more`.
+  const std::vector<StopTest>& stop_tests(int point) const { return point_at(point).stop_tests; }
   bool decided(int point) const;
   bool cancelled(int point) const { return point_at(point).cancelled; }
   // Every point is decided or cancelled, or has all seeds below the ceiling.
   bool finished() const;
 
-  // Seeds that the next look needs, or the ceiling allows; of a decided point those of the deciding look.
+  // Seeds that the next stop test needs, or the ceiling allows; of a decided point those of the deciding stop
+  // test.
   int wanted(int point) const;
   // Of these, how many have ended.
   int ended(int point) const;
   // Values (observable + control) of the seeds that have ended, in whatever order they came; of
   // Target::observables(), in that order.
-  std::vector<Estimate> so_far(int point) const;
+  std::vector<Estimate> all_seeds(int point) const;
   // Seeds of the point that run or have ended.
   int begun(int point) const { return point_at(point).begun; }
   // Of these, those that have ended.
@@ -107,13 +110,13 @@ class Scheduler {
   // How one seed stands; one that nothing is known of waits.
   enum class Phase : unsigned char { waiting, out, ended };
   struct Point {
-    std::vector<Look> looks{};
+    std::vector<StopTest> stop_tests{};
     int begun = 0;  // out or ended
     int all_ended = 0;
-    std::vector<RunningEstimate> so_far{};  // of each observable
-    int closed = 0;                         // the seeds 0 .. closed - 1 have ended
-    int expected = 0;                       // seeds at which it may be expected to stop
-    double fall = 0;  // of the half-width until the next look, as a share of the tolerance
+    std::vector<RunningEstimate> all_seeds{};  // of each observable
+    int closed = 0;                            // the seeds 0 .. closed - 1 have ended
+    int expected = 0;                          // seeds at which it may be expected to stop
+    double fall = 0;  // of the half-width until the next stop test, as a share of the tolerance
     std::optional<double> seconds{};
     // As long as the largest seed that is known asks for, because the maximum may be far beyond what the
     // point will ever need: later seeds wait, and have no outcome.
@@ -128,10 +131,10 @@ class Scheduler {
   // Makes room for the seed. Throws std::out_of_range for one beyond the maximum.
   Phase& phase_of(SeedId id);
   static void close(Point& point);
-  void look_at(Point& point);
+  void stop_test_at(Point& point);
   static void count_in(Point& point, const Outcome& outcome);
   // The look after the last one made, and the one after that.
-  int look_ahead(const Point& point, int steps) const;
+  int stop_test_ahead(const Point& point, int steps) const;
   bool is_open(const Point& point) const;
   // Of the points whose cost is known; nothing when there is none.
   std::optional<double> seconds_per_work() const;
@@ -143,12 +146,12 @@ class Scheduler {
   };
   Rank rank(const Point& point, double seconds) const;
   double expected_fall(const Point& point) const;
-  // Seeds of the next look that nobody has begun.
+  // Seeds of the next stop test that nobody has begun.
   int waiting(const Point& point) const;
   // The first of them, or of those of `steps` looks further.
   std::optional<int> waiting_seed(const Point& point, int steps) const;
-  // Of the seeds that a look so many steps ahead is still waiting for, those that `phases` tells of, and how
-  // many follow.
+  // Of the seeds that a stop test so many steps ahead is still waiting for, those that `phases` tells of, and
+  // how many follow.
   struct Stretch {
     std::span<const Phase> known;
     int beyond = 0;
@@ -165,9 +168,9 @@ class Scheduler {
 
 // What a run under a budget of processor time has bought.
 
-// Relative half-widths of the last looks, summed over the points that are not cancelled; of no point where
-// the tolerance is absolute. One that has no look, or none with an interval, counts as 1: its mean is not
-// known at all.
+// Relative half-widths of the last stop tests, summed over the points that are not cancelled; of no point
+// where the tolerance is absolute. One that has no stop test, or none with an interval, counts as 1: its mean
+// is not known at all.
 struct SummedError {
   double sum = 0;
   int points = 0, unknown = 0;
@@ -175,7 +178,7 @@ struct SummedError {
 SummedError summed_error(const Scheduler& scheduler);
 
 // "budget: 1.98 of 2 h of processor time spent; the relative half-widths of 6 points sum to 0.31, before to
-// 2.4 (2 points without a look count as 1)"
+// 2.4 (2 points without a stop test count as 1)"
 std::string budget_text(double spent_seconds, double budget_seconds, const SummedError& before,
                         const SummedError& after);
 

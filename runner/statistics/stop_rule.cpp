@@ -44,7 +44,7 @@ double adjusted_confidence(double confidence, int minimum, int maximum) {
   return minimum == maximum ? confidence : 1 - (1 - confidence) * (1 - 1.4 / std::max(minimum, 2));
 }
 
-std::vector<int> look_schedule(int minimum, int maximum) {
+std::vector<int> stop_test_schedule(int minimum, int maximum) {
   std::vector<int> schedule;
   // In whole numbers: ceil(1.25 n) = floor((5 n + 3) / 4).
   for (int seeds = minimum; seeds < maximum; seeds = (5 * seeds + 3) / 4) schedule.push_back(seeds);
@@ -57,7 +57,7 @@ StopRule::StopRule(const Target& target, int minimum, int maximum)
       maximum_(maximum),
       has_tolerance_(target.has_tolerance()),
       confidence_(adjusted_confidence(target.confidence, minimum, maximum)),
-      schedule_(look_schedule(minimum, maximum)) {
+      schedule_(stop_test_schedule(minimum, maximum)) {
   const std::vector<std::string> observables = target.observables();
   observables_ = observables.size();
   const auto place_of = [&](const std::string& name) {

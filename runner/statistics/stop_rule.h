@@ -1,24 +1,24 @@
-// When a look decides, and which interval it gives.
+// When a stop test decides, and which interval it gives.
 //
-// The interval of a look is that of half_width() (statistics.h) at the level of adjusted_confidence():
-// Student's, of shares Clopper and Pearson's. It depends on the values of the look, the confidence that is
-// asked for, and minimum and maximum; the tolerance has no part in it. With a single look the level is the
-// confidence itself.
+// The interval of a stop test is that of half_width() (statistics.h) at the level of adjusted_confidence():
+// Student's, of shares Clopper and Pearson's. It depends on the values of the stop test, the confidence that
+// is asked for, and minimum and maximum; the tolerance has no part in it. With a single stop test the level
+// is the confidence itself.
 //
-// A look converges when its half-width is within the tolerance e. A relative one allows e |mean|; one that is
-// relative to another observable allows e (|mean| - half-width) of that one, so that the error of the measure
-// counts, too. Equal values have no spread to judge by: such a look never converges. As a measure they are
-// taken for exact.
+// A stop test converges when its half-width is within the tolerance e. A relative one allows e |mean|; one
+// that is relative to another observable allows e (|mean| - half-width) of that one, so that the error of the
+// measure counts, too. Equal values have no spread to judge by: such a stop test never converges. As a
+// measure they are taken for exact.
 //
 // A point stops where its spread has come out small. That harms nothing as long as all points stop some time:
 // those that stop too early and those that stop too late make up for each other. The maximum cuts the late
 // ones off, and then what has converged is a selection whose intervals hold the mean less often
 // (results/coverage). is_near_maximum() tells of such a point.
 //
-// Without a tolerance there is one look, at the fixed number of realisations, and Student's interval.
+// Without a tolerance there is one stop test, at the fixed number of realisations, and Student's interval.
 //
-// A target of several criteria is met at the first look at which each of them is by its own rule. What is
-// said of the point is the least favourable of what is said of them.
+// A target of several criteria is met at the first stop test at which each of them is by its own rule. What
+// is said of the point is the least favourable of what is said of them.
 #pragma once
 
 #include <limits>
@@ -34,7 +34,7 @@
 namespace peclet::runner {
 
 enum class Verdict {
-  more,                   // nothing is decided: go on to the next look
+  more,                   // nothing is decided: go on to the next stop test
   converged,              // within the tolerance
   converged_with_losses,  // within the tolerance, but seeds of the cohort were lost
   capped,                 // the maximum is reached without convergence
@@ -54,19 +54,19 @@ bool is_reached(Verdict verdict);
 // Converged or complete, but seeds were lost.
 bool has_losses(Verdict verdict);
 
-// Of two verdicts that the same look gave of two criteria, the one that counts for both.
+// Of two verdicts that the same stop test gave of two criteria, the one that counts for both.
 Verdict less_favourable(Verdict one, Verdict other);
 
 // The level that each interval must have so that the one at which a point stops holds the mean with
-// `confidence`. Among several looks the first one within the tolerance is often one whose spread came out too
-// small: with levels of 95 %, 93 to 95 % of the last intervals hold the mean from a minimum of 8 on, fewer
-// with smaller ones. 1 - (1 - confidence) (1 - 1.4 / minimum) makes that 94.2 to 95.9 %, for normal
-// populations of any spread (results/coverage). With a single look (minimum = maximum) Student's interval is
-// exact.
+// `confidence`. Among several stop tests the first one within the tolerance is often one whose spread came
+// out too small: with levels of 95 %, 93 to 95 % of the last intervals hold the mean from a minimum of 8 on,
+// fewer with smaller ones. 1 - (1 - confidence) (1 - 1.4 / minimum) makes that 94.2 to 95.9 %, for normal
+// populations of any spread (results/coverage). With a single stop test (minimum = maximum) Student's
+// interval is exact.
 double adjusted_confidence(double confidence, int minimum, int maximum);
 
 // Numbers of seeds at which a point is looked at: minimum, then ceil(1.25 n) each, the last one is maximum.
-std::vector<int> look_schedule(int minimum, int maximum);
+std::vector<int> stop_test_schedule(int minimum, int maximum);
 
 class StopRule {
  public:
@@ -118,9 +118,9 @@ class StopRule {
   std::map<int, double> student_;  // by number of values, each computed once
 };
 
-// Whether the maximum is so near that a look which has converged may have done so by luck: with the largest
-// spread that its values leave open (variance_excess() at 5 %) the point would need more seeds than are
-// allowed, n share^2 f > maximum. `share` is the largest of its criteria, of `values` values.
+// Whether the maximum is so near that a stop test which has converged may have done so by luck: with the
+// largest spread that its values leave open (variance_excess() at 5 %) the point would need more seeds than
+// are allowed, n share^2 f > maximum. `share` is the largest of its criteria, of `values` values.
 bool is_near_maximum(int seeds, int values, double share, int maximum);
 
 }  // namespace peclet::runner

@@ -18,8 +18,8 @@ namespace peclet::runner {
 // transient, whatever the correlations inside a realisation. What no window can tell is a transient
 // much longer than itself: its bias may be many times what it changes from one half to the other.
 //
-// True when one of the two contrasts is beyond what happens by chance once in 1000 looks without a transient
-// (two tests at 0.05 % each). False for fewer than five seeds whose contrasts are known.
+// True when one of the two contrasts is beyond what happens by chance once in 1000 stop tests without a
+// transient (two tests at 0.05 % each). False for fewer than five seeds whose contrasts are known.
 bool has_transient(std::span<const Observation> observed);
 
 // Seeds whose contrasts must be known for a test.

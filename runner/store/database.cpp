@@ -114,7 +114,7 @@ std::unique_ptr<Connection> connection_of_reader(const fs::path& path) {
 
 constexpr const char* point_columns =
     "SELECT point_id, place, hash, scene, settings, label, engine_identity, suspect, priority, "
-    "cancelled, kept_apart FROM point ";
+    "cancelled, set_aside FROM point ";
 
 Target stored_target(const std::string& observable, const std::string& criterion, double confidence) {
   try {
@@ -153,38 +153,38 @@ TargetRecord read_target(const Statement& row, int column) {
           row.number(column + 4), row.number(column + 5)};
 }
 
-std::vector<ObservableLook> stored_observables(const std::string& text) {
+std::vector<ObservableStopTest> stored_observables(const std::string& text) {
   if (text.empty()) return {};
   try {
     return observables_of(Json::parse(text));
   } catch (const std::exception&) {
-    throw IntegrityError("the database holds a look that is none: " + plain(text));
+    throw IntegrityError("the database holds a stop test that is none: " + plain(text));
   }
 }
 
-constexpr const char* look_columns =
-    "seeds, lost, count, mean, standard_error, half_width, uncontrolled_mean, uncontrolled_standard_error, "
-    "uncontrolled_half_width, verdict, skewness, transient, observables ";
+constexpr const char* stop_test_columns =
+    "seeds, lost, count, mean, standard_error, half_width, plain_mean, plain_standard_error, "
+    "plain_half_width, verdict, skewness, transient, observables ";
 
-// Of a query of look_columns.
-Look read_look(const Statement& query) {
-  Look look;
-  look.seeds = query.number(0);
-  look.lost = query.number(1);
+// Of a query of stop_test_columns.
+StopTest read_stop_test(const Statement& query) {
+  StopTest stop_test;
+  stop_test.seeds = query.number(0);
+  stop_test.lost = query.number(1);
   const int count = query.number(2);
-  look.controlled = {count, query.real(3), query.real(4)};
-  look.controlled_half_width = query.real(5);
-  look.estimate = {count, query.real(6), query.real(7)};
-  look.half_width = query.real(8);
-  look.controlled.values = stored_values(look.controlled, look.controlled_half_width);
-  look.estimate.values = stored_values(look.estimate, look.half_width);
-  look.verdict = stored_verdict(query.text(9));
-  look.skewness = query.real(10);
-  look.transient = query.flag(11);
-  look.each = stored_observables(query.text(12));
-  look.untested =
-      std::any_of(look.each.begin(), look.each.end(), [](const ObservableLook& one) { return one.untested; });
-  return look;
+  stop_test.controlled = {count, query.real(3), query.real(4)};
+  stop_test.controlled_half_width = query.real(5);
+  stop_test.estimate = {count, query.real(6), query.real(7)};
+  stop_test.half_width = query.real(8);
+  stop_test.controlled.values = stored_values(stop_test.controlled, stop_test.controlled_half_width);
+  stop_test.estimate.values = stored_values(stop_test.estimate, stop_test.half_width);
+  stop_test.verdict = stored_verdict(query.text(9));
+  stop_test.skewness = query.real(10);
+  stop_test.transient = query.flag(11);
+  stop_test.each = stored_observables(query.text(12));
+  stop_test.untested = std::any_of(stop_test.each.begin(), stop_test.each.end(),
+                                   [](const ObservableStopTest& one) { return one.untested; });
+  return stop_test;
 }
 
 // Of a query of result_columns.
@@ -299,13 +299,14 @@ CampaignRecord Database::campaign() {
   return {query.text(6), Json::parse(query.text(7)), read_target(query, 0), query.text(8), query.text(9)};
 }
 
-std::map<std::int64_t, std::vector<Look>> Database::looks_by_point() {
-  Statement query(*connection_, std::string("SELECT ") + look_columns +
-                                    ", point_id FROM look WHERE target_id = (SELECT target_id FROM campaign) "
-                                    "ORDER BY point_id, seeds");
-  std::map<std::int64_t, std::vector<Look>> looks;
-  while (query.step()) looks[query.integer(13)].push_back(read_look(query));
-  return looks;
+std::map<std::int64_t, std::vector<StopTest>> Database::stop_tests_by_point() {
+  Statement query(*connection_,
+                  std::string("SELECT ") + stop_test_columns +
+                      ", point_id FROM stop_test WHERE target_id = (SELECT target_id FROM campaign) "
+                      "ORDER BY point_id, seeds");
+  std::map<std::int64_t, std::vector<StopTest>> stop_tests;
+  while (query.step()) stop_tests[query.integer(13)].push_back(read_stop_test(query));
+  return stop_tests;
 }
 
 std::vector<PointRecord> Database::points() {
@@ -482,16 +483,16 @@ std::map<std::int64_t, StoredPrediction> Database::predictions() {
   return stored;
 }
 
-std::vector<LookRecord> Database::looks(std::int64_t point) {
+std::vector<StopTestRecord> Database::stop_tests(std::int64_t point) {
   Statement query(
       *connection_,
-      std::string("SELECT ") + look_columns +
-          ", made_at, target_id, observable, criterion, confidence, minimum, maximum FROM look JOIN "
+      std::string("SELECT ") + stop_test_columns +
+          ", made_at, target_id, observable, criterion, confidence, minimum, maximum FROM stop_test JOIN "
           "target USING (target_id) WHERE point_id = ? AND target_id = (SELECT target_id FROM campaign) "
           "ORDER BY seeds",
       point);
   return query.rows([](const Statement& row) {
-    return LookRecord{read_target(row, 14), read_look(row), row.text(13)};
+    return StopTestRecord{read_target(row, 14), read_stop_test(row), row.text(13)};
   });
 }
 
@@ -516,14 +517,14 @@ std::vector<EngineRecord> Database::engines() {
   });
 }
 
-std::vector<KeptApart> Database::kept_apart(const std::string& hash) {
+std::vector<SetAside> Database::set_aside(const std::string& hash) {
   Statement query(
       *connection_,
       "SELECT engine_identity, count(content_sha256) FROM point LEFT JOIN realisation USING (point_id) "
-      "WHERE hash = ? AND kept_apart = 1 GROUP BY point_id HAVING count(content_sha256) > 0 ORDER BY "
+      "WHERE hash = ? AND set_aside = 1 GROUP BY point_id HAVING count(content_sha256) > 0 ORDER BY "
       "point_id",
       hash);
-  return query.rows([](const Statement& row) { return KeptApart{row.text(0), row.number(1)}; });
+  return query.rows([](const Statement& row) { return SetAside{row.text(0), row.number(1)}; });
 }
 
 }  // namespace peclet::runner

@@ -42,7 +42,7 @@ struct PointRecord {
   bool suspect = false;         // a seed gave two different results
   int priority = 0;             // points of a higher one are served first
   bool cancelled = false;       // gets no more seeds
-  bool kept_apart = false;      // its engine was replaced by name; another row is the scene's
+  bool set_aside = false;       // its engine was replaced by name; another row is the scene's
 };
 
 // A seed with the columns that were taken from its result. Numbers that do not exist are absent.
@@ -106,16 +106,16 @@ struct TargetRecord {
   double level() const { return adjusted_confidence(target.confidence, minimum, maximum); }
 };
 
-struct LookRecord {
+struct StopTestRecord {
   TargetRecord target;
-  Look look;
+  StopTest stop_test;
   std::string made_at;
 };
 
 // A prediction that was stored before the seeds came, to be judged by what became of them.
 struct StoredPrediction {
   int pilot = 0;           // seeds that it was made from
-  Expected<int> seeds;     // of the deciding look
+  Expected<int> seeds;     // of the deciding stop test
   double cpu_seconds = 0;  // of one seed
   std::string made_at;
 
@@ -137,7 +137,7 @@ struct EngineRecord {
 };
 
 // Results of a scene that are no part of the campaign any more.
-struct KeptApart {
+struct SetAside {
   std::string engine;  // identity
   int results = 0;
 };
@@ -189,18 +189,18 @@ class Database {
   CampaignRecord campaign();
   // The points that the sweep contains, in its order.
   std::vector<PointRecord> points();
-  // Points of earlier versions of the sweep, and those that are kept apart, in order of their first
+  // Points of earlier versions of the sweep, and those that are set aside, in order of their first
   // appearance.
   std::vector<PointRecord> inactive_points();
 
-  // The looks of each point for the present target, by PointRecord::id.
-  std::map<std::int64_t, std::vector<Look>> looks_by_point();
+  // The stop tests of each point for the present target, by PointRecord::id.
+  std::map<std::int64_t, std::vector<StopTest>> stop_tests_by_point();
 
   // All functions below take PointRecord::id. Lists are in order of the seeds (then of time).
   StateCounts counts(std::int64_t point);
   std::vector<RealisationRecord> realisations(std::int64_t point);
   // Index is the seed; as long as the largest seed asks for that a campaign can have. The input of
-  // replay_looks(). Throws IntegrityError if the numbers are not as their layout says.
+  // replay_stop_tests(). Throws IntegrityError if the numbers are not as their layout says.
   std::vector<std::optional<Outcome>> outcomes(std::int64_t point);
   // The text of a result as the engine wrote it; nothing for a seed without one. Throws IntegrityError.
   std::optional<std::string> result_text(std::int64_t point, int seed);
@@ -229,14 +229,14 @@ class Database {
   // Predictions for the present target, by PointRecord::id.
   std::map<std::int64_t, StoredPrediction> predictions();
   // Looks for the present target, by number of seeds.
-  std::vector<LookRecord> looks(std::int64_t point);
+  std::vector<StopTestRecord> stop_tests(std::int64_t point);
   // The most recent `limit` events, oldest first.
   std::vector<EventRecord> events(int limit);
   // What became of a request; nothing while it waits.
   std::optional<EventRecord> event_of(const std::string& request);
   std::vector<EngineRecord> engines();
   // What other engines did for the scene of that hash before another one was accepted.
-  std::vector<KeptApart> kept_apart(const std::string& hash);
+  std::vector<SetAside> set_aside(const std::string& hash);
 
   Connection& connection() { return *connection_; }
 

@@ -20,7 +20,7 @@ namespace {
 
 struct Aggregate {
   StateCounts counts;
-  RunningEstimate so_far;
+  RunningEstimate all_seeds;
   std::vector<int> ended;         // seeds, in order
   std::vector<int> tested;        // the first few seeds with blocks, as many as a test for transients needs
   std::vector<double> seconds;    // of processor time that each of these took
@@ -45,9 +45,9 @@ struct Aggregate {
   Endings endings_below(int seed) const {
     return {below(ended, seed), below(jammed, seed), below(lost, seed)};
   }
-  // Whether the look could not be tested for transients.
-  bool lacks_blocks_of(const Look& look) const {
-    return lacks_blocks(look.estimate.count, below(tested, look.seeds));
+  // Whether the stop test could not be tested for transients.
+  bool lacks_blocks_of(const StopTest& stop_test) const {
+    return lacks_blocks(stop_test.estimate.count, below(tested, stop_test.seeds));
   }
 
  private:
@@ -69,7 +69,7 @@ std::map<std::int64_t, Aggregate> read_aggregates(Connection& connection) {
     aggregate.count(seed_state(query.text(2)), seed, query.text(5), query.optional_real(4).value_or(0));
     const Observation observed = leading_observation(query.text(3));
     if (!observed.has_value()) continue;
-    add(aggregate.so_far, observed);
+    add(aggregate.all_seeds, observed);
     if (!std::isnan(observed.first_half) && aggregate.tested.size() < fewest_contrasts)
       aggregate.tested.push_back(seed);
   }
@@ -103,44 +103,44 @@ std::map<std::int64_t, std::map<std::string, std::string>> read_loss_reasons(Con
   return reasons;
 }
 
-// Returns, by point, the largest number of seeds at a look that was made for an earlier target of the
+// Returns, by point, the largest number of seeds at a stop test that was made for an earlier target of the
 // campaign.
-std::map<std::int64_t, int> read_largest_earlier_looks(Connection& connection) {
-  Statement query(
-      connection,
-      "SELECT point_id, max(seeds) FROM look WHERE target_id != (SELECT target_id FROM campaign) GROUP BY "
-      "point_id");
+std::map<std::int64_t, int> read_largest_earlier_stop_tests(Connection& connection) {
+  Statement query(connection,
+                  "SELECT point_id, max(seeds) FROM stop_test WHERE target_id != (SELECT target_id FROM "
+                  "campaign) GROUP BY "
+                  "point_id");
   std::map<std::int64_t, int> largest;
   while (query.step()) largest[query.integer(0)] = query.number(1);
   return largest;
 }
 
-// What is not stored of a look. Outcomes are read only where it has no interval, which is rare.
+// What is not stored of a stop test. Outcomes are read only where it has no interval, which is rare.
 void make_again(Database& database, const PointRecord& point, const TargetRecord& target,
                 PointSummary& summary) {
-  if (summary.looks.empty()) return;
-  Look& look = summary.looks.back();
-  look.near_maximum = is_near_maximum(look, target.target, target.maximum);
-  summary.without_interval = without_interval(look, target.target);
+  if (summary.stop_tests.empty()) return;
+  StopTest& stop_test = summary.stop_tests.back();
+  stop_test.near_maximum = is_near_maximum(stop_test, target.target, target.maximum);
+  summary.without_interval = without_interval(stop_test, target.target);
   if (summary.without_interval.empty()) return;
   const std::vector<std::optional<Outcome>> outcomes = database.outcomes(point.id);
-  look.repeated = repeated_seeds(
-      std::span(outcomes).first(std::min(outcomes.size(), static_cast<std::size_t>(look.seeds))));
+  stop_test.repeated = repeated_seeds(
+      std::span(outcomes).first(std::min(outcomes.size(), static_cast<std::size_t>(stop_test.seeds))));
 }
 
 // NaN: does not exist, or is beyond what a number can be.
 bool is_same(double one, double other) { return one == other || (std::isnan(one) && std::isnan(other)); }
 
-bool agree(const std::vector<ObservableLook>& stored, const std::vector<ObservableLook>& replayed) {
+bool agree(const std::vector<ObservableStopTest>& stored, const std::vector<ObservableStopTest>& replayed) {
   return std::equal(stored.begin(), stored.end(), replayed.begin(), replayed.end(),
-                    [](const ObservableLook& one, const ObservableLook& other) {
+                    [](const ObservableStopTest& one, const ObservableStopTest& other) {
                       return one.observable == other.observable && one.verdict == other.verdict &&
                              one.estimate.count == other.estimate.count &&
                              is_same(one.estimate.mean, other.estimate.mean);
                     });
 }
 
-bool agrees(const Look& stored, const Look& replayed) {
+bool agrees(const StopTest& stored, const StopTest& replayed) {
   return agree(stored.each, replayed.each) && stored.seeds == replayed.seeds &&
          stored.lost == replayed.lost && stored.verdict == replayed.verdict &&
          stored.estimate.count == replayed.estimate.count &&
@@ -160,7 +160,7 @@ Json to_json(const Endings& endings) {
 std::vector<PointSummary> summarise_points(Database& database, const TargetRecord& target) {
   Connection& connection = database.connection();
   std::map<std::int64_t, Aggregate> aggregates = read_aggregates(connection);
-  std::map<std::int64_t, std::vector<Look>> looks = database.looks_by_point();
+  std::map<std::int64_t, std::vector<StopTest>> stop_tests = database.stop_tests_by_point();
   CountsByPoint losses = counts_by_point(connection,
                                          "SELECT point_id, cause, count(*) FROM realisation WHERE state IN "
                                          "('failed', 'quarantined') GROUP BY point_id, cause");
@@ -168,10 +168,10 @@ std::vector<PointSummary> summarise_points(Database& database, const TargetRecor
   CountsByPoint flags = counts_by_point(connection,
                                         "SELECT point_id, message, count(DISTINCT seed) FROM event WHERE "
                                         "kind = 'flag' GROUP BY point_id, message");
-  const bool any_apart = connection.integer("SELECT count(*) FROM point WHERE kept_apart = 1") > 0;
-  std::map<std::int64_t, int> earlier = read_largest_earlier_looks(connection);
+  const bool any_set_aside = connection.integer("SELECT count(*) FROM point WHERE set_aside = 1") > 0;
+  std::map<std::int64_t, int> earlier = read_largest_earlier_stop_tests(connection);
   const std::map<std::int64_t, StoredPrediction> predictions = database.predictions();
-  const std::vector<int> schedule = look_schedule(target.minimum, target.maximum);
+  const std::vector<int> schedule = stop_test_schedule(target.minimum, target.maximum);
 
   std::vector<PointSummary> summaries;
   for (PointRecord& point : database.points()) {
@@ -179,20 +179,21 @@ std::vector<PointSummary> summarise_points(Database& database, const TargetRecor
     Aggregate& aggregate = aggregates[point.id];
     summary.confidence = target.target.confidence;
     summary.counts = aggregate.counts;
-    summary.so_far = aggregate.so_far.estimate();
+    summary.all_seeds = aggregate.all_seeds.estimate();
     summary.losses = std::move(losses[point.id]);
     summary.loss_reasons = std::move(reasons[point.id]);
     summary.flags = std::move(flags[point.id]);
-    summary.looks = std::move(looks[point.id]);
-    if (!summary.looks.empty() && summary.looks.back().each.empty()) {
-      summary.looks.back().untested = aggregate.lacks_blocks_of(summary.looks.back());
+    summary.stop_tests = std::move(stop_tests[point.id]);
+    if (!summary.stop_tests.empty() && summary.stop_tests.back().each.empty()) {
+      summary.stop_tests.back().untested = aggregate.lacks_blocks_of(summary.stop_tests.back());
     }
     make_again(database, point, target, summary);
-    const int seen = summary.looks.empty() ? 0 : summary.looks.back().seeds;
-    summary.endings = aggregate.endings_below(summary.looks.empty() ? std::numeric_limits<int>::max() : seen);
-    summary.decided = !summary.looks.empty() && summary.looks.back().verdict != Verdict::more;
+    const int seen = summary.stop_tests.empty() ? 0 : summary.stop_tests.back().seeds;
+    summary.endings =
+        aggregate.endings_below(summary.stop_tests.empty() ? std::numeric_limits<int>::max() : seen);
+    summary.decided = !summary.stop_tests.empty() && summary.stop_tests.back().verdict != Verdict::more;
     if (target.target.has_tolerance() && summary.decided && earlier[point.id] > seen)
-      summary.earlier_look = earlier[point.id];
+      summary.earlier_stop_test = earlier[point.id];
     summary.wanted = summary.decided ? seen : *std::upper_bound(schedule.begin(), schedule.end() - 1, seen);
     if (const auto known = predictions.find(point.id); known != predictions.end()) {
       summary.prediction = known->second;
@@ -200,7 +201,7 @@ std::vector<PointSummary> summarise_points(Database& database, const TargetRecor
     summary.wanted_ended = aggregate.ended_below(summary.wanted);
     summary.wanted_cpu_seconds = aggregate.seconds_of_first(summary.wanted_ended);
     if (summary.counts.running > 0) summary.leases = database.leases(point.id);
-    if (any_apart) summary.kept_apart = database.kept_apart(point.hash);
+    if (any_set_aside) summary.set_aside = database.set_aside(point.hash);
     summary.point = std::move(point);
     summaries.push_back(std::move(summary));
   }
@@ -218,9 +219,9 @@ std::vector<PointForecast> forecasts_of(Database& database, const std::vector<Po
   for (const PointSummary& summary : points) {
     const std::int64_t id = summary.point.id;
     // Equal values may be those of a share, which only the outcomes tell.
-    const bool is_simple = observables == 1 && summary.so_far.values != Estimate::Values::equal;
+    const bool is_simple = observables == 1 && summary.all_seeds.values != Estimate::Values::equal;
     forecasts.push_back({Cost(std::move(seconds[id])),
-                         is_simple || !summary.open() ? std::vector{summary.so_far}
+                         is_simple || !summary.open() ? std::vector{summary.all_seeds}
                                                       : estimates_so_far(database.outcomes(id), observables),
                          summary.counts.terminal(), summary.counts.running, !summary.open(),
                          std::move(unfinished[id])});
@@ -228,24 +229,25 @@ std::vector<PointForecast> forecasts_of(Database& database, const std::vector<Po
   return forecasts;
 }
 
-std::optional<Look> checked_look(Database& database, const PointRecord& point, const TargetRecord& target) {
-  const std::vector<LookRecord> stored = database.looks(point.id);
-  const std::vector<Look> replayed =
-      replay_looks(database.outcomes(point.id), target.target, target.minimum, target.maximum);
-  // An owner that was killed between a result and its look leaves fewer looks than there could be.
+std::optional<StopTest> checked_stop_test(Database& database, const PointRecord& point,
+                                          const TargetRecord& target) {
+  const std::vector<StopTestRecord> stored = database.stop_tests(point.id);
+  const std::vector<StopTest> replayed =
+      replay_stop_tests(database.outcomes(point.id), target.target, target.minimum, target.maximum);
+  // An owner that was killed between a result and its stop test leaves fewer looks than there could be.
   for (std::size_t i = 0; i < stored.size(); ++i) {
-    if (i < replayed.size() && agrees(stored[i].look, replayed[i])) continue;
+    if (i < replayed.size() && agrees(stored[i].stop_test, replayed[i])) continue;
     throw IntegrityError(fmt::format(
-        "{}: the stored look at {} seeds of {} is not what the stored results say; see `peclet doctor`",
-        database.connection().path(), stored[i].look.seeds, point.label));
+        "{}: the stored stop test at {} seeds of {} is not what the stored results say; see `peclet doctor`",
+        database.connection().path(), stored[i].stop_test.seeds, point.label));
   }
   if (stored.empty()) return std::nullopt;
-  Look look = stored.back().look;
-  const Look& made_again = replayed[stored.size() - 1];
-  look.untested = made_again.untested;
-  look.near_maximum = made_again.near_maximum && is_reached(look.verdict);
-  look.repeated = made_again.repeated;
-  return look;
+  StopTest stop_test = stored.back().stop_test;
+  const StopTest& made_again = replayed[stored.size() - 1];
+  stop_test.untested = made_again.untested;
+  stop_test.near_maximum = made_again.near_maximum && is_reached(stop_test.verdict);
+  stop_test.repeated = made_again.repeated;
+  return stop_test;
 }
 
 int unreadable_results(Database& database, std::int64_t point) {

@@ -11,8 +11,8 @@
 
 namespace peclet::runner {
 
-// How the seeds that a point is judged by have ended: those of its last look; before the first one, all that
-// have ended. Whether a point has jammed is said here and nowhere else.
+// How the seeds that a point is judged by have ended: those of its last stop test; before the first one, all
+// that have ended. Whether a point has jammed is said here and nowhere else.
 struct Endings {
   int ended = 0;
   int jammed = 0;  // is_jam(), with a result or without
@@ -29,18 +29,19 @@ struct PointSummary {
   StateCounts counts;
   Endings endings;
   // Of value + control, over all seeds that have ended with a value, in whatever order they came.
-  Estimate so_far;
+  Estimate all_seeds;
   std::map<std::string, int> losses;  // seeds by cause
   // Why, in words, by cause: of the first seed of which it is known.
   std::map<std::string, std::string> loss_reasons{};
   std::map<std::string, int> flags;  // completed seeds by what they say against themselves
-  std::vector<Look> looks;           // for the present target
-  int earlier_look = 0;  // seeds of the largest look for an earlier target, if it is beyond the deciding one
+  std::vector<StopTest> stop_tests;  // for the present target
+  int earlier_stop_test =
+      0;  // seeds of the largest look for an earlier target, if it is beyond the deciding one
   double confidence = 0.95;                     // that was asked for
-  std::vector<std::string> without_interval{};  // observables of the last look
+  std::vector<std::string> without_interval{};  // observables of the last stop test
   bool decided = false;
-  std::vector<KeptApart> kept_apart{};  // results of other engines
-  int wanted = 0;                 // seeds of the next look; of a decided point those of the deciding one
+  std::vector<SetAside> set_aside{};  // results of other engines
+  int wanted = 0;                 // seeds of the next stop test; of a decided point those of the deciding one
   int wanted_ended = 0;           // of these, how many have ended
   double wanted_cpu_seconds = 0;  // that these took
   std::optional<StoredPrediction> prediction{};
@@ -49,8 +50,8 @@ struct PointSummary {
   // Neither decided nor cancelled.
   bool open() const { return !decided && !point.cancelled; }
   int lost() const { return counts.failed + counts.quarantined; }
-  // Seeds of a decided point that have ended beyond the deciding look.
-  int surplus() const { return decided ? counts.terminal() - wanted_ended : 0; }
+  // Seeds of a decided point that have ended beyond the deciding stop test.
+  int extra() const { return decided ? counts.terminal() - wanted_ended : 0; }
 };
 
 // {"ended", "jammed", "lost", "has_jammed"}
@@ -61,9 +62,10 @@ std::vector<PointSummary> summarise_points(Database& database, const TargetRecor
 // Returns what the seeds of these points have cost and said so far, for time_to_go().
 std::vector<PointForecast> forecasts_of(Database& database, const std::vector<PointSummary>& points);
 
-// The last look at a point for the present target, checked by replaying it; nothing before the first. Throws
-// IntegrityError when stored looks are not what the stored results say.
-std::optional<Look> checked_look(Database& database, const PointRecord& point, const TargetRecord& target);
+// The last stop test at a point for the present target, checked by replaying it; nothing before the first.
+// Throws IntegrityError when stored stop tests are not what the stored results say.
+std::optional<StopTest> checked_stop_test(Database& database, const PointRecord& point,
+                                          const TargetRecord& target);
 
 // Queries of `peclet doctor`: what in a database contradicts itself.
 //

@@ -96,7 +96,7 @@ void PointStore::adopt_points(const Campaign& campaign) {
   Statement place(
       connection_,
       "INSERT INTO point (hash, scene, settings, label, place) VALUES (?1, ?2, ?3, ?4, ?5) "
-      "ON CONFLICT (hash) WHERE kept_apart = 0 DO UPDATE SET settings = ?3, label = ?4, place = ?5");
+      "ON CONFLICT (hash) WHERE set_aside = 0 DO UPDATE SET settings = ?3, label = ?4, place = ?5");
   int number = 0;
   for (const StatePoint& point : campaign.points) {
     place.run(point.hash, canonical_json(point.scene), canonical_json(point.settings), point.label, number++);
@@ -146,18 +146,18 @@ void PointStore::store_prediction(std::int64_t point, const Prediction& predicti
       cpu_seconds);
 }
 
-void PointStore::keep_apart(const PointRecord& point, const std::string& engine) {
-  connection_.run("UPDATE point SET place = NULL, kept_apart = 1 WHERE point_id = ?", point.id);
+void PointStore::set_aside(const PointRecord& point, const std::string& engine) {
+  connection_.run("UPDATE point SET place = NULL, set_aside = 1 WHERE point_id = ?", point.id);
   // What the engine did for the scene before, if it did, is the campaign's again. The row is the engine's
   // from now on, not only from its first result on: the one that was replaced must not take it up.
   connection_.run(
       "INSERT INTO point (hash, scene, settings, label, place, engine_identity, priority, cancelled) "
       "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8) ON CONFLICT (hash, engine_identity) DO UPDATE SET "
-      "kept_apart = 0, settings = ?3, label = ?4, place = ?5, priority = ?7, cancelled = ?8",
+      "set_aside = 0, settings = ?3, label = ?4, place = ?5, priority = ?7, cancelled = ?8",
       point.hash, canonical_json(point.scene), canonical_json(point.settings), point.label, *point.place,
       engine, point.priority, point.cancelled);
   events_.write("engine-accepted", point.id, std::nullopt,
-                fmt::format("results of engine {} are kept apart; engine {} takes the point up",
+                fmt::format("results of engine {} are set aside; engine {} takes the point up",
                             point.engine_identity, engine));
 }
 

@@ -55,7 +55,7 @@ class PointStore {
   void store_prediction(std::int64_t point, const Prediction& prediction, double cpu_seconds);
   // The point's results stay as they are, but no longer are the campaign's: a row of its own takes its place
   // in the sweep, that of `engine` when there has been one.
-  void keep_apart(const PointRecord& point, const std::string& engine);
+  void set_aside(const PointRecord& point, const std::string& engine);
 
  private:
   std::int64_t adopt_target(const Campaign& campaign);

@@ -158,9 +158,9 @@ StoredResult ResultStore::store(const RealisationResult& result, const Target& t
   const std::string& identity = result.engine;
   Statement known(
       connection_,
-      "SELECT point.point_id, coalesce(engine_identity, ''), content_sha256, state, kept_apart FROM point "
+      "SELECT point.point_id, coalesce(engine_identity, ''), content_sha256, state, set_aside FROM point "
       "LEFT JOIN realisation ON realisation.point_id = point.point_id AND seed = ? WHERE hash = ? AND "
-      "(kept_apart = 0 OR engine_identity = ?) ORDER BY kept_apart DESC",
+      "(set_aside = 0 OR engine_identity = ?) ORDER BY set_aside DESC",
       result.seed, result.point, identity);
   if (!known.step()) return {Stored::unknown_point};
   const std::int64_t point = known.integer(0);
@@ -227,30 +227,31 @@ void ResultStore::withdraw(std::int64_t point, int seed) {
   }
 }
 
-void ResultStore::store_looks(std::int64_t point, const std::vector<Look>& looks) {
+void ResultStore::store_stop_tests(std::int64_t point, const std::vector<StopTest>& stop_tests) {
   // Looks only ever grow, except when a late result replaces a quarantined seed: then they are made again.
   connection_.run(
-      "DELETE FROM look WHERE point_id = ? AND target_id = (SELECT target_id FROM campaign) AND seeds > ?",
-      point, looks.empty() ? 0 : looks.back().seeds);
+      "DELETE FROM stop_test WHERE point_id = ? AND target_id = (SELECT target_id FROM campaign) AND seeds > "
+      "?",
+      point, stop_tests.empty() ? 0 : stop_tests.back().seeds);
   Statement insert(
       connection_,
-      "INSERT INTO look (point_id, target_id, seeds, lost, count, mean, standard_error, half_width, "
-      "uncontrolled_mean, uncontrolled_standard_error, uncontrolled_half_width, verdict, made_at, skewness, "
+      "INSERT INTO stop_test (point_id, target_id, seeds, lost, count, mean, standard_error, half_width, "
+      "plain_mean, plain_standard_error, plain_half_width, verdict, made_at, skewness, "
       "transient, observables) SELECT ?1, target_id, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, "
       "?14, ?15 FROM campaign WHERE true ON CONFLICT DO UPDATE SET lost = ?3, count = ?4, mean = ?5, "
       "standard_error = ?6, "
-      "half_width = ?7, uncontrolled_mean = ?8, uncontrolled_standard_error = ?9, uncontrolled_half_width = "
+      "half_width = ?7, plain_mean = ?8, plain_standard_error = ?9, plain_half_width = "
       "?10, verdict = ?11, made_at = ?12, skewness = ?13, transient = ?14, observables = ?15 WHERE count != "
       "?4 OR lost != ?3 OR "
-      "mean IS NOT ?5 OR half_width IS NOT ?7 OR uncontrolled_mean IS NOT ?8 OR uncontrolled_half_width IS "
+      "mean IS NOT ?5 OR half_width IS NOT ?7 OR plain_mean IS NOT ?8 OR plain_half_width IS "
       "NOT ?10 OR verdict != ?11 OR skewness IS NOT ?13 OR transient != ?14 OR observables IS NOT ?15");
   const std::string now = utc_now();
-  for (const Look& look : looks) {
-    insert.run(point, look.seeds, look.lost, look.estimate.count, look.controlled.mean,
-               look.controlled.standard_error, look.controlled_half_width, look.estimate.mean,
-               look.estimate.standard_error, look.half_width, to_string(look.verdict), now, look.skewness,
-               look.transient,
-               look.each.empty() ? std::nullopt : std::optional(observables_json(look).dump()));
+  for (const StopTest& stop_test : stop_tests) {
+    insert.run(point, stop_test.seeds, stop_test.lost, stop_test.estimate.count, stop_test.controlled.mean,
+               stop_test.controlled.standard_error, stop_test.controlled_half_width, stop_test.estimate.mean,
+               stop_test.estimate.standard_error, stop_test.half_width, to_string(stop_test.verdict), now,
+               stop_test.skewness, stop_test.transient,
+               stop_test.each.empty() ? std::nullopt : std::optional(observables_json(stop_test).dump()));
   }
 }
 

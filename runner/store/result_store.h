@@ -1,4 +1,4 @@
-// Results, and the looks at them.
+// Results, and the stop tests at them.
 #pragma once
 
 #include <cstdint>
@@ -82,8 +82,8 @@ class ResultStore {
   StoredResult store(const RealisationResult& result, const Target& target);
   // The seed of a stored result is queued again; nothing of the result stays.
   void withdraw(std::int64_t point, int seed);
-  // The looks at a point for the present target, in place of those that are stored.
-  void store_looks(std::int64_t point, const std::vector<Look>& looks);
+  // The stop tests at a point for the present target, in place of those that are stored.
+  void store_stop_tests(std::int64_t point, const std::vector<StopTest>& stop_tests);
 
  private:
   void store_columns(std::int64_t point, const RealisationResult& result, const StoredResult& stored);

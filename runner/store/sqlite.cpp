@@ -121,7 +121,8 @@ bool DatabaseError::refuses_values() const {
 
 Connection::Connection(const std::string& path, Access access, int busy_milliseconds)
     : path_(path), busy_milliseconds_(busy_milliseconds) {
-  // Looked at beforehand, because SQLite would wait for a FIFO; that it never follows a link is its own rule.
+  // StopTestMade at beforehand, because SQLite would wait for a FIFO; that it never follows a link is its own
+  // rule.
   for (const char* const suffix : {"", "-wal", "-shm", "-journal"}) require_regular(path + suffix);
   const std::string place = without_links_above(path);
   const int code = sqlite3_open_v2(

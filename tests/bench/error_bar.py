@@ -128,7 +128,7 @@ def error_bars(engines, seeds, count, window, cases, folder):
                 flush=True,
             )
         print(
-            f"  {'averages over':>15} {'variance now':>20} {'now, uncontrolled':>20} {'before':>20} "
+            f"  {'averages over':>15} {'variance now':>20} {'now, plain':>20} {'before':>20} "
             f"{'processor time before over now, to the same error':>52}"
         )
         for together in (1, 2, 4, 8, 16, 32):

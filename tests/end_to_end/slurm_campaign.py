@@ -6,7 +6,7 @@ from campaign_folder import BLAMED, CampaignFolder
 from drill.campaign import REAL
 from slurm_cluster import CPUS
 
-# Seeds of about a second, saved several times on their way; a few looks a point.
+# Seeds of about a second, saved several times on their way; a few stop tests a point.
 ENVIRONMENT = {"PECLET_FAKE_STEPS": "40", "PECLET_FAKE_STEP_MS": "25"}
 CAMPAIGN = {
     "name": "drill",
@@ -82,7 +82,7 @@ class Campaign(CampaignFolder):
         return [name for name in os.listdir(spool) if name.endswith(".json")] if os.path.isdir(spool) else []
 
     def lost(self):
-        """Seeds of the looks that have no result; and files, bundles and seeds that were left lying."""
+        """Seeds of the stop tests that have no result; and files, bundles and seeds that were left lying."""
         wanted = self.ask("SELECT sum(seeds) FROM estimates")
         closed = self.ask(
             "SELECT count(*) FROM realisation JOIN point USING (point_id) JOIN estimates USING (hash)"

@@ -16,9 +16,9 @@ class Numbers(PageTest):
             expected = exported[row["label"]]
             for key in ("hash", "/peclet", "/volume_fraction", "verdict"):
                 self.assertEqual(row[key], expected[key])
-            for key in ("seeds", "count", "lost", "mean", "standard_error", "half_width", "uncontrolled_mean"):
+            for key in ("seeds", "count", "lost", "mean", "standard_error", "half_width", "plain_mean"):
                 self.assertEqual(float(row[key]), float(expected[key]), key)
-            self.assertEqual(float(row["uncontrolled_half_width"]), float(expected["uncontrolled_half_width"]))
+            self.assertEqual(float(row["plain_half_width"]), float(expected["plain_half_width"]))
 
     def test_what_is_read_is_what_is_saved(self):
         page, exported = self.open(), self.exported()
@@ -58,7 +58,7 @@ class Numbers(PageTest):
                 if error == 0:
                     self.assertEqual(row["half_width"], "")
                     continue
-                level = 1 - 0.05 * (1 - 1.4 / 8)  # of several looks from 8 seeds on
+                level = 1 - 0.05 * (1 - 1.4 / 8)  # of several stop tests from 8 seeds on
                 expected = student.ppf((1 + level) / 2, count - 1) * error
                 # SciPy's quantile has nine digits.
                 self.assertAlmostEqual(float(row["half_width"]), expected, delta=1e-8 * error)

@@ -68,8 +68,8 @@ class Figures(PageTest):
                     if row["label"] == point["label"]
                     and (row["quantity"], row["axis_1_value"]) == (name or quantity, element if name else "")
                 ]
-                # Of the target the look's, which sums in another order and has a wider interval.
-                expected = point["look"] if quantity == QUANTITIES[0] else {key: float(row[key]) for key in NUMBERS}
+                # Of the target the stop test's, which sums in another order and has a wider interval.
+                expected = point["stop_test"] if quantity == QUANTITIES[0] else {key: float(row[key]) for key in NUMBERS}
                 self.assertEqual({key: mark[key] for key in NUMBERS}, {key: expected[key] for key in NUMBERS})
                 self.assertEqual(mark["count"], int(row["count"]))
                 self.assertAlmostEqual(mark["mean"], float(row["mean"]), delta=1e-12 * abs(mark["mean"]))
@@ -108,8 +108,8 @@ class Figures(PageTest):
         marks = points_of(figure_of("young.py"))
         exported = {row["label"]: row for row in rows(Stage.folder.peclet("export", "young.json", "--csv"))}
         for label, row in exported.items():
-            self.assertEqual(marks[label]["standing"], "provisional")
-            self.assertAlmostEqual(marks[label]["mean"], float(row["so_far_mean"]), places=12)
+            self.assertEqual(marks[label]["state"], "provisional")
+            self.assertAlmostEqual(marks[label]["mean"], float(row["all_seeds_mean"]), places=12)
             self.assertIsNone(marks[label]["good_enough"])
 
 
@@ -240,7 +240,7 @@ class TheSupplement(PageTest):
             label, mean, half = row["label"], float(row["mean"]), float(row["half_width"])
             for other in (on_page[label], in_chart[label], in_figure[label]):
                 self.assertEqual((float(other["mean"]), float(other["half_width"])), (mean, half))
-            for look in (in_json[label]["look"], in_status[label]["look"]):
+            for look in (in_json[label]["stop_test"], in_status[label]["stop_test"]):
                 self.assertEqual((look["mean"], look["half_width"]), (mean, half))
             # These sum in another order.
             for other in (float(in_long[label]["mean"]), in_json[label]["quantities"][QUANTITIES[0]]["mean"]):

@@ -32,7 +32,7 @@ def point(settings, mean, half=0.5, standing="converged", jammed=False, good_eno
         "half_width": half,
         "good_enough": good_enough,
         "count": 8,
-        "standing": standing,
+        "state": standing,
         "jammed": jammed,
     }
 

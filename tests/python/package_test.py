@@ -118,7 +118,7 @@ class OfACampaign(unittest.TestCase):
         self.assertEqual(list(table.columns)[:3], ["peclet", "volume_fraction", "label"])
         self.assertEqual(len(table), 4)
         for row, point in zip(table, self.export["points"]):
-            look = point["look"]
+            look = point["stop_test"]
             for name in ("mean", "standard_error", "half_width", "count", "lost"):
                 self.assertAlmostEqual(row[name], look[name], delta=1e-12 * abs(look[name]), msg=name)
             self.assertEqual((row["label"], row["verdict"]), (point["label"], point["verdict"]))
@@ -401,7 +401,7 @@ class Words(unittest.TestCase):
         class Same(peclet.Results):
             def export(self):
                 result = {"seed": 0, "mean": {"rate": 7, "eta": 2}, "cost": {"cpu_seconds": 1}}
-                point = {"label": "rate=1", "settings": {"/flow/rate": 1}, "realisations": [result], "surplus": []}
+                point = {"label": "rate=1", "settings": {"/flow/rate": 1}, "realisations": [result], "extra": []}
                 return {"points": [point]}
 
             def _rows(self, form):

@@ -114,14 +114,14 @@ std::string CampaignOnDisk::answer() const {
   std::string answer;
   Database database = reader();
   for (const PointRecord& point : database.points()) {
-    const std::vector<LookRecord> looks = database.looks(point.id);
-    for (const LookRecord& record : looks) {
-      answer +=
-          fmt::format("{} look {} {} {} {}\n", point.label, record.look.seeds, record.look.estimate.mean,
-                      record.look.half_width, to_string(record.look.verdict));
+    const std::vector<StopTestRecord> stop_tests = database.stop_tests(point.id);
+    for (const StopTestRecord& record : stop_tests) {
+      answer += fmt::format("{} look {} {} {} {}\n", point.label, record.stop_test.seeds,
+                            record.stop_test.estimate.mean, record.stop_test.half_width,
+                            to_string(record.stop_test.verdict));
     }
     for (const RealisationRecord& record : database.realisations(point.id)) {
-      if (looks.empty() || record.seed >= looks.back().look.seeds) continue;
+      if (stop_tests.empty() || record.seed >= stop_tests.back().stop_test.seeds) continue;
       answer +=
           fmt::format("{} seed {} {} {}\n", point.label, record.seed, record.cause, record.content_sha256);
     }

@@ -48,8 +48,8 @@ class CampaignOnDisk {
   const CampaignDirectory& directory() const { return directory_; }
   Database reader() const { return Database::open_reader(directory_.database()); }
   std::int64_t count(const std::string& sql) const;
-  // What must not depend on what happened to the processes: all looks, and the contents of the seeds that
-  // decided.
+  // What must not depend on what happened to the processes: all stop tests, and the contents of the seeds
+  // that decided.
   std::string answer() const;
   std::string log() const;
 

@@ -15,15 +15,15 @@ class StoredCampaign {
   StoredCampaign(int points, int minimum, int maximum, const std::vector<Criterion>& also = {});
   explicit StoredCampaign(const Campaign& campaign);
 
-  // A result of plain_result(), with an attempt of its own, and the looks that it allows.
+  // A result of plain_result(), with an attempt of its own, and the stop tests that it allows.
   void complete(int point, int seed, double viscosity, const Json& warnings = Json::array());
   // The same after a change of the result.
   void complete_with(int point, int seed, double viscosity, const std::function<void(Json&)>& change);
   // The same with a window whose halves differ; its control variate is zero.
   void complete_in_halves(int point, int seed, double first, double second);
-  // As `peclet set --tolerance`, with the looks that follow.
+  // As `peclet set --tolerance`, with the stop tests that follow.
   void set_tolerance(double tolerance);
-  // As a campaign file with another target, with the looks that follow.
+  // As a campaign file with another target, with the stop tests that follow.
   void set_target(const Target& target);
   // One more result of a seed that has ended.
   void repeat(int point, int seed, double viscosity);
@@ -38,7 +38,7 @@ class StoredCampaign {
 
  private:
   void store(int point, const Json& result);
-  void look(int point);
+  void stop_test(int point);
   std::int64_t id(int point) { return database_.points().at(static_cast<std::size_t>(point)).id; }
 
   TemporaryFolder folder_;

@@ -65,7 +65,7 @@ class Live {
   // a page that is not live are in its document.
   static details(point) {
     const live = Live.current,
-      key = JSON.stringify([point.looks.length, point.seeds.ended]);
+      key = JSON.stringify([point.stop_tests.length, point.seeds.ended]);
     if (!live) return null;
     const known = live.known.get(point.hash) || { key: null, details: null, until: 0 };
     if (known.key !== key && performance.now() > known.until) {

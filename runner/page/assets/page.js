@@ -79,7 +79,7 @@ const Page = {
 // One line that says how the campaign stands.
 function headline({ progress }) {
   const parts = [`${progress.decided} of ${Format.counted(progress.points, 'point')} decided`];
-  const others = Object.entries(progress.standings).filter(([name]) => !['converged', 'complete', 'open'].includes(name));
+  const others = Object.entries(progress.states).filter(([name]) => !['converged', 'complete', 'open'].includes(name));
   if (others.length) parts[0] += ` (${others.map(([name, count]) => `${count} ${name}`).join(', ')})`;
   const ahead = progress.seconds_to_go;
   parts.push(`${Format.duration(progress.cpu_seconds)} of processor time spent`);

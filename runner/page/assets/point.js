@@ -28,34 +28,34 @@ class PointView {
     return `${this.data.campaign} ${point.label} ${what}`;
   }
 
-  // The last look's, or what the seeds so far say.
+  // The last stop test's, or what the seeds so far say.
   static last(point) {
-    return point.looks[point.looks.length - 1] || null;
+    return point.stop_tests[point.stop_tests.length - 1] || null;
   }
 
-  static lookMarks({ looks }, value, half) {
-    const isDecided = (look) => /^(converged|complete)/.test(look.verdict) && look === looks[looks.length - 1];
-    const text = (look) => `${Format.withError(look.mean, look.half_width)}, ${look.verdict}`;
-    return looks
-      .map((look) => ({
+  static stopTestMarks({ stop_tests: tests }, value, half) {
+    const isDecided = (test) => /^(converged|complete)/.test(test.verdict) && test === tests[tests.length - 1];
+    const text = (test) => `${Format.withError(test.mean, test.half_width)}, ${test.verdict}`;
+    return tests
+      .map((test) => ({
         series: 1,
-        x: look.seeds,
-        y: value(look),
-        half: half(look),
+        x: test.seeds,
+        y: value(test),
+        half: half(test),
         point: 0,
         small: true,
-        kind: isDecided(look) ? 'decided' : 'undecided',
-        text: `look at ${Format.counted(look.seeds, 'seed')}, ${text(look)}`,
+        kind: isDecided(test) ? 'decided' : 'undecided',
+        text: `stop test at ${Format.counted(test.seeds, 'seed')}, ${text(test)}`,
       }))
       .filter((mark) => Format.isNumber(mark.y));
   }
 
-  static lookTable({ looks, running_mean: { seeds, mean, half_width: half } }) {
+  static stopTestTable({ stop_tests: tests, running_mean: { seeds, mean, half_width: half } }) {
     return {
       columns: ['kind', 'seeds', 'mean', 'half_width', 'good_enough', 'verdict'],
       rows: [
         ...seeds.map((count, i) => ['running', count, mean[i], half[i], null, null]),
-        ...looks.map((look) => ['look', look.seeds, look.mean, look.half_width, look.good_enough, look.verdict]),
+        ...tests.map((test) => ['stop test', test.seeds, test.mean, test.half_width, test.good_enough, test.verdict]),
       ],
     };
   }
@@ -72,10 +72,10 @@ class PointView {
     const levels = good === null ? [] : [last.mean - good, last.mean + good];
     const level = (value) => ({ value, across: true, series: 2 });
     const x = PointView.seedsAxis(seeds),
-      table = PointView.lookTable(point),
-      legend = point.looks.length ? [{ series: 1, name: Format.parts('looks') }] : [];
-    const width = (look) => look.half_width,
-      means = PointView.lookMarks(point, (look) => look.mean, width);
+      table = PointView.stopTestTable(point),
+      legend = point.stop_tests.length ? [{ series: 1, name: Format.parts('stop tests') }] : [];
+    const width = (test) => test.half_width,
+      means = PointView.stopTestMarks(point, (test) => test.mean, width);
     return [
       {
         name: this.title(point, 'running mean'),
@@ -87,8 +87,8 @@ class PointView {
         hasBand: bands.length > 0,
         bandName: 'its interval',
         height: 260,
-        caption: `Running mean over the first n seeds, its interval, and the looks at which it was judged.${
-          levels.length ? " Dashed: the last look's mean ± the half-width that is good enough." : ''
+        caption: `Running mean over the first n seeds, its interval, and the stop tests at which it was judged.${
+          levels.length ? " Dashed: the last stop test's mean ± the half-width that is good enough." : ''
         }`,
       },
       {
@@ -99,13 +99,13 @@ class PointView {
         y: { about: Format.about('half-width', this.about.unit), log: isLogarithmic(half.filter(Format.isNumber)) },
         panels: [
           {
-            marks: PointView.lookMarks(point, width, () => null),
+            marks: PointView.stopTestMarks(point, width, () => null),
             levels: good === null ? [] : [level(good)],
             lines: [{ series: 0, style: 'line', places: widths }],
           },
         ],
         height: 260,
-        caption: `Half-width of the interval by which looks decide.${last ? ' Dashed: what is good enough.' : ''}`,
+        caption: `Half-width of the interval by which stop tests decide.${last ? ' Dashed: what is good enough.' : ''}`,
       },
     ];
   }
@@ -152,9 +152,9 @@ class PointView {
       const relative = this.data.target.relative_tolerance !== undefined && !this.data.target.relative_to,
         hasShare = relative && last.mean && Format.isNumber(last.half_width),
         share = hasShare ? ` (${Format.percent(last.half_width / Math.abs(last.mean))})` : '',
-        look = Format.counted(last.seeds, 'seed');
-      said.push(`${Format.withError(last.mean, last.half_width)}${share}: ${point.verdict}, at the look at ${look}.`);
-      const plain = point.uncontrolled[this.path];
+        test = Format.counted(last.seeds, 'seed');
+      said.push(`${Format.withError(last.mean, last.half_width)}${share}: ${point.verdict}, at the stop test at ${test}.`);
+      const plain = point.plain[this.path];
       if (plain && plain[0] !== last.mean) {
         const text = 'Without the control variate, a quantity of known mean zero that takes away scatter';
         said.push(`${text}: ${Format.withError(plain[0], plain[2])}.`);
@@ -168,11 +168,11 @@ class PointView {
     }
     const { ended, jammed, has_jammed: hasJammed } = point.endings;
     if (hasJammed) said.push(`It has jammed: ${jammed} of ${Format.counted(ended, 'seed')}.`);
-    if (!point.decided) said.push(`${seeds.wanted_ended} of the ${seeds.wanted} seeds of the next look have ended.`);
+    if (!point.decided) said.push(`${seeds.wanted_ended} of the ${seeds.wanted} seeds of the next stop test have ended.`);
     const each = seeds.ended ? `, ${Format.duration(point.cpu_seconds / seeds.ended)} each` : '';
-    const surplus = seeds.surplus ? `; ${seeds.surplus} of them surplus, which do not count` : '';
+    const extra = seeds.extra ? `; ${seeds.extra} of them extra, which do not count` : '';
     said.push(
-      `Processor time ${Format.duration(point.cpu_seconds)} for ${Format.counted(seeds.ended, 'seed')}${each}${surplus}.`,
+      `Processor time ${Format.duration(point.cpu_seconds)} for ${Format.counted(seeds.ended, 'seed')}${each}${extra}.`,
     );
     return said.join(' ');
   }
@@ -214,7 +214,7 @@ class PointView {
         about: Format.quantity(quantity),
         quantity,
         numbers: point.estimates[i] || [null],
-        plain: point.uncontrolled[quantity.path],
+        plain: point.plain[quantity.path],
       }))
       .filter((row) => Format.isNumber(row.numbers[0]));
     const symbol = (row) => Format.plainText(row.about.symbol),
@@ -299,9 +299,9 @@ class DetailsView {
       ? 'Transient: the beginning differs from the end, so that the window begins before the equilibration is over.'
       : point.marks.includes('no-transient-test')
         ? 'There was no test for a transient.'
-        : point.looks.length
-          ? 'No transient was found at the last look.'
-          : 'No look has tested it for a transient yet.';
+        : point.stop_tests.length
+          ? 'No transient was found at the last stop test.'
+          : 'No stop test has tested it for a transient yet.';
     return [
       {
         name: `${data.campaign} ${point.label} window`,

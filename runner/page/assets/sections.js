@@ -1,9 +1,9 @@
 // What each section shows, so that it is made anew only when that has changed.
 const doubtsShown = (data) => [data.points.map((point) => [point.label, point.losses, point.loss_reasons]), data.meanings, data.warnings],
-  costShown = (data) => [data.progress.seeds, data.points.map(({ label, seeds, cpu_seconds }) => [label, seeds.ended, seeds.surplus, cpu_seconds])],
+  costShown = (data) => [data.progress.seeds, data.points.map(({ label, seeds, cpu_seconds }) => [label, seeds.ended, seeds.extra, cpu_seconds])],
   resultsShown = (data) => [data.target, data.parameters, data.quantities, data.points.map(resultShown)],
-  resultShown = ({ label, standing, marks, seeds, losses, endings, cpu_seconds }) =>
-    [label, standing, marks, seeds.wanted, seeds.wanted_ended, seeds.looked_at, losses, endings, cpu_seconds],
+  resultShown = ({ label, state, marks, seeds, losses, endings, cpu_seconds }) =>
+    [label, state, marks, seeds.wanted, seeds.wanted_ended, seeds.tested, losses, endings, cpu_seconds],
   originShown = (data) => [data.scene, data.parameters, data.provenance, data.commands, data.document, data.points.map((point) => point.groups)];
 
 function resultsTable(data, sweep, host, onPick) {
@@ -12,7 +12,7 @@ function resultsTable(data, sweep, host, onPick) {
     isShare = target.relative_tolerance !== undefined && !target.relative_to;
   const isKnown = (point) => column >= 0 && Sweep.isKnown(point, point.estimates[column]);
   const numbers = (point) => (isKnown(point) ? point.estimates[column] : [null, null, null, 0]);
-  const plain = (point) => point.uncontrolled[path] || numbers(point);  // the same without a control variate
+  const plain = (point) => point.plain[path] || numbers(point);  // the same without a control variate
   const rows = data.points.map((point, i) => ({ point, i }));
   const measure = (row) => {
     const [mean, , half] = numbers(row.point);
@@ -45,7 +45,7 @@ function resultsTable(data, sweep, host, onPick) {
       shown: (row) => (isShare ? Format.percent(measure(row)) : Format.rough(measure(row))),
     },
     { title: 'lost', minor: true, value: lost },
-    { title: 'verdict', text: true, value: (row) => row.point.standing },
+    { title: 'verdict', text: true, value: (row) => row.point.state },
   ];
   if (data.points.some((point) => point.marks.length))
     columns.push({ title: 'marks', text: true, wrap: true, value: (row) => row.point.marks.join(', ') });
@@ -54,18 +54,18 @@ function resultsTable(data, sweep, host, onPick) {
     onPick: (row) => onPick(row.i),
     name: `${data.campaign} results`,
     caption:
-      'Seeds: those that have ended, of those that the deciding look takes (of an open point, the next look). ' +
+      'Seeds: those that have ended, of those that the deciding stop test takes (of an open point, the next stop test). ' +
       `${about.words}: the mean, with the control variate where there is one, ± the half-width of its ` +
       `${Format.rough(100 * target.confidence)} % interval.${open ? ' *: provisional.' : ''}`,
     csv: {
       columns: ['label', 'hash', ...data.parameters.map((one) => one.pointer), 'verdict', 'seeds', 'count', 'mean',
-        'standard_error', 'half_width', 'uncontrolled_mean', 'uncontrolled_half_width', 'lost', 'cpu_seconds'],
+        'standard_error', 'half_width', 'plain_mean', 'plain_half_width', 'lost', 'cpu_seconds'],
       rows: rows.map((row) => [
         row.point.label,
         row.point.hash,
         ...data.parameters.map((one) => row.point.settings[one.pointer]),
-        row.point.standing,
-        row.point.seeds.looked_at,
+        row.point.state,
+        row.point.seeds.tested,
         numbers(row.point)[3],
         ...numbers(row.point).slice(0, 3),
         plain(row.point)[0],
@@ -200,7 +200,7 @@ function writeCost(data, host, onPick) {
   const { seeds, cpu_seconds: time } = data.progress,
     said = [`${Format.counted(seeds.ended, 'seed')} ended in ${Format.duration(time)} of processor time`];
   if (seeds.lost) said.push(`${seeds.lost} of them without a value`);
-  if (seeds.surplus) said.push(`${seeds.surplus} beyond what decided their point`);
+  if (seeds.extra) said.push(`${seeds.extra} beyond what decided their point`);
   host.append(Page.paragraph(`${said.join(', ')}.`));
   const details = Page.details('By point');
   host.append(details);
@@ -211,7 +211,7 @@ function writeCost(data, host, onPick) {
     [
       { title: 'point', text: true, wrap: true, value: (row) => row.point.label },
       { title: 'seeds', value: (row) => row.point.seeds.ended },
-      { title: 'surplus', minor: true, value: (row) => row.point.seeds.surplus },
+      { title: 'extra', minor: true, value: (row) => row.point.seeds.extra },
       {
         title: 'processor time',
         value: (row) => row.point.cpu_seconds,
@@ -224,8 +224,8 @@ function writeCost(data, host, onPick) {
       onPick: (row) => onPick(row.i),
       name: `${data.campaign} cost`,
       csv: {
-        columns: ['label', 'seeds', 'surplus', 'cpu_seconds'],
-        rows: rows.map(({ point }) => [point.label, point.seeds.ended, point.seeds.surplus, point.cpu_seconds]),
+        columns: ['label', 'seeds', 'extra', 'cpu_seconds'],
+        rows: rows.map(({ point }) => [point.label, point.seeds.ended, point.seeds.extra, point.cpu_seconds]),
       },
     },
   );

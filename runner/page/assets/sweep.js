@@ -102,12 +102,12 @@ class Sweep {
     return drawn.sort((a, b) => order.indexOf(a.group) - order.indexOf(b.group));
   }
 
-  // How sure the number of a point is: of a look that decides, of one that does not, or of the seeds so far; or that it
+  // How sure the number of a point is: of a stop test that decides, of one that does not, or of the seeds so far; or that it
   // has jammed.
   static kind(point) {
     if (point.endings.has_jammed) return 'jammed';
     if (!point.decided) return 'provisional';
-    return /^(converged|complete)/.test(point.standing) ? 'decided' : 'undecided';
+    return /^(converged|complete)/.test(point.state) ? 'decided' : 'undecided';
   }
 
   // Whether the point has a number. At one that has jammed a number of half of its seeds or fewer is that of those
@@ -149,7 +149,7 @@ class Sweep {
           kind = Sweep.kind(point),
           { path } = quantities[index];
         const number = known ? Format.withError(y, half) : 'no number',
-          state = point.standing + (endings.has_jammed ? `, ${endings.jammed} of ${endings.ended} jammed` : '');
+          state = point.state + (endings.has_jammed ? `, ${endings.jammed} of ${endings.ended} jammed` : '');
         const order = panelBy.map((one) => one.values.indexOf(one.cells[i])),
           key = JSON.stringify(order);
         if (!panels.has(key)) {
@@ -172,8 +172,8 @@ class Sweep {
           text: `${point.label}${terms ? `, ${term(index)}` : ''}: ${number} (${Format.counted(count, 'seed')}, ${state})`,
         });
         kinds.add(kind);
-        const standing = endings.has_jammed ? `${point.standing}, jammed` : point.standing;
-        rows.push([point.label, ...this.parameters.map((one) => one.cells[i]), path, y, error, half, count, standing]);
+        const state = endings.has_jammed ? `${point.state}, jammed` : point.state;
+        rows.push([point.label, ...this.parameters.map((one) => one.cells[i]), path, y, error, half, count, state]);
       }
     });
     const inOrder = (a, b) =>
@@ -210,7 +210,7 @@ class Sweep {
       hasBand: marks.some((mark) => Format.isNumber(mark.allowed)),
       table: {
         columns: ['label', ...this.parameters.map((one) => one.pointer || 'point'), 'quantity', 'mean', 'standard_error',
-          'half_width', 'count', 'standing'],
+          'half_width', 'count', 'state'],
         rows,
       },
     };
@@ -221,7 +221,7 @@ class Sweep {
     const place = Math.max(series.size, 6); // a colour that is like none of the first
     for (const { marks } of panels) {
       for (const mark of marks.filter((one) => one.series === total && Format.isNumber(one.y))) {
-        const plain = this.points[mark.point].uncontrolled[path];
+        const plain = this.points[mark.point].plain[path];
         if (!plain || plain[0] === mark.y) continue;
         const text = `${this.points[mark.point].label}, control variate: ${Format.rough(mark.y - plain[0])}`;
         marks.push({ ...mark, series: place, y: mark.y - plain[0], half: null, text });
@@ -240,7 +240,7 @@ class Sweep {
     return this.points.every((point) => {
       const parts = choice.indices.filter((index) => index !== total).map((index) => mean(point, index));
       if (!Format.isNumber(mean(point, total))) return true;
-      const [sum] = point.uncontrolled[quantities[total].path] || [mean(point, total)];
+      const [sum] = point.plain[quantities[total].path] || [mean(point, total)];
       const size = parts.reduce((all, part) => all + Math.abs(part), 0);
       return Math.abs(parts.reduce((all, part) => all + part, 0) - sum) <= 1e-6 * size;
     });

@@ -83,13 +83,13 @@ class Tally:
             "SELECT count(*) FROM attempt late JOIN attempt first USING (point_id, seed) "
             "WHERE first.outcome = 'result' AND late.attempt_id > first.attempt_id"
         )
-        surplus = abs(results - ended) + credited + again
-        if surplus:
+        extra = abs(results - ended) + credited + again
+        if extra:
             self.complain(
                 campaign,
                 f"{ended} ended, {results} results, {credited} credited twice, {again} run again after " "their result",
                 "double",
-                surplus,
+                extra,
             )
 
     def count(self, counts, between=""):

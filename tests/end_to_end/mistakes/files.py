@@ -105,7 +105,7 @@ def engine_rebuilt(night):
     night.environment["PECLET_FAKE_IDENTITY"] = "built at two"
     night.types("peclet run night.json --workers 2", 6, ["has results of engine", "never mixes two"])
     night.lost_nothing()
-    night.follows(r"peclet run [^`]*--accept-engine [^`]*", 0, ["2 converged", "are kept apart"])
+    night.follows(r"peclet run [^`]*--accept-engine [^`]*", 0, ["2 converged", "are set aside"])
     night.lost_nothing()
 
 

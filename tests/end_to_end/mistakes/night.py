@@ -13,7 +13,7 @@ from thirty_spheres import thirty_spheres
 
 # Nothing takes this long: a command that does hangs.
 PATIENCE = 120
-# The fake engine's: two points of eight seeds and one look each. 20 ms a seed unless a case asks for slower ones.
+# The fake engine's: two points of eight seeds and one stop test each. 20 ms a seed unless a case asks for slower ones.
 CAMPAIGN = {
     "name": "night",
     "scene": {"fluid": {"viscosity": 1}, "peclet": 1},

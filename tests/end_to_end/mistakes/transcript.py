@@ -16,7 +16,7 @@ LONGEST = 12  # lines of an answer
 
 
 # What every table ends with.
-LEGEND = re.compile(r"^(so far: mean|95 % interval at the last).*\n", re.MULTILINE)
+LEGEND = re.compile(r"^(all seeds: mean|95 % interval at the last).*\n", re.MULTILINE)
 
 
 def folded(line, indent=""):

@@ -52,7 +52,7 @@ def percent(night):
 
 
 def two_seeds(night):
-    """A first look at two seeds"""
+    """A first stop test at two seeds"""
     night.write(dict(CAMPAIGN, realisations={"minimum": 2, "maximum": 100}))
     night.types("peclet run night.json", 2, ["/realisations/minimum: 2", ">= 8"])
 

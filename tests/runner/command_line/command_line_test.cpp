@@ -267,7 +267,7 @@ TEST_F(CommandLine, ARunCanBeLookedAtByFileAndByFolder) {
   for (const char* const given : {"small.json", "small.peclet"}) {
     const std::string place = given;
     EXPECT_EQ(peclet("status " + place + " --check").code, 0);
-    EXPECT_EQ(Json::parse(peclet("status " + place + " --json").text)["standing"], 0);
+    EXPECT_EQ(Json::parse(peclet("status " + place + " --json").text)["exit_code"], 0);
     EXPECT_EQ(peclet("explain " + place + " peclet=10").code, 0);
     EXPECT_EQ(Json::parse(peclet("explain " + place + " --json").text)["points"].size(), 2U);
     EXPECT_EQ(Json::parse(peclet("export " + place).text)["points"].size(), 2U);

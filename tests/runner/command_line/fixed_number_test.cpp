@@ -59,7 +59,7 @@ TEST_F(FixedNumberCampaign, GivesEveryPointItsSeedsAndEndsWithZero) {
   EXPECT_EQ(campaign_.run(wide), 0) << campaign_.log();
   EXPECT_EQ(campaign_.count("SELECT count(*) FROM realisation WHERE state = 'done'"), 24);
   EXPECT_EQ(campaign_.count("SELECT count(*) FROM realisation WHERE seed >= 12"), 0);
-  EXPECT_EQ(campaign_.count("SELECT count(*) FROM look WHERE verdict = 'complete' AND seeds = 12"), 2);
+  EXPECT_EQ(campaign_.count("SELECT count(*) FROM stop_test WHERE verdict = 'complete' AND seeds = 12"), 2);
   const std::string text = table();
   EXPECT_TRUE(says(text, "test: relative_viscosity, 12 seeds a point\n")) << text;
   EXPECT_TRUE(says(text, "seeds  relative_viscosity  verdict")) << text;
@@ -76,8 +76,9 @@ TEST_F(FixedNumberCampaign, GivesEveryPointItsSeedsAndEndsWithZero) {
 
 TEST_F(FixedNumberCampaign, EndsWithThreeWhereSeedsAreLost) {
   EXPECT_EQ(campaign_.run({{"PECLET_FAKE_FAULTS", "overlap:6"}}), 3) << campaign_.log();
-  EXPECT_EQ(campaign_.count("SELECT count(*) FROM look WHERE verdict = 'complete-with-losses' AND lost = 1"),
-            2);
+  EXPECT_EQ(
+      campaign_.count("SELECT count(*) FROM stop_test WHERE verdict = 'complete-with-losses' AND lost = 1"),
+      2);
   EXPECT_TRUE(says(table(), "complete-with-losses(1)")) << table();
   Database database = campaign_.reader();
   EXPECT_TRUE(says(explain(database, campaign_.directory(), "peclet=1"),
@@ -168,7 +169,7 @@ TEST(FixedNumberShown, HasAColumnForEachQuantity) {
   for (int seed = 0; seed < 5; ++seed) campaign.complete(0, seed, seed + 1);
   for (int seed = 0; seed < 3; ++seed) campaign.complete(1, seed, seed + 1);
   const CampaignStatus status = read_status(campaign.database());
-  EXPECT_EQ(standing(status), 4);
+  EXPECT_EQ(exit_code_of(status), 4);
   const std::string text = status_table(status);
   EXPECT_TRUE(says(text, "plain: relative_viscosity, pressure, 5 seeds a point\n")) << text;
   EXPECT_TRUE(says(text, "0        5/5           3.2 ± 2.0  6.0 ± 3.9  complete")) << text;

@@ -49,7 +49,7 @@ TEST(Pilot, StatusJudgesTheFirstPrediction) {
   const Json point = status_json(read_status(database))["points"][0]["prediction"];
   EXPECT_EQ(point["pilot"], 3);
   EXPECT_EQ(point["taken"]["seeds"],
-            campaign.count("SELECT seeds FROM look WHERE point_id = 1 AND verdict = 'converged'"));
+            campaign.count("SELECT seeds FROM stop_test WHERE point_id = 1 AND verdict = 'converged'"));
 }
 
 TEST(Pilot, AKilledOneGoesOn) {

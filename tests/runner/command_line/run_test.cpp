@@ -33,7 +33,7 @@ TEST(Run, ConvergesAndCleansUp) {
   CampaignOnDisk campaign;
   EXPECT_EQ(campaign.run(), 0) << campaign.log();
   EXPECT_EQ(campaign.count("SELECT count(*) FROM estimates WHERE verdict = 'converged'"), 2);
-  // Seeds beyond the deciding look that were running then may have been stopped: theirs alone are kept.
+  // Seeds beyond the deciding stop test that were running then may have been stopped: theirs alone are kept.
   EXPECT_LE(std::distance(std::filesystem::directory_iterator(campaign.directory().checkpoints()),
                           std::filesystem::directory_iterator()),
             campaign.count("SELECT count(*) FROM attempt WHERE outcome = 'drained'"));
@@ -55,7 +55,7 @@ TEST(Run, ATighterToleranceRunsNothingTwice) {
   EXPECT_EQ(campaign.run(), 0) << campaign.log();
   EXPECT_EQ(campaign.count("SELECT count(*) FROM attempt WHERE outcome = 'result'"),
             campaign.count("SELECT count(*) FROM realisation WHERE state = 'done'"));
-  EXPECT_EQ(campaign.count("SELECT count(DISTINCT target_id) FROM look"), 2);
+  EXPECT_EQ(campaign.count("SELECT count(DISTINCT target_id) FROM stop_test"), 2);
 }
 
 TEST(Run, ReachingTheMaximumIsNotConvergence) {

@@ -88,11 +88,11 @@ TEST(Watch, ColumnsGoByImportanceAndAreNamed) {
     }
     return std::string();
   };
-  EXPECT_EQ(header(unlimited_width), "point seeds so far look verdict ");
-  EXPECT_EQ(header(55), "point seeds look verdict ");
-  EXPECT_EQ(header(45), "point look verdict ");
+  EXPECT_EQ(header(unlimited_width), "point seeds all seeds stop test verdict ");
+  EXPECT_EQ(header(55), "point seeds stop test verdict ");
+  EXPECT_EQ(header(45), "point stop test verdict ");
   EXPECT_EQ(header(25), "point verdict ");
-  EXPECT_NE(words(status_table(status, 55)).find("too narrow for: so far "), std::string::npos);
+  EXPECT_NE(words(status_table(status, 55)).find("too narrow for: all seeds "), std::string::npos);
   EXPECT_EQ(status_table(status).find("too narrow"), std::string::npos);
 }
 

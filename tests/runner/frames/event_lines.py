@@ -83,14 +83,14 @@ class EventLines(unittest.TestCase):
         self.assertEqual(self.seeds(events), self.seeds_of_database("faults"))
         told = Counter(event["event"] for event in events)
         self.assertEqual(told["decided"], POINTS)
-        self.assertEqual(told["look"], self.query("faults", "SELECT count(*) FROM look")[0][0])
+        self.assertEqual(told["stop_test"], self.query("faults", "SELECT count(*) FROM stop_test")[0][0])
         crashes = [e for e in events if e["event"] == "attempt-failed" and e["outcome"] == "crashed"]
         self.assertEqual(Counter(e["given_up"] for e in crashes), {False: 2 * POINTS, True: POINTS})
         self.assertTrue(all(e["blamed"] and e["seed"] == 7 for e in crashes))
         for event in events:
             if event["event"] == "decided":
                 self.assertEqual(event["verdict"], "converged-with-losses")
-                self.assertEqual(event["look"]["lost"], 2)
+                self.assertEqual(event["stop_test"]["lost"], 2)
 
     def test_tell_a_finished_campaign_nothing_new(self):
         self.run_it("again")
@@ -147,7 +147,7 @@ class EventLines(unittest.TestCase):
         while process.poll() is None and time.monotonic() < patience:
             time.sleep(0.05)
             try:
-                decided = self.query("unread", "SELECT count(*) FROM look WHERE verdict = 'converged'")[0][0]
+                decided = self.query("unread", "SELECT count(*) FROM stop_test WHERE verdict = 'converged'")[0][0]
             except sqlite3.OperationalError:  # there is no database yet
                 continue
             if decided == POINTS:

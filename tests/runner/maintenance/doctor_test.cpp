@@ -107,7 +107,7 @@ TEST_F(Doctor, FindsWhatContradictsItself) {
        "integrity"},
       {"DELETE FROM numbers WHERE seed = 1", "result-altered", "integrity"},
       {"UPDATE numbers SET numbers = '[1,2]' WHERE seed = 1", "result-altered", "integrity"},
-      {"UPDATE look SET mean = mean + 1", "look-differs", "integrity"},
+      {"UPDATE stop_test SET mean = mean + 1", "stop-test-differs", "integrity"},
       {"UPDATE realisation SET final_state_sha256 = (SELECT final_state_sha256 FROM realisation WHERE seed = "
        "0) "
        "WHERE seed = 1",
@@ -184,7 +184,7 @@ TEST_F(Doctor, SaysWhoKeepsTheLogFromBecomingSmall) {
 
 TEST_F(Doctor, LooksAgainWhereLooksDiffer) {
   const std::string before = exported();
-  edit("UPDATE look SET mean = mean + 1");
+  edit("UPDATE stop_test SET mean = mean + 1");
   EXPECT_EQ(examine(true).exit_code, 0);
   EXPECT_EQ(exported(), before);
 }
@@ -213,24 +213,24 @@ TEST_F(Doctor, NamesFilesAndRemovesOnlyThoseThatNobodyNeeds) {
 }
 
 // A killed run leaves checkpoints of seeds that were ahead of what the point turned out to need.
-TEST_F(Doctor, RemovesCheckpointsOfSeedsBeyondTheDecidingLookWhenAskedTo) {
+TEST_F(Doctor, RemovesCheckpointsOfSeedsBeyondTheDecidingStopTestWhenAskedTo) {
   Database reader = campaign_.reader();
   const PointRecord point = reader.points().at(0);
   const int beyond = reader.campaign().target.maximum + 5;
   edit("INSERT INTO realisation (point_id, seed, state) VALUES (" + std::to_string(point.id) + ", " +
        std::to_string(beyond) + ", 'queued')");
-  const fs::path surplus = campaign_.directory().checkpoint(point.hash, beyond);
-  std::ofstream(surplus) << "x";
-  EXPECT_EQ(severity("checkpoint-surplus"), "note");
+  const fs::path extra = campaign_.directory().checkpoint(point.hash, beyond);
+  std::ofstream(extra) << "x";
+  EXPECT_EQ(severity("checkpoint-extra"), "note");
   EXPECT_EQ(severity("checkpoint-left"), "");
   EXPECT_EQ(examine().exit_code, 0);
-  EXPECT_TRUE(fs::exists(surplus));
+  EXPECT_TRUE(fs::exists(extra));
   // Of a point that is not decided any more, the seed may be wanted.
-  edit("UPDATE look SET verdict = 'more'");
-  EXPECT_EQ(severity("checkpoint-surplus"), "");
-  edit("UPDATE look SET verdict = 'converged'");
+  edit("UPDATE stop_test SET verdict = 'more'");
+  EXPECT_EQ(severity("checkpoint-extra"), "");
+  edit("UPDATE stop_test SET verdict = 'converged'");
   EXPECT_EQ(examine(true).exit_code, 0) << examine().text;
-  EXPECT_FALSE(fs::exists(surplus));
+  EXPECT_FALSE(fs::exists(extra));
 }
 
 TEST_F(Doctor, MissesABackupAndMakesIt) {

@@ -35,8 +35,8 @@ class CarryingOut : public testing::Test {
   void write() const { write_durably(file(), document_.dump(2)); }
   // An owner starts.
   void begin() {
-    ledger_.emplace(database_, read_campaign(file()), directory_, listener_, 2);
-    requests_.emplace(database_, *ledger_, directory_, listener_);
+    state_.emplace(database_, read_campaign(file()), directory_, listener_, 2);
+    requests_.emplace(database_, *state_, directory_, listener_);
   }
   TakeOver file_as_it_is() const { return {file(), sha256(read_file(file()))}; }
 
@@ -84,7 +84,7 @@ class CarryingOut : public testing::Test {
     return Database::open_owner(directory_.database());
   }();
   SilentListener listener_;
-  std::optional<Ledger> ledger_;
+  std::optional<CampaignState> state_;
   std::optional<RequestHandler> requests_;
 };
 

@@ -84,7 +84,7 @@ TEST_F(WorkingAhead, OnlyEnginesThatSaySoDo) {
   pool_.takes_ahead = false;  // the pool throws when one is given a second job
   pool_.script = [this] { finish_all(); };
   EXPECT_EQ(run(), Dispatcher::Ending::finished);
-  EXPECT_EQ(pool_.assigned.size(), 8U);  // 1 ... 7, and one that was surplus
+  EXPECT_EQ(pool_.assigned.size(), 8U);  // 1 ... 7, and one that was extra
 }
 
 TEST_F(WorkingAhead, OnlyBehindJobsThatAreKnownToBeShort) {
@@ -287,7 +287,7 @@ TEST_F(WorkingAhead, ResultsThatNobodyCouldAnnounceAreTakenBoth) {
 
 TEST_F(WorkingAhead, AWorkerWhoseNextSeedNobodyWantsLeaves) {
   become(plain_campaign(2, 8, 40, 0.05), {0.1, 0.1});
-  RequestHandler requests(database_, ledger_.emplace(database_, campaign_, directory_, listener_, 2),
+  RequestHandler requests(database_, state_.emplace(database_, campaign_, directory_, listener_, 2),
                           directory_, listener_);
   settings_.requests = [&] { return requests.carry_out(); };
   std::int64_t cancelled = 0;
@@ -301,7 +301,7 @@ TEST_F(WorkingAhead, AWorkerWhoseNextSeedNobodyWantsLeaves) {
     // Meanwhile nobody finishes: what is recalled is given back.
     if (++turns > 4) finish_all();
   };
-  Dispatcher(database_, *ledger_, pool_, listener_, settings_, [this] { return pool_.now; }).run();
+  Dispatcher(database_, *state_, pool_, listener_, settings_, [this] { return pool_.now; }).run();
   ASSERT_NE(cancelled, 0);
   EXPECT_EQ(count("SELECT count(*) FROM attempt WHERE outcome NOT IN ('result', 'drained') OR blamed"), 0);
   EXPECT_GT(count("SELECT count(*) FROM attempt WHERE outcome = 'drained' AND message LIKE 'waited%'"), 0);
@@ -326,7 +326,7 @@ TEST_F(WorkingAhead, ResultsCostWhatTheyTookAndSeedsThatHadNotBegunNothing) {
   EXPECT_EQ(run(), Dispatcher::Ending::stopped);
   EXPECT_EQ(count("SELECT count(*) FROM attempt WHERE outcome = 'result'"), 2);
   // Worker 1 gives back what it has had for as long; the seed behind it adds nothing to that.
-  EXPECT_NEAR(ledger_->spent_seconds(), 2 * 2.0 + 10.5, 0.6);
+  EXPECT_NEAR(state_->spent_seconds(), 2 * 2.0 + 10.5, 0.6);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@
 
 namespace peclet::runner {
 
-// Four seeds of one point at 5 %: 10 and 10.01 in turn decide it at the first look.
+// Four seeds of one point at 5 %: 10 and 10.01 in turn decide it at the first stop test.
 inline double steady(int seed) { return seed % 2 == 0 ? 10 : 10.01; }
 
 class Dispatching : public testing::Test {
@@ -26,8 +26,8 @@ class Dispatching : public testing::Test {
   }
 
   Dispatcher::Ending run() {
-    ledger_.emplace(database_, campaign_, directory_, listener_, 2);
-    Dispatcher dispatcher(database_, *ledger_, pool_, listener_, settings_, [this] { return pool_.now; });
+    state_.emplace(database_, campaign_, directory_, listener_, 2);
+    Dispatcher dispatcher(database_, *state_, pool_, listener_, settings_, [this] { return pool_.now; });
     return dispatcher.run();
   }
 
@@ -57,7 +57,7 @@ class Dispatching : public testing::Test {
   ScriptedPool pool_{2};
   SilentListener listener_;
   DispatchSettings settings_{};
-  std::optional<Ledger> ledger_;
+  std::optional<CampaignState> state_;
 };
 
 }  // namespace peclet::runner

@@ -71,7 +71,7 @@ TEST_F(Dispatching, AResultThatComesDuringADrainIsStored) {
   EXPECT_EQ(state_of(0), SeedState::done);
 }
 
-TEST_F(Dispatching, SurplusSeedsAreCheckpointedWhenTheCampaignIsDecided) {
+TEST_F(Dispatching, ExtraSeedsAreCheckpointedWhenTheCampaignIsDecided) {
   campaign_ = plain_campaign(1, 2, 40, 0.05);
   PointStore(database_).adopt(campaign_);
   // One at a time: the worker that is free first runs ahead.

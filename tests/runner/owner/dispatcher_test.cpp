@@ -15,7 +15,7 @@ namespace {
 TEST_F(Dispatching, RunsUntilEveryPointIsDecidedAndLeavesNoFiles) {
   pool_.script = [this] { finish_all(); };
   EXPECT_EQ(run(), Dispatcher::Ending::finished);
-  EXPECT_EQ(database_.looks(1).back().look.verdict, Verdict::converged);
+  EXPECT_EQ(database_.stop_tests(1).back().stop_test.verdict, Verdict::converged);
   EXPECT_TRUE(spool_files(directory_).empty());
 }
 
@@ -49,7 +49,7 @@ TEST_F(Dispatching, ASeedThatCrashesThreeTimesIsGivenUpAndCountsAsLost) {
   EXPECT_EQ(attempts_of(1).size(), 3U);
   EXPECT_EQ(state_of(1), SeedState::quarantined);
   EXPECT_EQ(database_.realisations(1).at(1).cause, "crashed");
-  EXPECT_EQ(database_.looks(1).back().look.verdict, Verdict::converged_with_losses);
+  EXPECT_EQ(database_.stop_tests(1).back().stop_test.verdict, Verdict::converged_with_losses);
 }
 
 TEST_F(Dispatching, AKillFromOutsideCostsNothing) {
@@ -63,7 +63,7 @@ TEST_F(Dispatching, AKillFromOutsideCostsNothing) {
     finish_all();
   };
   EXPECT_EQ(run(), Dispatcher::Ending::finished);
-  EXPECT_EQ(database_.looks(1).back().look.verdict, Verdict::converged);
+  EXPECT_EQ(database_.stop_tests(1).back().stop_test.verdict, Verdict::converged);
   EXPECT_EQ(database_.connection().integer("SELECT count(*) FROM attempt WHERE outcome = 'killed'"), 10);
   EXPECT_EQ(database_.connection().integer("SELECT total(blamed) FROM attempt"), 0);
 }

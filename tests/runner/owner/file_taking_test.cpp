@@ -26,7 +26,7 @@ class TakingFiles : public Dispatching {
   TakingFiles() { start(); }
 
   // Another owner, which takes in what is in the spool.
-  void start() { ledger_.emplace(database_, campaign_, directory_, listener_, 2); }
+  void start() { state_.emplace(database_, campaign_, directory_, listener_, 2); }
 
   std::string text(int seed, int number) const {
     return "seed " + std::to_string(seed) + ", file " + std::to_string(number);
@@ -72,7 +72,7 @@ class TakingFiles : public Dispatching {
 
 TEST_F(TakingFiles, BringsThemToTheirPlaces) {
   leave(0);
-  ledger_->ingest_spool();
+  state_->ingest_spool();
   expect_in_place(0);
   expect_empty_spool();
   EXPECT_EQ(database_.connection().text("SELECT path FROM files WHERE name = 'file-1.txt'"),
@@ -131,7 +131,7 @@ TEST_F(TakingFiles, RefusesAResultWhoseFilesAreNotWhatItSays) {
     const fs::path spool = leave(0);
     damage(left(spool, 1));
     const std::ptrdiff_t before = rejected();
-    ledger_->ingest_spool();
+    state_->ingest_spool();
     EXPECT_TRUE(was_warned_of(spool.filename().string() + " is not taken: " + why)) << why;
     EXPECT_GE(rejected(), before + 2);  // the result, and what is sound of its files
     EXPECT_EQ(database_.counts(1).done, 0);
@@ -141,7 +141,7 @@ TEST_F(TakingFiles, RefusesAResultWhoseFilesAreNotWhatItSays) {
     expect_empty_spool();
   }
   leave(0, 2);
-  ledger_->ingest_spool();
+  state_->ingest_spool();
   expect_in_place(0);
 }
 
@@ -150,7 +150,7 @@ TEST_F(TakingFiles, OfSeedsBeyondTheRuleThrowsThemAwayAndSaysSo) {
   start();
   leave(0);
   leave(1);
-  ledger_->ingest_spool();
+  state_->ingest_spool();
   expect_in_place(0);
   EXPECT_FALSE(fs::exists(place(1, 0)));
   const std::vector<FileRecord> thrown = files_of_seed(database_.connection(), 1, 1);
@@ -163,7 +163,7 @@ TEST_F(TakingFiles, OfSeedsBeyondTheRuleThrowsThemAwayAndSaysSo) {
   start();
   leave(1, 2);
   leave(2);
-  ledger_->ingest_spool();
+  state_->ingest_spool();
   EXPECT_FALSE(fs::exists(place(1, 0)));
   expect_in_place(2);
   expect_empty_spool();
@@ -172,24 +172,24 @@ TEST_F(TakingFiles, OfSeedsBeyondTheRuleThrowsThemAwayAndSaysSo) {
 TEST_F(TakingFiles, OfTwoRunsOfASeedKeepsOneAndHealsIt) {
   leave(0, 1);
   leave(0, 2);
-  ledger_->ingest_spool();
+  state_->ingest_spool();
   expect_in_place(0);
   expect_empty_spool();
   fs::remove(place(0, 1));
   leave(0, 3);
-  ledger_->ingest_spool();
+  state_->ingest_spool();
   expect_in_place(0);
   expect_empty_spool();
 }
 
 TEST_F(TakingFiles, OfAnotherAnswerKeepsThemWithTheRejectedResult) {
   leave(0, 1);
-  ledger_->ingest_spool();
+  state_->ingest_spool();
   const fs::path spool = leave(0, 2);
   Json other = result(0);
   other["mean"]["relative_viscosity"] = 11;
   write_durably(spool, other.dump());
-  ledger_->ingest_spool();
+  state_->ingest_spool();
   EXPECT_EQ(rejected(), 3);
   expect_in_place(0);
   expect_empty_spool();
@@ -197,12 +197,12 @@ TEST_F(TakingFiles, OfAnotherAnswerKeepsThemWithTheRejectedResult) {
 
 TEST_F(TakingFiles, OfEnginesThatAreKeptApartStandSideBySide) {
   leave(0, 1, "old");
-  ledger_->ingest_spool();
+  state_->ingest_spool();
   start();
-  EXPECT_EQ(ledger_->accept_engine(engine_identity(plain_engine("new"))), 1);
+  EXPECT_EQ(state_->accept_engine(engine_identity(plain_engine("new"))), 1);
   leave(0, 2, "new");
   leave(1, 3, "old");  // of a worker that was slow
-  ledger_->ingest_spool();
+  state_->ingest_spool();
   const std::int64_t now = database_.points().at(0).id;
   ASSERT_NE(now, 1);
   expect_in_place(0, 1);
@@ -215,7 +215,7 @@ TEST_F(TakingFiles, OfEnginesThatAreKeptApartStandSideBySide) {
 TEST_F(TakingFiles, RemovesThoseOfDeadAttemptsAndOfNobodyElse) {
   const std::int64_t engine = [this] {
     Transaction booking(database_.connection());
-    const std::int64_t row = ledger_->admit_engine(plain_engine());
+    const std::int64_t row = state_->admit_engine(plain_engine());
     booking.commit();
     return row;
   }();
@@ -225,7 +225,7 @@ TEST_F(TakingFiles, RemovesThoseOfDeadAttemptsAndOfNobodyElse) {
   std::vector<fs::path> spools;
   for (const pid_t process : {dead, getpid()}) {
     Transaction giving(database_.connection());
-    spools.push_back(ledger_->give_out(0, process, engine).value().job.spool);
+    spools.push_back(state_->give_out(0, process, engine).value().job.spool);
     giving.commit();
     write_durably(left(spools.back(), 0), "half of it");
   }
@@ -239,7 +239,7 @@ TEST_F(TakingFiles, RemovesThoseOfDeadAttemptsAndOfNobodyElse) {
 // A database that was restored may come from anybody.
 TEST_F(TakingFiles, ByARowThatLeadsElsewhereIsRefused) {
   leave(0);
-  ledger_->ingest_spool();
+  state_->ingest_spool();
   for (const char* const change : {"file SET name = '../../../escaped' WHERE name = 'file-0.txt'",
                                    "file SET sha256 = '../../escaped'", "point SET hash = '../../escaped'"}) {
     Transaction taken_back(database_.connection());
@@ -305,7 +305,7 @@ TEST_F(TakingFiles, KeepsWhatWasCheckedWhateverHasItsNameSince) {
 TEST_F(TakingFiles, MovesAsideWhatIsInTheirPlaces) {
   fs::create_directories(place(0, 1) / "inside");
   leave(0);
-  ledger_->ingest_spool();
+  state_->ingest_spool();
   expect_in_place(0);
   EXPECT_TRUE(fs::exists(place(0, 1).string() + "@aside/inside"));
   EXPECT_TRUE(
@@ -313,25 +313,25 @@ TEST_F(TakingFiles, MovesAsideWhatIsInTheirPlaces) {
   // A file in the place of the folder of a seed.
   write_durably(place(1, 0).parent_path(), "in the way");
   leave(1);
-  ledger_->ingest_spool();
+  state_->ingest_spool();
   expect_in_place(1);
   EXPECT_EQ(read_file(place(1, 0).parent_path().string() + "@aside"), "in the way");
 }
 
 TEST_F(TakingFiles, CountsNoFolderAsAFile) {
   leave(0);
-  ledger_->ingest_spool();
+  state_->ingest_spool();
   fs::remove(place(0, 0));
   fs::create_directory(place(0, 0));
   leave(0, 2);
-  ledger_->ingest_spool();
+  state_->ingest_spool();
   expect_in_place(0);
 }
 
 TEST_F(TakingFiles, OfAFolderThatIsGoneTakesNothing) {
   leave(0);
   fs::remove_all(directory_.spool());
-  EXPECT_NO_THROW(ledger_->ingest_spool());
+  EXPECT_NO_THROW(state_->ingest_spool());
   EXPECT_EQ(database_.counts(1).done, 0);
 }
 

@@ -1,4 +1,4 @@
-// Requests and the ledger without processes: what each changes, what is refused, and that it happens once.
+// Requests and the state without processes: what each changes, what is refused, and that it happens once.
 #include "runner/owner/request_handler.h"
 
 #include <gtest/gtest.h>
@@ -20,12 +20,12 @@ namespace fs = std::filesystem;
 TEST_F(CarryingOut, ANewTargetReopensWhatItDoesNotSatisfy) {
   for (int seed = 0; seed < 8; ++seed) store(0, seed, seed % 2 == 0 ? 10 : 10.5);
   begin();
-  ASSERT_TRUE(ledger_->scheduler().decided(0));
+  ASSERT_TRUE(state_->scheduler().decided(0));
   document_["target"]["relative_tolerance"] = 0.001;
   document_["realisations"]["maximum"] = 90;
   write();
   EXPECT_EQ(ask(file_as_it_is()), "set: tolerance 5 % -> 0.1 %; maximum 40 -> 90");
-  EXPECT_FALSE(ledger_->scheduler().decided(0));
+  EXPECT_FALSE(state_->scheduler().decided(0));
   EXPECT_EQ(database_.campaign().target.target.tolerance, Tolerance(0.001));
   // The look after that of 8 seeds: all of its seeds are in the queue.
   EXPECT_EQ(count("realisation WHERE state = 'queued' AND point_id = 1"), 2);
@@ -36,9 +36,9 @@ TEST_F(CarryingOut, PointsComeAndGoWithTheFile) {
   document_["sweep"][0]["values"] = {10, 100, 1000};
   write();
   EXPECT_EQ(ask(file_as_it_is()), "set: 2 points added; 1 point left out");
-  ASSERT_EQ(ledger_->scheduler().points(), 3);
-  EXPECT_EQ(ledger_->point(0).label, "peclet=10");
-  EXPECT_EQ(ledger_->scheduler().begun(0), 1);  // what the point had when it stood elsewhere
+  ASSERT_EQ(state_->scheduler().points(), 3);
+  EXPECT_EQ(state_->point(0).label, "peclet=10");
+  EXPECT_EQ(state_->scheduler().begun(0), 1);  // what the point had when it stood elsewhere
   EXPECT_EQ(ask(file_as_it_is()), "set: nothing differs");
 }
 
@@ -75,14 +75,14 @@ TEST_F(CarryingOut, AnObservableThatResultsLackIsRefusedAndNothingIsHalfDone) {
       << said;
   EXPECT_EQ(database_.points().size(), 2U);
   EXPECT_EQ(database_.campaign().target.target.observable, "relative_viscosity");
-  EXPECT_EQ(ledger_->campaign().target.observable, "relative_viscosity");
-  EXPECT_EQ(ledger_->scheduler().points(), 2);
+  EXPECT_EQ(state_->campaign().target.observable, "relative_viscosity");
+  EXPECT_EQ(state_->scheduler().points(), 2);
 }
 
 TEST_F(CarryingOut, TheEngineOfARunIsNotChangedUnderIt) {
   document_["engine"] = {"another-engine"};
   write();
-  ledger_->admit_engine(plain_engine());
+  state_->admit_engine(plain_engine());
   EXPECT_NE(ask(file_as_it_is()).find("/engine: [\"another-engine\"]: cannot be changed while"),
             std::string::npos);
   begin();  // nobody runs it
@@ -92,28 +92,28 @@ TEST_F(CarryingOut, TheEngineOfARunIsNotChangedUnderIt) {
 TEST_F(CarryingOut, ARunWithAnotherEngineDoesNotReopenWhatTheFirstOneDid) {
   for (int seed = 0; seed < 8; ++seed) store(0, seed, seed % 2 == 0 ? 10 : 10.5, "first");
   begin();
-  ledger_->admit_engine(plain_engine("second"));  // the point is decided: nothing is mixed
+  state_->admit_engine(plain_engine("second"));  // the point is decided: nothing is mixed
   document_["target"]["relative_tolerance"] = 0.001;
   write();
   EXPECT_TRUE(
       ask(file_as_it_is()).starts_with("refused: peclet=1: has results of engine 1.0.0 (none) sha256"));
-  EXPECT_TRUE(ledger_->scheduler().decided(0));
+  EXPECT_TRUE(state_->scheduler().decided(0));
 }
 
 TEST_F(CarryingOut, APriorityDecidesWhoIsServedFirst) {
-  EXPECT_EQ(ledger_->scheduler().next()->point, 0);
+  EXPECT_EQ(state_->scheduler().next()->point, 0);
   EXPECT_EQ(ask(Prioritise{{"peclet=10"}, 5}), "set: priority 5: peclet=10");
-  EXPECT_EQ(ledger_->scheduler().next()->point, 1);
+  EXPECT_EQ(state_->scheduler().next()->point, 1);
   EXPECT_EQ(database_.points().at(1).priority, 5);
 }
 
 TEST_F(CarryingOut, ACancelledPointHoldsNothingUpUntilItIsTakenUpAgain) {
   EXPECT_EQ(ask(Cancel{{"peclet=1", hash(1).substr(0, 6)}, false}),
             "cancel: no more seeds: peclet=1, peclet=10");
-  EXPECT_TRUE(ledger_->scheduler().finished());
+  EXPECT_TRUE(state_->scheduler().finished());
   EXPECT_EQ(ask(Cancel{{"peclet=1"}, true}), "cancel: taken up again: peclet=1");
-  EXPECT_FALSE(ledger_->scheduler().finished());
-  EXPECT_EQ(ledger_->scheduler().next()->point, 0);
+  EXPECT_FALSE(state_->scheduler().finished());
+  EXPECT_EQ(state_->scheduler().next()->point, 0);
 }
 
 TEST_F(CarryingOut, APointThatNobodyKnowsIsRefusedWithTheNamesThatThereAre) {
@@ -121,7 +121,7 @@ TEST_F(CarryingOut, APointThatNobodyKnowsIsRefusedWithTheNamesThatThereAre) {
             "refused: peclet=7: must be the label of one point, its values alone, or 4 or more digits of its "
             "hash; labels: peclet=1, "
             "peclet=10");
-  EXPECT_FALSE(ledger_->scheduler().cancelled(0));
+  EXPECT_FALSE(state_->scheduler().cancelled(0));
   EXPECT_EQ(listener_.notes.size(), 1U);
 }
 
@@ -146,11 +146,11 @@ TEST_F(CarryingOut, ARetryMakesTheLooksAgainWithoutTheLoss) {
   for (int seed = 0; seed < 7; ++seed) store(0, seed, seed % 2 == 0 ? 10 : 10.5);
   crash_three_times(0, 7);
   begin();
-  ASSERT_EQ(ledger_->scheduler().looks(0).back().verdict, Verdict::converged_with_losses);
+  ASSERT_EQ(state_->scheduler().stop_tests(0).back().verdict, Verdict::converged_with_losses);
   ask(Retry{{"peclet=1"}, {7}});
-  EXPECT_TRUE(ledger_->scheduler().looks(0).empty());
-  EXPECT_TRUE(database_.looks(id(0)).empty());
-  EXPECT_EQ(ledger_->scheduler().begun(0), 7);
+  EXPECT_TRUE(state_->scheduler().stop_tests(0).empty());
+  EXPECT_TRUE(database_.stop_tests(id(0)).empty());
+  EXPECT_EQ(state_->scheduler().begun(0), 7);
   EXPECT_EQ(count("realisation WHERE point_id = 1 AND seed = 7 AND state = 'queued'"), 1);
 }
 
@@ -178,7 +178,7 @@ TEST_F(CarryingOut, ARequestThatWasCarriedOutBeforeIsOnlyRemoved) {
   ask(Cancel{{"peclet=1"}, true});
   write_durably(request_file(directory_, request.name), text);  // its owner died before it could remove it
   EXPECT_FALSE(requests_->carry_out());
-  EXPECT_FALSE(ledger_->scheduler().cancelled(0));
+  EXPECT_FALSE(state_->scheduler().cancelled(0));
   EXPECT_TRUE(waiting_requests(directory_).empty());
 }
 

@@ -61,7 +61,7 @@ TEST(Set, ReopensAFinishedCampaignWhichThenGivesWhatAFreshOneDoes) {
   EXPECT_EQ(reply.text,
             "set: tolerance 5 % -> 4 %\ngo on with: peclet run " + campaign.options.campaign.string() + "\n");
   Database database = campaign.reader();
-  EXPECT_EQ(standing(read_status(database)), 4);
+  EXPECT_EQ(exit_code_of(read_status(database)), 4);
 
   campaign.document["target"]["relative_tolerance"] = 0.04;
   EXPECT_EQ(read_json(campaign.options.campaign), campaign.document);
@@ -228,7 +228,7 @@ TEST(Cancel, StopsThePointsSeedsWithoutBlameAndIsNoSuccess) {
   EXPECT_GE(campaign.count("SELECT count(*) FROM attempt WHERE outcome = 'drained'"), 2);
   Database database = campaign.reader();
   const CampaignStatus status = read_status(database);
-  EXPECT_EQ(standing(status), 3);
+  EXPECT_EQ(exit_code_of(status), 3);
   EXPECT_EQ(verdict_text(status.points.at(0)), "cancelled");
   EXPECT_NE(status_table(status).find("2 points: 2 cancelled"), std::string::npos);
 }
@@ -337,10 +337,10 @@ TEST(AcceptEngine, IsByNameAndNeverMixes) {
   EXPECT_EQ(campaign.run(other), 3) << campaign.log();
   EXPECT_EQ(canonical(campaign), undisturbed(campaign.document, other));
   EXPECT_EQ(
-      campaign.count("SELECT count(*) FROM realisation JOIN point USING (point_id) WHERE kept_apart = 1 AND "
+      campaign.count("SELECT count(*) FROM realisation JOIN point USING (point_id) WHERE set_aside = 1 AND "
                      "content_sha256 IS NOT NULL"),
       results);
-  EXPECT_NE(campaign.log().find("are kept apart"), std::string::npos);
+  EXPECT_NE(campaign.log().find("are set aside"), std::string::npos);
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ class Failing {
     sqlite3_create_function(connection.handle(), "strikes", 0, SQLITE_UTF8, this, &strikes, nullptr, nullptr);
     int number = 0;
     for (const char* const table : {"point", "engine", "realisation", "dictionary", "result", "file",
-                                    "attempt", "lease", "look", "event", "bundle_seed"}) {
+                                    "attempt", "lease", "stop_test", "event", "bundle_seed"}) {
       for (const char* const change : {"INSERT", "UPDATE", "DELETE"}) {
         connection.execute("CREATE TEMP TRIGGER failing_" + std::to_string(++number) + " BEFORE " + change +
                            " ON main." + table +
@@ -62,8 +62,8 @@ std::string stored(Connection& connection) {
     return 0;
   };
   for (const char* const rows :
-       {"point", "engine", "realisation", "dictionary", "file", "attempt", "lease", "look", "bundle_seed",
-        "(SELECT point_id, seed, hex(document) FROM result)",
+       {"point", "engine", "realisation", "dictionary", "file", "attempt", "lease", "stop_test",
+        "bundle_seed", "(SELECT point_id, seed, hex(document) FROM result)",
         "(SELECT kind, point_id, seed, message FROM event WHERE kind != 'rejected' ORDER BY event_id)"}) {
     const std::string query = std::string("SELECT * FROM ") + rows;
     EXPECT_EQ(sqlite3_exec(connection.handle(), query.c_str(), add_row, &text, nullptr), SQLITE_OK) << rows;
@@ -73,7 +73,7 @@ std::string stored(Connection& connection) {
 
 class Taking : public Dispatching {
  protected:
-  Taking() { ledger_.emplace(database_, campaign_, directory_, listener_, 2); }
+  Taking() { state_.emplace(database_, campaign_, directory_, listener_, 2); }
 
   Json result(int seed) const {
     Json document = plain_result(campaign_.points[0].hash, seed, steady(seed));
@@ -87,15 +87,15 @@ class Taking : public Dispatching {
     write_durably(file, document.dump());
     return file;
   }
-  // What the ledger knows and would do.
+  // What the state knows and would do.
   std::string picture() {
-    const Scheduler& scheduler = ledger_->scheduler();
-    const std::optional<SeedId> next = ledger_->next();
-    std::string text = std::to_string(scheduler.begun(0)) + ' ' + std::to_string(scheduler.ended(0)) + ' ' +
-                       std::to_string(scheduler.wanted(0)) + ' ' + std::to_string(scheduler.looks(0).size()) +
-                       ' ' + std::to_string(ledger_->spent_seconds()) + ' ' +
-                       std::to_string(next ? next->seed : -1) + ' ' +
-                       std::to_string(listener_.events.size()) + ' ' + std::to_string(listener_.notes.size());
+    const Scheduler& scheduler = state_->scheduler();
+    const std::optional<SeedId> next = state_->next();
+    std::string text =
+        std::to_string(scheduler.begun(0)) + ' ' + std::to_string(scheduler.ended(0)) + ' ' +
+        std::to_string(scheduler.wanted(0)) + ' ' + std::to_string(scheduler.stop_tests(0).size()) + ' ' +
+        std::to_string(state_->spent_seconds()) + ' ' + std::to_string(next ? next->seed : -1) + ' ' +
+        std::to_string(listener_.events.size()) + ' ' + std::to_string(listener_.notes.size());
     return text + '\n' + stored(database_.connection());
   }
   std::ptrdiff_t turned_down() const {
@@ -117,7 +117,7 @@ TEST_F(Taking, OfASpoolFileFailsWithoutATraceAtEveryChange) {
       const std::ptrdiff_t rejected = turned_down();
       const fs::path file = put(result(seed));
       failing_.strike(change);
-      ledger_->ingest_spool();
+      state_->ingest_spool();
       const bool was_struck = failing_.changes() > change;  // what follows says that it was turned down
       failing_.strike(0);
       EXPECT_FALSE(fs::exists(file));
@@ -130,8 +130,8 @@ TEST_F(Taking, OfASpoolFileFailsWithoutATraceAtEveryChange) {
     EXPECT_GT(change, 4);
     EXPECT_NE(picture(), before);
   }
-  EXPECT_TRUE(ledger_->scheduler().decided(0));
-  EXPECT_EQ(database_.looks(1).back().look.verdict, Verdict::converged);
+  EXPECT_TRUE(state_->scheduler().decided(0));
+  EXPECT_EQ(database_.stop_tests(1).back().stop_test.verdict, Verdict::converged);
   EXPECT_EQ(database_.counts(1).done, 4);
   EXPECT_EQ(listener_.count<SeedEnded>(), 4);
   for (const std::string& warning : listener_.warnings) {
@@ -142,13 +142,13 @@ TEST_F(Taking, OfASpoolFileFailsWithoutATraceAtEveryChange) {
 TEST_F(Taking, OfAWorkersResultFailsWithoutATraceAtEveryChange) {
   const std::int64_t engine = [this] {
     Transaction booking(database_.connection());
-    const std::int64_t row = ledger_->admit_engine(plain_engine());
+    const std::int64_t row = state_->admit_engine(plain_engine());
     booking.commit();
     return row;
   }();
   for (int seed = 0; seed < 4; ++seed) {
     Transaction giving(database_.connection());
-    GivenSeed given_seed = ledger_->give_out(0, 4711, engine).value();
+    GivenSeed given_seed = state_->give_out(0, 4711, engine).value();
     giving.commit();
     ASSERT_EQ(given_seed.id.seed, seed);
     const std::string before = picture();
@@ -159,10 +159,10 @@ TEST_F(Taking, OfAWorkersResultFailsWithoutATraceAtEveryChange) {
       std::string why;
       failing_.strike(change);
       Transaction booking(database_.connection());
-      taken = ledger_->take_result(given_seed, sha256_of_file(given_seed.job.spool), 100, 8, why);
+      taken = state_->take_result(given_seed, sha256_of_file(given_seed.job.spool), 100, 8, why);
       booking.commit();
       failing_.strike(0);
-      ledger_->after_commit();
+      state_->after_commit();
       if (taken) break;
       EXPECT_NE(why.find("struck as asked"), std::string::npos) << why;
       EXPECT_EQ(picture(), before) << "seed " << seed << ", change " << change;
@@ -170,7 +170,7 @@ TEST_F(Taking, OfAWorkersResultFailsWithoutATraceAtEveryChange) {
     EXPECT_GT(change, 6);  // as above, and the attempt and its lease
   }
   EXPECT_EQ(database_.counts(1).done, 4);
-  EXPECT_DOUBLE_EQ(ledger_->spent_seconds(), 8);  // 2 s each, of the results that counted
+  EXPECT_DOUBLE_EQ(state_->spent_seconds(), 8);  // 2 s each, of the results that counted
   EXPECT_EQ(database_.connection().integer("SELECT count(*) FROM attempt WHERE outcome = 'result'"), 4);
 }
 
@@ -181,11 +181,11 @@ TEST_F(Taking, WhatFailsForWantOfRoomIsNoFaultOfTheResult) {
   Json large = result(1);
   large["ending"]["message"] = noise(200'000);
   put(large);
-  EXPECT_THROW(ledger_->ingest_spool(), DatabaseError);
+  EXPECT_THROW(state_->ingest_spool(), DatabaseError);
   EXPECT_EQ(turned_down(), 0);
-  ledger_->roll_back();
+  state_->roll_back();
   database_.connection().execute("PRAGMA max_page_count = 1000000");
-  ledger_->ingest_spool();
+  state_->ingest_spool();
   EXPECT_EQ(database_.counts(1).done, 2);
   EXPECT_NE(picture(), before);
 }
@@ -194,32 +194,32 @@ TEST_F(Taking, WhatFailsForWantOfRoomIsNoFaultOfTheResult) {
 // seed whose attempt has ended and of one whose end was not booked.
 TEST_F(Taking, WhatACommitHasLeftToDoOutlivesATransactionThatFails) {
   const auto refused = [this] {
-    const std::int64_t engine = ledger_->admit_engine(plain_engine());
-    const GivenSeed given_seed = ledger_->give_out(0, 4711, engine).value();
-    ledger_->end_attempt(given_seed, {AttemptOutcome::refused});
+    const std::int64_t engine = state_->admit_engine(plain_engine());
+    const GivenSeed given_seed = state_->give_out(0, 4711, engine).value();
+    state_->end_attempt(given_seed, {AttemptOutcome::refused});
     return given_seed.job.checkpoint;
   };
   Transaction first(database_.connection());
-  const GivenSeed other = ledger_->give_out(1, 4712, ledger_->admit_engine(plain_engine())).value();
+  const GivenSeed other = state_->give_out(1, 4712, state_->admit_engine(plain_engine())).value();
   const fs::path checkpoint = refused();
   first.commit();
   fs::remove_all(directory_.checkpoints());
   write_durably(directory_.checkpoints(), "no folder");
-  EXPECT_THROW(ledger_->after_commit(), std::system_error);
+  EXPECT_THROW(state_->after_commit(), std::system_error);
   EXPECT_EQ(listener_.count<AttemptFailed>(), 0);
   {
     const Transaction second(database_.connection());
-    ledger_->end_attempt(other, {AttemptOutcome::refused});
+    state_->end_attempt(other, {AttemptOutcome::refused});
   }
-  ledger_->roll_back();
+  state_->roll_back();
   fs::remove(directory_.checkpoints());
   fs::create_directory(directory_.checkpoints());
   for (const fs::path& file : {checkpoint, other.job.checkpoint}) write_durably(file, "a state");
-  for (int time = 0; time < 2; ++time) ledger_->after_commit();
+  for (int time = 0; time < 2; ++time) state_->after_commit();
   EXPECT_FALSE(fs::exists(checkpoint));
   EXPECT_TRUE(fs::exists(other.job.checkpoint));
   EXPECT_EQ(listener_.count<AttemptFailed>(), 1);
-  EXPECT_EQ(ledger_->scheduler().begun(0), 1);
+  EXPECT_EQ(state_->scheduler().begun(0), 1);
 }
 
 // What its shape lets through nobody may stumble over later.
@@ -241,9 +241,9 @@ TEST_F(Dispatching, AResultWithAWarningThatIsNoneDoesNotCount) {
     };
     EXPECT_EQ(run(), Dispatcher::Ending::finished) << warnings;
     EXPECT_EQ(database_.connection().integer("SELECT count(*) FROM realisations WHERE value > 11"), 0);
-    EXPECT_EQ(database_.looks(1).back().look.verdict, Verdict::converged);
+    EXPECT_EQ(database_.stop_tests(1).back().stop_test.verdict, Verdict::converged);
     database_.connection().execute(
-        "DELETE FROM attempt; DELETE FROM look; DELETE FROM numbers; DELETE FROM result; DELETE FROM "
+        "DELETE FROM attempt; DELETE FROM stop_test; DELETE FROM numbers; DELETE FROM result; DELETE FROM "
         "dictionary; DELETE FROM "
         "realisation");
   }
@@ -252,14 +252,14 @@ TEST_F(Dispatching, AResultWithAWarningThatIsNoneDoesNotCount) {
 // The engine that runs now may have saved a state for this very seed.
 TEST_F(Taking, AResultOfAnEngineThatIsKeptApartLeavesTheCheckpointAlone) {
   put(plain_result(campaign_.points[0].hash, 0, 10, "old"));
-  ledger_->ingest_spool();
-  ledger_.emplace(database_, campaign_, directory_, listener_, 2);  // another run
-  EXPECT_EQ(ledger_->accept_engine(engine_identity(plain_engine("new"))), 1);
+  state_->ingest_spool();
+  state_.emplace(database_, campaign_, directory_, listener_, 2);  // another run
+  EXPECT_EQ(state_->accept_engine(engine_identity(plain_engine("new"))), 1);
   const fs::path checkpoint = directory_.checkpoint(campaign_.points[0].hash, 0);
   for (int time = 0; time < 2; ++time) {
     write_durably(checkpoint, "of the new engine");
     put(plain_result(campaign_.points[0].hash, time, 10, "old"));  // known already, then another one
-    ledger_->ingest_spool();
+    state_->ingest_spool();
     EXPECT_TRUE(fs::exists(checkpoint));
     EXPECT_EQ(turned_down(), 0);
   }

@@ -58,9 +58,9 @@ TEST_F(CampaignFigure, HasTheEstimateThatDecides) {
               1e-9);  // Student's t, 3 degrees
   EXPECT_NEAR(capped["good_enough"].get<double>(), 0.05 * 10.3, 1e-12);
   EXPECT_EQ(capped["count"], 4);
-  EXPECT_EQ(capped["standing"], "undecided");
-  EXPECT_EQ(drawn["points"][1]["standing"], "converged");
-  EXPECT_EQ(drawn["points"][2]["standing"], "provisional");
+  EXPECT_EQ(capped["state"], "undecided");
+  EXPECT_EQ(drawn["points"][1]["state"], "converged");
+  EXPECT_EQ(drawn["points"][2]["state"], "provisional");
   EXPECT_EQ(drawn["points"][2]["mean"], 30);
   EXPECT_TRUE(drawn["points"][2]["half_width"].is_null());
 }

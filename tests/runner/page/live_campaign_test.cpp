@@ -21,7 +21,7 @@ class LivePage : public testing::Test {
   // What is new since the token, once there is something; null after some seconds without.
   static Json news(LiveCampaign& live, const std::string& token) {
     for (int attempt = 0; attempt < 1000; ++attempt) {
-      live.look();
+      live.stop_test();
       if (const auto found = live.changes_since(token)) return Json::parse(*found);
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
@@ -49,7 +49,7 @@ TEST_F(LivePage, TellsEverythingAtFirstAndThenOnlyWhatHasChanged) {
   EXPECT_EQ(second["head"]["progress"]["seeds"]["ended"], 2);
   // Whoever knows nothing, or something of another process, is told everything.
   EXPECT_EQ(parsed(live.changes_since("1-2.1"))["points"].size(), 3U);
-  EXPECT_EQ(live.standing(), ExitCode::unfinished);
+  EXPECT_EQ(live.exit_code(), ExitCode::unfinished);
 }
 
 // Whatever is asked for, a bounded number of texts is kept.
@@ -71,7 +71,7 @@ TEST_F(LivePage, WhatHasNotChangedIsNoNews) {
   // A commit that changes nothing which the page shows.
   campaign_.database().connection().execute("UPDATE point SET priority = priority");
   std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  live.look();
+  live.stop_test();
   EXPECT_EQ(live.changes_since(token), nullptr);
 }
 
@@ -99,12 +99,12 @@ TEST_F(LivePage, AFaultIsToldBesideWhatWasKnown) {
   for (int seed = 0; seed < 4; ++seed) campaign_.complete(0, seed, 10 + 0.01 * seed);
   LiveCampaign live = this->live();
   const std::string token = token_of(parsed(live.changes_since("")));
-  campaign_.database().connection().execute("UPDATE look SET count = count + 1");
+  campaign_.database().connection().execute("UPDATE stop_test SET count = count + 1");
   campaign_.database().connection().execute("UPDATE realisation SET cpu_seconds = 7");
   const Json state = news(live, token);
-  EXPECT_TRUE(says(state["head"]["fault"], "look"));
+  EXPECT_TRUE(says(state["head"]["fault"], "stop test"));
   EXPECT_EQ(state["count"], 3);
-  campaign_.database().connection().execute("UPDATE look SET count = count - 1");
+  campaign_.database().connection().execute("UPDATE stop_test SET count = count - 1");
   const Json mended = news(live, token_of(state));
   EXPECT_FALSE(mended["head"].contains("fault")) << mended["head"].dump();
 }
@@ -113,7 +113,7 @@ TEST_F(LivePage, AllPointsThatAreDecidedAreAStanding) {
   for (int point = 0; point < 3; ++point) {
     for (int seed = 0; seed < 4; ++seed) campaign_.complete(point, seed, 10 + 0.01 * seed);
   }
-  EXPECT_EQ(live().standing(), ExitCode::done);
+  EXPECT_EQ(live().exit_code(), ExitCode::done);
 }
 
 TEST(LivePageOfNothing, IsRefusedUnlessItIsACampaignThatMayBegin) {

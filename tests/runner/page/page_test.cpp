@@ -44,11 +44,11 @@ TEST_F(CampaignPage, HasTheEstimateThatDecidesAndEveryOther) {
   EXPECT_NEAR(deciding[1], error, 1e-12);
   EXPECT_NEAR(deciding[2], 3.18244630528 * error, 1e-9);
   EXPECT_EQ(deciding[3], 4);
-  EXPECT_NEAR(page["points"][0]["uncontrolled"]["relative_viscosity"][0], 10.05, 1e-12);
+  EXPECT_NEAR(page["points"][0]["plain"]["relative_viscosity"][0], 10.05, 1e-12);
   EXPECT_NEAR(estimate(page, 0, "pressure")[0], 20.1, 1e-12);
   EXPECT_NEAR(page["points"][0]["good_enough"]["relative_viscosity"], 0.05 * 10.3, 1e-12);
-  EXPECT_EQ(page["points"][0]["standing"], "capped");
-  EXPECT_EQ(page["points"][1]["standing"], "open");
+  EXPECT_EQ(page["points"][0]["state"], "capped");
+  EXPECT_EQ(page["points"][1]["state"], "open");
   EXPECT_EQ(estimate(page, 1, "pressure"), nullptr);
   EXPECT_EQ(page["progress"]["decided"], 1);
   EXPECT_EQ(page["progress"]["cpu_seconds"], 8);
@@ -62,13 +62,13 @@ TEST_F(CampaignPage, OfAnOpenPointHasWhatIsKnownSoFar) {
   campaign_.database().connection().execute(
       "UPDATE attempt SET worker = attempt_id, started_at = '2026-01-01T00:00:00Z'");
   const Json page = data();
-  const Json so_far = estimate(page, 1, "relative_viscosity");
-  EXPECT_EQ(so_far[0], 10.25);
-  EXPECT_EQ(so_far[1], 1);
-  EXPECT_EQ(so_far[3], 2);
+  const Json all_seeds = estimate(page, 1, "relative_viscosity");
+  EXPECT_EQ(all_seeds[0], 10.25);
+  EXPECT_EQ(all_seeds[1], 1);
+  EXPECT_EQ(all_seeds[3], 2);
   const Json& point = page["points"][1];
   EXPECT_EQ(point["decided"], false);
-  EXPECT_EQ(point["seeds"]["looked_at"], nullptr);
+  EXPECT_EQ(point["seeds"]["tested"], nullptr);
   EXPECT_EQ(point["seeds"]["wanted_ended"], 2);
   EXPECT_EQ(point["running_mean"]["seeds"], Json({1}));  // seed 1 has not ended
   // Two points of four seeds each, of which two have ended, at 4 s on the wall, for two workers.
@@ -85,9 +85,9 @@ TEST_F(CampaignPage, ShowsHowAMeanCameAbout) {
   EXPECT_NEAR(point["running_mean"]["half_width"][1], 12.7062 * 0.5, 1e-4);  // six digits are kept
   EXPECT_EQ(point["scatter"]["seeds"], Json({1, 2, 3, 4}));
   EXPECT_EQ(point["scatter"]["values"], Json({9.3, 10.3, 11.3, 10.3}));
-  ASSERT_EQ(point["looks"].size(), 1U);
-  EXPECT_EQ(point["looks"][0]["seeds"], 4);
-  EXPECT_EQ(point["looks"][0]["verdict"], "capped");
+  ASSERT_EQ(point["stop_tests"].size(), 1U);
+  EXPECT_EQ(point["stop_tests"][0]["seeds"], 4);
+  EXPECT_EQ(point["stop_tests"][0]["verdict"], "capped");
 }
 
 TEST_F(CampaignPage, KeepsItsSizeHoweverManySeedsThereAre) {
@@ -220,8 +220,9 @@ TEST_F(CampaignPage, CallsAKeyOfASceneWhatTheEngineCallsIt) {
 
 TEST_F(CampaignPage, DependsOnTheDatabaseAlone) {
   complete_widely(0);
-  for (const char* const aged : {"campaign SET created_at", "campaign SET updated_at", "look SET made_at",
-                                 "attempt SET started_at", "attempt SET ended_at", "event SET at"}) {
+  for (const char* const aged :
+       {"campaign SET created_at", "campaign SET updated_at", "stop_test SET made_at",
+        "attempt SET started_at", "attempt SET ended_at", "event SET at"}) {
     campaign_.database().connection().execute(fmt::format("UPDATE {} = '2001-02-03T04:05:06Z'", aged));
   }
   const std::string before = report_html(campaign_.database());
@@ -236,7 +237,7 @@ TEST_F(CampaignPage, DependsOnTheDatabaseAlone) {
 
 TEST_F(CampaignPage, IsRefusedWhenALookIsNotWhatTheResultsSay) {
   complete_widely(0);
-  campaign_.database().connection().execute("UPDATE look SET mean = 9");
+  campaign_.database().connection().execute("UPDATE stop_test SET mean = 9");
   EXPECT_THROW(data(), IntegrityError);
 }
 

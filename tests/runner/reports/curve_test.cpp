@@ -12,7 +12,7 @@ CampaignStatus swept(const std::vector<std::pair<Json, double>>& points) {
   for (const auto& [settings, mean] : points) {
     PointSummary point;
     point.point.settings = settings;
-    point.so_far.mean = mean;
+    point.all_seeds.mean = mean;
     status.points.push_back(point);
   }
   return status;

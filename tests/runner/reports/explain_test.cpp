@@ -35,16 +35,16 @@ TEST(Explain, ProgramsAreToldTheSame) {
             all["points"][0]);
   const Json lossy = all["points"][0], open = all["points"][1];
   EXPECT_EQ(lossy["verdict"], "converged-with-losses");
-  EXPECT_EQ(lossy["looks"].size(), 1U);
-  EXPECT_EQ(lossy["looks"][0]["seeds"], 6);
+  EXPECT_EQ(lossy["stop_tests"].size(), 1U);
+  EXPECT_EQ(lossy["stop_tests"][0]["seeds"], 6);
   EXPECT_EQ(lossy["losses"], Json({{"crashed", {5}}, {"overlap", {4}}}));
   EXPECT_EQ(lossy["blamed_attempts"], Json::array({{{"seed", 5},
                                                     {"outcome", "crashed"},
                                                     {"step", 42},
                                                     {"message", "signal 11 (Segmentation fault)"}}}));
   EXPECT_TRUE(open["verdict"].is_null());
-  EXPECT_EQ(open["reason"], "0 of the 6 seeds of the next look have ended, 0 run");
-  EXPECT_EQ(open["next"], "the first look, at 6 seeds");
+  EXPECT_EQ(open["reason"], "0 of the 6 seeds of the next stop test have ended, 0 run");
+  EXPECT_EQ(open["next"], "the first stop test, at 6 seeds");
 }
 
 TEST(Explain, ACappedPointIsToldHowManySeedsItWouldTake) {
@@ -75,12 +75,13 @@ TEST(Explain, OfSeveralTargetsEachIsToldWithItsTolerance) {
   const std::string table = status_table(read_status(campaign.database(), 0));
   EXPECT_TRUE(says(table, "relative_viscosity to 5 %, pressure to 1 at 95 % confidence")) << table;
   EXPECT_TRUE(says(table, "pressure 2.6 x")) << table;
-  const Json look = explain_json(campaign.database(), campaign.directory(), "")["points"][0]["looks"][0];
-  EXPECT_EQ(look["verdict"], "capped");
-  ASSERT_EQ(look["observables"].size(), 2U);
-  EXPECT_EQ(look["observables"][1]["observable"], "pressure");
-  EXPECT_EQ(look["observables"][1]["verdict"], "capped");
-  EXPECT_NEAR(look["observables"][1]["share_of_tolerance"].get<double>(), 2.598, 1e-3);
+  const Json stop_test =
+      explain_json(campaign.database(), campaign.directory(), "")["points"][0]["stop_tests"][0];
+  EXPECT_EQ(stop_test["verdict"], "capped");
+  ASSERT_EQ(stop_test["observables"].size(), 2U);
+  EXPECT_EQ(stop_test["observables"][1]["observable"], "pressure");
+  EXPECT_EQ(stop_test["observables"][1]["verdict"], "capped");
+  EXPECT_NEAR(stop_test["observables"][1]["share_of_tolerance"].get<double>(), 2.598, 1e-3);
   EXPECT_EQ(
       status_json(read_status(campaign.database()))["target"],
       Json::parse(R"({"observable": "relative_viscosity", "relative_tolerance": 0.05, "confidence": 0.95,
@@ -127,7 +128,7 @@ TEST(Explain, AWindowThatBeginsTooEarlyIsATransient) {
   EXPECT_TRUE(says(drifting, "next: a longer /scene/duration/equilibration")) << drifting;
   const std::string steady = explain(campaign.database(), campaign.directory(), "point=1");
   EXPECT_FALSE(says(steady, "transient")) << steady;
-  EXPECT_TRUE(status_json(read_status(campaign.database()))["points"][0]["look"]["transient"]);
+  EXPECT_TRUE(status_json(read_status(campaign.database()))["points"][0]["stop_test"]["transient"]);
 }
 
 // Results whose blocks are gone: the verdict stands, and says what could not be looked at.
@@ -141,9 +142,10 @@ TEST(Explain, WithoutBlocksNoTransientTestIsSaidNotToHaveBeenPossible) {
   EXPECT_TRUE(says(text, "converged, no-transient-test")) << text;
   EXPECT_TRUE(says(text, "no test was possible, because the results have no blocks of relative_viscosity"))
       << text;
-  EXPECT_TRUE(status_json(read_status(campaign.database()))["points"][0]["look"]["transient"].is_null());
-  EXPECT_TRUE(parse_json(export_json(campaign.database(), true), "export")["points"][0]["look"]["transient"]
-                  .is_null());
+  EXPECT_TRUE(status_json(read_status(campaign.database()))["points"][0]["stop_test"]["transient"].is_null());
+  EXPECT_TRUE(
+      parse_json(export_json(campaign.database(), true), "export")["points"][0]["stop_test"]["transient"]
+          .is_null());
 }
 
 TEST(Explain, AnEstimateHasABootstrapIntervalAndAdviceOnItsWindow) {
@@ -168,22 +170,22 @@ TEST(Explain, AFewSeedsFarFromTheRestAreCalledSkewed) {
   EXPECT_TRUE(says(text, "trust the bootstrap interval more")) << text;
 }
 
-TEST(Explain, TheLookWithoutTheControlVariateIsShownOnlyWhereThereIsOne) {
+TEST(Explain, TheStopTestWithoutTheControlVariateIsShownOnlyWhereThereIsOne) {
   StoredCampaign campaign(2, 4, 20);
   for (int seed = 0; seed < 4; ++seed) {
     campaign.complete(0, seed, 10 + 0.01 * seed);
     campaign.complete_in_halves(1, seed, 10 + 0.01 * seed, 10 + 0.01 * seed);
   }
-  EXPECT_TRUE(says(explain(campaign.database(), campaign.directory(), "point=0"), "uncontrolled"));
-  EXPECT_FALSE(says(explain(campaign.database(), campaign.directory(), "point=1"), "uncontrolled"));
+  EXPECT_TRUE(says(explain(campaign.database(), campaign.directory(), "point=0"), "plain"));
+  EXPECT_FALSE(says(explain(campaign.database(), campaign.directory(), "point=1"), "plain"));
 }
 
 TEST(Explain, AnOpenPointSaysWhatItWaitsFor) {
   StoredCampaign campaign(2, 4, 20);
   campaign.complete(1, 0, 10);
   const std::string text = explain(campaign.database(), campaign.directory(), "point=1");
-  EXPECT_TRUE(says(text, "1 of the 4 seeds of the next look have ended, 0 run")) << text;
-  EXPECT_TRUE(says(text, "no look yet")) << text;
+  EXPECT_TRUE(says(text, "1 of the 4 seeds of the next stop test have ended, 0 run")) << text;
+  EXPECT_TRUE(says(text, "no stop test yet")) << text;
   EXPECT_FALSE(says(text, "point=0")) << text;
 }
 

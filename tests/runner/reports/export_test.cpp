@@ -35,7 +35,7 @@ void collect_keys(const Json& value, std::set<std::string>& keys) {
   }
 }
 
-TEST(Export, CanonicalBytesDoNotDependOnOrderAttemptsAndSurplus) {
+TEST(Export, CanonicalBytesDoNotDependOnOrderAttemptsAndExtra) {
   StoredCampaign one(2, 4, 20), other(2, 4, 20);
   fill(one, 0, {0, 1, 2, 3});
   fill(one, 1, {0, 1, 2});
@@ -59,7 +59,7 @@ TEST(Export, CanonicalFormKnowsNothingOfTimeMachinesAndAttempts) {
   collect_keys(exported(campaign, false), full);
   for (const char* const key :
        {"cost", "cpu_seconds", "wall_seconds", "attempts", "worker", "host", "process", "started_at",
-        "ended_at", "state", "surplus", "engines", "document"}) {
+        "ended_at", "state", "extra", "engines", "document"}) {
     EXPECT_FALSE(canonical.contains(key)) << key;
     EXPECT_TRUE(full.contains(key)) << key;
   }
@@ -73,7 +73,7 @@ TEST(Export, CanonicalSpellingIsCanonical) {
   EXPECT_EQ(text, canonical_json(parse_json(text, "export")));
 }
 
-TEST(Export, EstimatesAreOverTheSeedsOfTheLook) {
+TEST(Export, EstimatesAreOverTheSeedsOfTheStopTest) {
   StoredCampaign campaign(1, 4, 20);
   fill(campaign, 0, {0, 1, 2, 3});
   campaign.complete(0, 4, 1000);
@@ -85,12 +85,12 @@ TEST(Export, EstimatesAreOverTheSeedsOfTheLook) {
   const Json& viscosity = point["quantities"]["relative_viscosity"];
   EXPECT_EQ(viscosity["count"], 4);
   EXPECT_NEAR(viscosity["mean"].get<double>(), 10.25, 1e-12);
-  EXPECT_NEAR(viscosity["uncontrolled"]["mean"].get<double>(), 10, 1e-12);
+  EXPECT_NEAR(viscosity["plain"]["mean"].get<double>(), 10, 1e-12);
   EXPECT_NEAR(viscosity["standard_error"].get<double>(), standard_error, 1e-12);
   EXPECT_NEAR(point["quantities"]["pressure"]["mean"].get<double>(), 20, 1e-12);
   EXPECT_NEAR(point["quantities"]["pressure"]["standard_error"].get<double>(), 2 * standard_error, 1e-12);
   EXPECT_EQ(point["quantities"]["control_variates/brownian_pairwise"]["mean"], 0.25);
-  EXPECT_EQ(exported(campaign, false)["points"][0]["surplus"][0]["seed"], 4);
+  EXPECT_EQ(exported(campaign, false)["points"][0]["extra"][0]["seed"], 4);
 }
 
 TEST(Export, LostSeedsAreThereWithTheirCauseAndWithoutNumbers) {
@@ -107,15 +107,15 @@ TEST(Export, LostSeedsAreThereWithTheirCauseAndWithoutNumbers) {
   EXPECT_EQ(point["quantities"]["relative_viscosity"]["count"], 4);
 }
 
-TEST(Export, APointBeforeItsFirstLookHasNoEstimates) {
+TEST(Export, APointBeforeItsFirstStopTestHasNoEstimates) {
   StoredCampaign campaign(1, 4, 20);
   fill(campaign, 0, {0, 1, 2});
   const Json canonical = exported(campaign, true)["points"][0];
-  EXPECT_TRUE(canonical["look"].is_null());
+  EXPECT_TRUE(canonical["stop_test"].is_null());
   EXPECT_TRUE(canonical["verdict"].is_null());
   EXPECT_TRUE(canonical["realisations"].empty());
   EXPECT_TRUE(canonical["quantities"].empty());
-  EXPECT_EQ(exported(campaign, false)["points"][0]["surplus"].size(), 3U);
+  EXPECT_EQ(exported(campaign, false)["points"][0]["extra"].size(), 3U);
 }
 
 TEST(Export, AChangedNumberInTheDatabaseIsAnIntegrityFault) {
@@ -133,26 +133,26 @@ TEST(Export, TheEstimateThatDecidesIsTheMeanEverywhere) {
   StoredCampaign campaign(1, 4, 20);
   fill(campaign, 0, {0, 1, 2, 3});
   Database& database = campaign.database();
-  const Look look = database.looks(database.points().at(0).id).back().look;
-  ASSERT_NEAR(look.controlled.mean, 10.25, 1e-12);
-  ASSERT_NEAR(look.estimate.mean, 10, 1e-12);
+  const StopTest stop_test = database.stop_tests(database.points().at(0).id).back().stop_test;
+  ASSERT_NEAR(stop_test.controlled.mean, 10.25, 1e-12);
+  ASSERT_NEAR(stop_test.estimate.mean, 10, 1e-12);
   const auto view = [&](const char* column) {
     return database.connection().integer(std::string("SELECT round(1000 * ") + column + ") FROM estimates");
   };
   EXPECT_EQ(view("mean"), 10250);
-  EXPECT_EQ(view("uncontrolled_mean"), 10000);
+  EXPECT_EQ(view("plain_mean"), 10000);
   const std::string csv = export_csv(database, true);
   const std::string row = csv.substr(csv.find('\n') + 1);
   const std::string wanted =
-      fmt::format(",converged,4,0,4,{},{},{},{},{},{},", canonical_json(look.controlled.mean),
-                  canonical_json(look.controlled.standard_error), canonical_json(look.controlled_half_width),
-                  canonical_json(look.estimate.mean), canonical_json(look.estimate.standard_error),
-                  canonical_json(look.half_width));
+      fmt::format(",converged,4,0,4,{},{},{},{},{},{},", canonical_json(stop_test.controlled.mean),
+                  canonical_json(stop_test.controlled.standard_error),
+                  canonical_json(stop_test.controlled_half_width), canonical_json(stop_test.estimate.mean),
+                  canonical_json(stop_test.estimate.standard_error), canonical_json(stop_test.half_width));
   EXPECT_NE(row.find(wanted), std::string::npos) << row << wanted;
-  const Json json = exported(campaign, true)["points"][0]["look"];
-  EXPECT_EQ(json["mean"], look.controlled.mean);
-  EXPECT_EQ(json["half_width"], look.controlled_half_width);
-  EXPECT_EQ(json["uncontrolled"]["mean"], look.estimate.mean);
+  const Json json = exported(campaign, true)["points"][0]["stop_test"];
+  EXPECT_EQ(json["mean"], stop_test.controlled.mean);
+  EXPECT_EQ(json["half_width"], stop_test.controlled_half_width);
+  EXPECT_EQ(json["plain"]["mean"], stop_test.estimate.mean);
 }
 
 TEST(Export, CsvHasARowPerPointWithEmptyFieldsForWhatDoesNotExist) {
@@ -161,8 +161,8 @@ TEST(Export, CsvHasARowPerPointWithEmptyFieldsForWhatDoesNotExist) {
   campaign.database().connection().execute("UPDATE point SET label = 'a, \"b\"' WHERE place = 1");
   const std::string csv = export_csv(campaign.database(), true);
   EXPECT_EQ(csv.substr(0, csv.find('\n')),
-            "label,hash,/point,verdict,seeds,lost,count,mean,standard_error,half_width,uncontrolled_mean,"
-            "uncontrolled_standard_error,uncontrolled_half_width,"
+            "label,hash,/point,verdict,seeds,lost,count,mean,standard_error,half_width,plain_mean,"
+            "plain_standard_error,plain_half_width,"
             "control_variates/brownian_pairwise,control_variates/brownian_pairwise standard_error,"
             "control_variates/brownian_pairwise count,pressure,pressure standard_error,pressure count,"
             "relative_viscosity,relative_viscosity standard_error,relative_viscosity count");
@@ -239,7 +239,7 @@ TEST(Export, TheLongTableHasARowForEveryNumber) {
   const std::string table = export_long_csv(campaign.database());
   const std::string hash = campaign.database().points().at(0).hash;
   // Sample variance 0.02 / 3 of four values of mean 10; Student's t of three degrees of freedom at the level
-  // 1 - 0.05 (1 - 1.4 / 4) of looks from four seeds on.
+  // 1 - 0.05 (1 - 1.4 / 4) of stop tests from four seeds on.
   const double error = std::sqrt(0.02 / 3 / 4), half = 3.777447959 * error;
   std::istringstream lines(table);
   std::vector<std::vector<std::string>> rows;
@@ -249,10 +249,10 @@ TEST(Export, TheLongTableHasARowForEveryNumber) {
     for (std::string cell; std::getline(cells, cell, ',');) fields.push_back(cell);
     rows.push_back(fields);
   }
-  EXPECT_EQ(rows.at(0), (std::vector<std::string>{"label", "hash", "/point", "quantity", "symbol", "unit",
-                                                  "estimator", "axis_1", "axis_1_unit", "axis_1_value",
-                                                  "count", "mean", "standard_error", "half_width",
-                                                  "uncontrolled_mean", "uncontrolled_standard_error"}));
+  EXPECT_EQ(rows.at(0),
+            (std::vector<std::string>{"label", "hash", "/point", "quantity", "symbol", "unit", "estimator",
+                                      "axis_1", "axis_1_unit", "axis_1_value", "count", "mean",
+                                      "standard_error", "half_width", "plain_mean", "plain_standard_error"}));
   ASSERT_EQ(rows.size(), 1U + 5U);  // g, pressure, profile twice, viscosity
   const std::vector<std::string>& profile = rows[4];
   EXPECT_EQ((std::vector<std::string>(profile.begin(), profile.begin() + 11)),

@@ -60,13 +60,13 @@ struct Tally {
 Verdict verdict_at(int seeds, std::vector<std::optional<Outcome>>& outcomes, const Target& target,
                    int maximum, Source& source) {
   while (std::ssize(outcomes) < seeds) outcomes.emplace_back(source.draw());
-  const std::vector<Look> looks = replay_looks(outcomes, target, minimum, maximum);
-  return looks.empty() ? Verdict::more : looks.back().verdict;
+  const std::vector<StopTest> stop_tests = replay_stop_tests(outcomes, target, minimum, maximum);
+  return stop_tests.empty() ? Verdict::more : stop_tests.back().verdict;
 }
 
 int decided_after(std::vector<std::optional<Outcome>>& outcomes, const Target& target, int maximum,
                   Source& source) {
-  for (const int seeds : look_schedule(minimum, maximum)) {
+  for (const int seeds : stop_test_schedule(minimum, maximum)) {
     if (verdict_at(seeds, outcomes, target, maximum, source) != Verdict::more) return seeds;
   }
   return maximum;

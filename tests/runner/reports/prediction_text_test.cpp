@@ -31,7 +31,7 @@ TEST(PredictionText, ComparesDecidedPointsWithWhatWasExpected) {
 TEST(PredictionText, OpenPointsHaveSeedsToCome) {
   EXPECT_EQ(predictions_text({predicted(summary(false, 10, 4, 10))}),
             "predicted for 1 open: 12 seeds and 30 s of processor time to come\n");
-  // More than was expected: as many as the next look lacks.
+  // More than was expected: as many as the next stop test lacks.
   EXPECT_EQ(predictions_text({predicted(summary(false, 22, 18, 45))}),
             "predicted for 1 open: 4 seeds and 10 s of processor time to come\n");
 }

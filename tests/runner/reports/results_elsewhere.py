@@ -48,7 +48,7 @@ class Elsewhere(unittest.TestCase):
             points = json.loads(subprocess.run([PECLET, "export", "flow-curve.json"], **options).stdout)["points"]
             self.assertEqual([row[0] for row in rows], [point["label"] for point in points])
             for (label, seeds, verdict, mean), point in zip(rows, points):
-                self.assertEqual((int(seeds), verdict), (point["look"]["seeds"], "converged"))
+                self.assertEqual((int(seeds), verdict), (point["stop_test"]["seeds"], "converged"))
                 # Of the same seeds, summed in another order.
                 self.assertAlmostEqual(float(mean) / point["quantities"][OBSERVABLE]["mean"], 1, places=12, msg=label)
 

@@ -34,7 +34,7 @@ TEST(Results, AreWholeAndInTheOrderOfPointsAndSeeds) {
   EXPECT_EQ(all[4]["settings"], campaign.database().points().at(1).settings);
 }
 
-TEST(Results, SayWhichSeedsTheLastLookCounts) {
+TEST(Results, SayWhichSeedsTheLastStopTestCounts) {
   StoredCampaign campaign(1, 4, 20);
   for (const int seed : {0, 1, 2, 3, 5}) campaign.complete(0, seed, 10 + 0.01 * seed);  // converged with 4
   std::vector<bool> deciding;

@@ -20,7 +20,7 @@ void four_values(StoredCampaign& campaign, int point, double unit) {
   for (int seed = 0; seed < 4; ++seed) campaign.complete(point, seed, 10 + unit * values[seed]);
 }
 
-TEST(Status, AnOpenPointShowsTheSeedsOfItsNextLookAndAProvisionalMean) {
+TEST(Status, AnOpenPointShowsTheSeedsOfItsNextStopTestAndAProvisionalMean) {
   StoredCampaign campaign(1, 4, 20);
   four_values(campaign, 0, 1);  // half-width 3.777 * 0.408 = 15 %: goes on to 5 seeds
   const CampaignStatus status = read_status(campaign.database());
@@ -28,11 +28,11 @@ TEST(Status, AnOpenPointShowsTheSeedsOfItsNextLookAndAProvisionalMean) {
   EXPECT_FALSE(point.decided);
   EXPECT_EQ(point.wanted, 5);
   EXPECT_EQ(point.wanted_ended, 4);
-  EXPECT_EQ(point.so_far.count, 4);
-  EXPECT_DOUBLE_EQ(point.so_far.mean, 10.25);  // the control variate of plain_result() is 0.25
-  EXPECT_DOUBLE_EQ(point.so_far.standard_error, std::sqrt(2.0 / 3 / 4));
+  EXPECT_EQ(point.all_seeds.count, 4);
+  EXPECT_DOUBLE_EQ(point.all_seeds.mean, 10.25);  // the control variate of plain_result() is 0.25
+  EXPECT_DOUBLE_EQ(point.all_seeds.standard_error, std::sqrt(2.0 / 3 / 4));
   EXPECT_EQ(point.counts.cpu_seconds, 8);
-  EXPECT_EQ(standing(status), 4);
+  EXPECT_EQ(exit_code_of(status), 4);
   const std::string table = status_table(status);
   EXPECT_NE(table.find("4/5  10.25 ± 0.41  10.2 ± 1.5 (15 %)"), std::string::npos) << table;
   EXPECT_NE(table.find("1 point: 1 open\n4 seeds ended; processor time 8 s"), std::string::npos) << table;
@@ -93,7 +93,7 @@ TEST(Status, APointThatWasCancelledIsNeitherOpenNorASuccess) {
   const std::int64_t second = campaign.database().points().at(1).id;
   PointStore(campaign.database()).set_cancelled(second, true);
   const CampaignStatus status = read_status(campaign.database());
-  EXPECT_EQ(standing(status), 3);
+  EXPECT_EQ(exit_code_of(status), 3);
   EXPECT_EQ(verdict_text(status.points.at(1)), "cancelled");
   EXPECT_TRUE(status_json(status)["points"][1]["cancelled"]);
   EXPECT_TRUE(status_json(status)["points"][1]["verdict"].is_null());
@@ -105,7 +105,7 @@ TEST(Status, ACancelledPointThatHadConvergedIsASuccess) {
   four_values(campaign, 0, 0.1);
   PointStore(campaign.database()).set_cancelled(1, true);
   const CampaignStatus status = read_status(campaign.database());
-  EXPECT_EQ(standing(status), 0);
+  EXPECT_EQ(exit_code_of(status), 0);
   EXPECT_EQ(verdict_text(status.points.at(0)), "converged, cancelled");
 }
 
@@ -136,18 +136,19 @@ TEST(Status, SaysWhatHasJammedHoweverItEnded) {
 }
 
 // Of eight values 10.25 +- 1: half-width 2.76 / sqrt(7) at 95.9 %, 10 %; the eighth to tenth change little.
-TEST(Status, ALoosenedToleranceSaysThatAnEarlierLookDecides) {
+TEST(Status, ALoosenedToleranceSaysThatAnEarlierStopTestDecides) {
   StoredCampaign campaign(1, 8, 20);
   for (int seed = 0; seed < 13; ++seed) campaign.complete(0, seed, seed % 2 == 0 ? 9 : 11);
-  EXPECT_EQ(read_status(campaign.database()).points.at(0).looks.back().seeds, 13);
-  EXPECT_FALSE(says(status_table(read_status(campaign.database())), "earlier-look"));
+  EXPECT_EQ(read_status(campaign.database()).points.at(0).stop_tests.back().seeds, 13);
+  EXPECT_FALSE(says(status_table(read_status(campaign.database())), "earlier-stop-test"));
   campaign.set_tolerance(0.5);
   const CampaignStatus status = read_status(campaign.database());
-  ASSERT_EQ(status.points.at(0).looks.back().seeds, 8);
-  EXPECT_EQ(verdict_text(status.points.at(0)), "converged, earlier-look");
+  ASSERT_EQ(status.points.at(0).stop_tests.back().seeds, 8);
+  EXPECT_EQ(verdict_text(status.points.at(0)), "converged, earlier-stop-test");
   EXPECT_TRUE(says(status_table(status),
-                   "point=0: the look at 8 seeds decides, the first within the present target; all 13 that "
-                   "have ended are in \"so far\"\n"))
+                   "point=0: the stop test at 8 seeds decides, the first within the present target; \"all "
+                   "seeds\" has all 13 "
+                   "that have ended\n"))
       << status_table(status);
   EXPECT_TRUE(
       says(explain(campaign.database(), campaign.directory(), ""),
@@ -160,10 +161,10 @@ TEST(Status, APointThatTheMaximumIsTooNearToIsMarked) {
   StoredCampaign campaign(1, 10, 10);
   for (int seed = 0; seed < 10; ++seed) campaign.complete(0, seed, seed % 2 == 0 ? 9.5 : 10.5);
   const CampaignStatus status = read_status(campaign.database());
-  EXPECT_EQ(standing(status), 0);
+  EXPECT_EQ(exit_code_of(status), 0);
   EXPECT_EQ(verdict_text(status.points.at(0)), "converged, near-maximum");
   EXPECT_EQ(status_json(status)["points"][0]["reservations"], Json({"near-maximum"}));
-  EXPECT_TRUE(status_json(status)["points"][0]["look"]["near_maximum"].get<bool>());
+  EXPECT_TRUE(status_json(status)["points"][0]["stop_test"]["near_maximum"].get<bool>());
   EXPECT_TRUE(says(explain(campaign.database(), campaign.directory(), ""), "perhaps by luck"));
   EXPECT_TRUE(says(explain(campaign.database(), campaign.directory(), ""), "a larger /realisations/maximum"));
 }
@@ -175,12 +176,12 @@ TEST(Status, EqualValuesHaveNoIntervalAndNoConvergence) {
   CampaignStatus status = read_status(campaign.database());
   EXPECT_EQ(verdict_text(status.points.at(0)), "open, equal-values");
   EXPECT_TRUE(says(status_table(status), "10.2 ± -")) << status_table(status);
-  EXPECT_TRUE(status_json(status)["points"][0]["look"]["half_width"].is_null());
+  EXPECT_TRUE(status_json(status)["points"][0]["stop_test"]["half_width"].is_null());
   EXPECT_TRUE(says(explained(), "; all values of relative_viscosity are equal")) << explained();
   for (int seed = 8; seed < 10; ++seed) campaign.complete(0, seed, 10);
   status = read_status(campaign.database());
   EXPECT_EQ(verdict_text(status.points.at(0)), "capped, equal-values");
-  EXPECT_EQ(standing(status), 3);
+  EXPECT_EQ(exit_code_of(status), 3);
   EXPECT_TRUE(says(explained(), "all 10 seeds that are allowed have ended, and all values of"))
       << explained();
 }
@@ -194,12 +195,12 @@ TEST(Status, SeedsThatRepeatEachOtherAreNamed) {
   }
   const CampaignStatus status = read_status(campaign.database());
   EXPECT_EQ(verdict_text(status.points.at(0)), "capped, repeated-seeds");
-  EXPECT_EQ(status_json(status)["points"][0]["look"]["repeated_seeds"], Json({2, 3}));
+  EXPECT_EQ(status_json(status)["points"][0]["stop_test"]["repeated_seeds"], Json({2, 3}));
   EXPECT_TRUE(says(explain(campaign.database(), campaign.directory(), ""),
                    "seeds 2, 3 ended in the same state as an earlier one"));
 }
 
-// 8 of 8 leave 1 - 0.0205^(1/8) = 0.385 at the level of several looks, 1 - 0.05 (1 - 1.4 / 8) = 95.9 %.
+// 8 of 8 leave 1 - 0.0205^(1/8) = 0.385 at the level of several stop tests, 1 - 0.05 (1 - 1.4 / 8) = 95.9 %.
 TEST(Status, ASharesIntervalIsThatOfAShare) {
   Campaign plain = plain_campaign(1, 8, 100, 0.05);
   plain.target = {"flowing", Tolerance::absolute(0.1), 0.95};
@@ -212,27 +213,27 @@ TEST(Status, ASharesIntervalIsThatOfAShare) {
     });
   }
   const CampaignStatus status = read_status(campaign.database());
-  const Json look = status_json(status)["points"][0]["look"];
+  const Json stop_test = status_json(status)["points"][0]["stop_test"];
   EXPECT_EQ(verdict_text(status.points.at(0)), "open, no-transient-test");
-  EXPECT_NEAR(look["half_width"].get<double>(), 1 - std::pow((1 - 0.95875) / 2, 1 / 8.0), 1e-9);
+  EXPECT_NEAR(stop_test["half_width"].get<double>(), 1 - std::pow((1 - 0.95875) / 2, 1 / 8.0), 1e-9);
   const std::string text = explain(campaign.database(), campaign.directory(), "");
   // So that the forecast knows what more of them are worth.
-  ASSERT_EQ(status.forecasts.at(0).so_far.size(), 1U);
-  EXPECT_EQ(status.forecasts.at(0).so_far[0].values, Estimate::Values::share);
+  ASSERT_EQ(status.forecasts.at(0).all_seeds.size(), 1U);
+  EXPECT_EQ(status.forecasts.at(0).all_seeds[0].values, Estimate::Values::share);
   EXPECT_TRUE(says(text, "interval: 0.616 .. 1 of the share (Clopper and Pearson)")) << text;
   const Json exported = Json::parse(export_json(campaign.database(), true))["points"][0];
   EXPECT_EQ(exported["quantities"]["flowing"]["estimator"], "share");
-  EXPECT_EQ(exported["quantities"]["flowing"]["half_width"], exported["look"]["half_width"]);
+  EXPECT_EQ(exported["quantities"]["flowing"]["half_width"], exported["stop_test"]["half_width"]);
 }
 
 TEST(Status, APointWithoutSeedsHasNoNumbers) {
   StoredCampaign campaign(1, 4, 20);
   const CampaignStatus status = read_status(campaign.database());
   const Json point = status_json(status)["points"][0];
-  EXPECT_TRUE(point["look"].is_null());
+  EXPECT_TRUE(point["stop_test"].is_null());
   EXPECT_TRUE(point["verdict"].is_null());
-  EXPECT_TRUE(point["so_far"]["mean"].is_null());
-  EXPECT_TRUE(point["so_far"]["standard_error"].is_null());
+  EXPECT_TRUE(point["all_seeds"]["mean"].is_null());
+  EXPECT_TRUE(point["all_seeds"]["standard_error"].is_null());
   EXPECT_EQ(point["seeds"]["wanted"], 4);
   EXPECT_NE(status_table(status).find("0/4"), std::string::npos);
 }
@@ -242,27 +243,27 @@ TEST(Status, OneSeedHasAMeanButNoError) {
   campaign.complete(0, 2, 10);
   const CampaignStatus status = read_status(campaign.database());
   const Json point = status_json(status)["points"][0];
-  EXPECT_EQ(point["so_far"]["mean"], 10.25);
-  EXPECT_TRUE(point["so_far"]["standard_error"].is_null());
+  EXPECT_EQ(point["all_seeds"]["mean"], 10.25);
+  EXPECT_TRUE(point["all_seeds"]["standard_error"].is_null());
 }
 
-TEST(Status, SeedsBeyondTheDecidingLookAreSurplus) {
+TEST(Status, SeedsBeyondTheDecidingStopTestAreExtra) {
   StoredCampaign campaign(1, 4, 20);
   four_values(campaign, 0, 0.1);
   campaign.complete(0, 4, 1000);
   campaign.complete(0, 6, 1000);
   const CampaignStatus status = read_status(campaign.database());
-  EXPECT_EQ(status.points[0].surplus(), 2);
+  EXPECT_EQ(status.points[0].extra(), 2);
   EXPECT_EQ(status.points[0].wanted_ended, 4);
-  EXPECT_EQ(standing(status), 0);
-  EXPECT_NE(status_table(status).find("6 seeds ended, 2 surplus"), std::string::npos) << status_table(status);
+  EXPECT_EQ(exit_code_of(status), 0);
+  EXPECT_NE(status_table(status).find("6 seeds ended, 2 extra"), std::string::npos) << status_table(status);
 }
 
 TEST(Status, LostSeedsAreCountedByCauseAndSaidWithTheVerdict) {
   StoredCampaign campaign(2, 4, 20);
   four_values(campaign, 0, 0.1);
   four_values(campaign, 1, 0.1);
-  EXPECT_EQ(standing(read_status(campaign.database())), 0);
+  EXPECT_EQ(exit_code_of(read_status(campaign.database())), 0);
 
   StoredCampaign lossy(1, 6, 20);
   four_values(lossy, 0, 0.01);
@@ -272,18 +273,18 @@ TEST(Status, LostSeedsAreCountedByCauseAndSaidWithTheVerdict) {
   const CampaignStatus status = read_status(lossy.database());
   EXPECT_EQ(verdict_text(status.points[0]), "converged-with-losses(2)");
   EXPECT_EQ(status.points[0].losses, (std::map<std::string, int>{{"crashed", 1}, {"overlap", 1}}));
-  EXPECT_EQ(standing(status), 3);
+  EXPECT_EQ(exit_code_of(status), 3);
 }
 
 TEST(Status, ASuspectPointIsAnIntegrityFault) {
   StoredCampaign campaign(1, 4, 20);
   four_values(campaign, 0, 0.1);
   campaign.repeat(0, 1, 10);
-  EXPECT_EQ(standing(read_status(campaign.database())), 0);
+  EXPECT_EQ(exit_code_of(read_status(campaign.database())), 0);
   campaign.repeat(0, 1, 11);
   const CampaignStatus status = read_status(campaign.database());
   EXPECT_EQ(verdict_text(status.points[0]), "converged, suspect");
-  EXPECT_EQ(standing(status), 6);
+  EXPECT_EQ(exit_code_of(status), 6);
 }
 
 TEST(Status, SeedsThatWarnOfTheirResultsAreCountedWithTheVerdict) {

@@ -54,34 +54,34 @@ double needed_seconds(const std::vector<Population>& populations) {
   return seconds;
 }
 
-// What the summed relative half-width would be if the true spreads were known: look by look to whom it helps
-// most. Requires a budget for all first looks.
+// What the summed relative half-width would be if the true spreads were known: look by stop test to whom it
+// helps most. Requires a budget for all first stop tests.
 double width_of_known_spreads(const std::vector<Population>& populations, double budget) {
   const double level = adjusted_confidence(confidence, minimum, maximum);
-  const std::vector<int> schedule = look_schedule(minimum, maximum);
-  const auto width = [&](std::size_t point, std::size_t look) {
-    const int seeds = schedule[look];
+  const std::vector<int> schedule = stop_test_schedule(minimum, maximum);
+  const auto width = [&](std::size_t point, std::size_t stop_test) {
+    const int seeds = schedule[stop_test];
     return student_quantile(seeds - 1, level) * populations[point].spread / std::sqrt(seeds);
   };
-  std::vector<std::size_t> looks(points, 0);
+  std::vector<std::size_t> stop_tests(points, 0);
   for (const Population& of : populations) budget -= minimum * of.seconds;
   for (;;) {
     double best_fall = 0, best_price = 0;
     std::size_t best = 0;
     for (std::size_t point = 0; point < points; ++point) {
-      const std::size_t look = looks[point];
-      if (width(point, look) <= tolerance || look + 1 == schedule.size()) continue;
-      const double price = (schedule[look + 1] - schedule[look]) * populations[point].seconds;
-      const double fall = (width(point, look) - width(point, look + 1)) / price;
+      const std::size_t stop_test = stop_tests[point];
+      if (width(point, stop_test) <= tolerance || stop_test + 1 == schedule.size()) continue;
+      const double price = (schedule[stop_test + 1] - schedule[stop_test]) * populations[point].seconds;
+      const double fall = (width(point, stop_test) - width(point, stop_test + 1)) / price;
       if (price > budget || fall <= best_fall) continue;
       best_fall = fall, best_price = price, best = point;
     }
     if (best_fall == 0) break;
     budget -= best_price;
-    ++looks[best];
+    ++stop_tests[best];
   }
   double sum = 0;
-  for (std::size_t point = 0; point < points; ++point) sum += width(point, looks[point]);
+  for (std::size_t point = 0; point < points; ++point) sum += width(point, stop_tests[point]);
   return sum;
 }
 
@@ -93,17 +93,17 @@ struct Running {
 
 // Sums over the points; one that nobody has looked at counts as 1.
 struct Outlay {
-  double width = 0;  // relative half-widths of the last looks
+  double width = 0;  // relative half-widths of the last stop tests
   double error = 0;  // |mean - 1|
   double spent = 0;  // shares of the budget
   double unseen = 0;
 
   void add(const Scheduler& scheduler) {
     for (int point = 0; point < points; ++point) {
-      const std::vector<Look>& looks = scheduler.looks(point);
-      width += looks.empty() ? 1 : relative_width(looks.back());
-      error += looks.empty() ? 1 : std::abs(looks.back().controlled.mean - 1);
-      unseen += looks.empty() ? 1 : 0;
+      const std::vector<StopTest>& stop_tests = scheduler.stop_tests(point);
+      width += stop_tests.empty() ? 1 : relative_width(stop_tests.back());
+      error += stop_tests.empty() ? 1 : std::abs(stop_tests.back().controlled.mean - 1);
+      unseen += stop_tests.empty() ? 1 : 0;
     }
   }
 };

@@ -1,4 +1,4 @@
-// The stop rule: what a look says, when there is one, and that nothing but the outcomes matters.
+// The stop rule: what a stop test says, when there is one, and that nothing but the outcomes matters.
 #include "runner/statistics/cohorts.h"
 
 #include <gtest/gtest.h>
@@ -31,84 +31,86 @@ Outcomes alternating(int count, double mean, double spread) {
 Outcomes all_lost(int count) { return Outcomes(static_cast<std::size_t>(count), lost()); }
 
 TEST(Cohorts, LooksAreAtTheMinimumThenAQuarterMoreRoundedUpAndLastAtTheMaximum) {
-  EXPECT_EQ(look_schedule(10, 800), (std::vector<int>{10,  13,  17,  22,  28,  35,  44,  55,  69,  87,
-                                                      109, 137, 172, 215, 269, 337, 422, 528, 660, 800}));
-  EXPECT_EQ(look_schedule(2, 7), (std::vector<int>{2, 3, 4, 5, 7}));
-  EXPECT_EQ(look_schedule(8, 10), (std::vector<int>{8, 10}));
-  EXPECT_EQ(look_schedule(6, 6), (std::vector<int>{6}));
+  EXPECT_EQ(stop_test_schedule(10, 800),
+            (std::vector<int>{10,  13,  17,  22,  28,  35,  44,  55,  69,  87,
+                              109, 137, 172, 215, 269, 337, 422, 528, 660, 800}));
+  EXPECT_EQ(stop_test_schedule(2, 7), (std::vector<int>{2, 3, 4, 5, 7}));
+  EXPECT_EQ(stop_test_schedule(8, 10), (std::vector<int>{8, 10}));
+  EXPECT_EQ(stop_test_schedule(6, 6), (std::vector<int>{6}));
 }
 
-TEST(Cohorts, ThereIsNoLookBeforeEverySeedOfTheCohortHasEnded) {
+TEST(Cohorts, ThereIsNoStopTestBeforeEverySeedOfTheCohortHasEnded) {
   Outcomes outcomes = alternating(10, 10, 0.1);
   outcomes[3].reset();
-  EXPECT_TRUE(replay_looks(outcomes, five_percent, 10, 100).empty());
+  EXPECT_TRUE(replay_stop_tests(outcomes, five_percent, 10, 100).empty());
   outcomes.resize(9);
   outcomes[3] = value(10);
-  EXPECT_TRUE(replay_looks(outcomes, five_percent, 10, 100).empty());
-  EXPECT_TRUE(replay_looks({}, five_percent, 2, 2).empty());
+  EXPECT_TRUE(replay_stop_tests(outcomes, five_percent, 10, 100).empty());
+  EXPECT_TRUE(replay_stop_tests({}, five_percent, 2, 2).empty());
 }
 
-TEST(Cohorts, APointConvergesAtTheFirstLookWithinTheTolerance) {
+TEST(Cohorts, APointConvergesAtTheFirstStopTestWithinTheTolerance) {
   // At 95.7 % t(9) = 2.354: the half-width is 2.354 * 0.3 / 3 = 0.2354 at n = 10, mean 10.
-  const std::vector<Look> looks = replay_looks(alternating(40, 10, 0.3), five_percent, 10, 100);
-  ASSERT_EQ(looks.size(), 1U);
-  EXPECT_EQ(looks[0].verdict, Verdict::converged);
-  EXPECT_EQ(looks[0].seeds, 10);
-  EXPECT_DOUBLE_EQ(looks[0].estimate.mean, 10);
-  EXPECT_NEAR(looks[0].half_width, 0.2354, 1e-4);
+  const std::vector<StopTest> stop_tests = replay_stop_tests(alternating(40, 10, 0.3), five_percent, 10, 100);
+  ASSERT_EQ(stop_tests.size(), 1U);
+  EXPECT_EQ(stop_tests[0].verdict, Verdict::converged);
+  EXPECT_EQ(stop_tests[0].seeds, 10);
+  EXPECT_DOUBLE_EQ(stop_tests[0].estimate.mean, 10);
+  EXPECT_NEAR(stop_tests[0].half_width, 0.2354, 1e-4);
 }
 
 TEST(Cohorts, APointGoesOnUntilALookIsWithinTheTolerance) {
   // Half-width over mean 2.354 * 0.1 / 3 = 7.8 % at n = 10; with 22 seeds 2.154 * 0.1 / sqrt(21) = 4.7 %.
-  const std::vector<Look> looks = replay_looks(alternating(22, 10, 1), five_percent, 10, 100);
-  ASSERT_EQ(looks.size(), 4U);  // 10, 13, 17, 22
-  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(looks[i].verdict, Verdict::more);
-  EXPECT_EQ(looks[3].seeds, 22);
-  EXPECT_EQ(looks[3].verdict, Verdict::converged);
+  const std::vector<StopTest> stop_tests = replay_stop_tests(alternating(22, 10, 1), five_percent, 10, 100);
+  ASSERT_EQ(stop_tests.size(), 4U);  // 10, 13, 17, 22
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(stop_tests[i].verdict, Verdict::more);
+  EXPECT_EQ(stop_tests[3].seeds, 22);
+  EXPECT_EQ(stop_tests[3].verdict, Verdict::converged);
 }
 
 TEST(Cohorts, ANegativeMeanIsJudgedByItsSize) {
-  EXPECT_EQ(replay_looks(alternating(10, -10, 0.3), five_percent, 10, 100).at(0).verdict, Verdict::converged);
+  EXPECT_EQ(replay_stop_tests(alternating(10, -10, 0.3), five_percent, 10, 100).at(0).verdict,
+            Verdict::converged);
 }
 
 TEST(Cohorts, AMeanOfZeroNeverConverges) {
-  EXPECT_EQ(replay_looks(alternating(10, 0, 1), five_percent, 10, 10).at(0).verdict, Verdict::capped);
-  EXPECT_EQ(replay_looks(alternating(10, 0, 0), five_percent, 10, 10).at(0).verdict, Verdict::capped);
+  EXPECT_EQ(replay_stop_tests(alternating(10, 0, 1), five_percent, 10, 10).at(0).verdict, Verdict::capped);
+  EXPECT_EQ(replay_stop_tests(alternating(10, 0, 0), five_percent, 10, 10).at(0).verdict, Verdict::capped);
 }
 
 TEST(Cohorts, APointThatIsNotWithinTheToleranceAtTheMaximumIsCapped) {
-  const std::vector<Look> looks = replay_looks(alternating(13, 10, 5), five_percent, 10, 13);
-  ASSERT_EQ(looks.size(), 2U);
-  EXPECT_EQ(looks[1].verdict, Verdict::capped);
+  const std::vector<StopTest> stop_tests = replay_stop_tests(alternating(13, 10, 5), five_percent, 10, 13);
+  ASSERT_EQ(stop_tests.size(), 2U);
+  EXPECT_EQ(stop_tests[1].verdict, Verdict::capped);
 }
 
 TEST(Cohorts, LostSeedsCountInTheCohortButNotInTheEstimate) {
   Outcomes outcomes = alternating(10, 10, 0.1);
   outcomes[0] = outcomes[1] = lost();
-  const Look look = replay_looks(outcomes, five_percent, 10, 100).at(0);
-  EXPECT_EQ(look.verdict, Verdict::converged_with_losses);
-  EXPECT_EQ(look.seeds, 10);
-  EXPECT_EQ(look.lost, 2);
-  EXPECT_EQ(look.estimate.count, 8);
-  EXPECT_DOUBLE_EQ(look.estimate.mean, 10);
-  EXPECT_NEAR(look.half_width, 2.467 * 0.1 / std::sqrt(7), 1e-4);  // t(7) at 95.7 %
+  const StopTest stop_test = replay_stop_tests(outcomes, five_percent, 10, 100).at(0);
+  EXPECT_EQ(stop_test.verdict, Verdict::converged_with_losses);
+  EXPECT_EQ(stop_test.seeds, 10);
+  EXPECT_EQ(stop_test.lost, 2);
+  EXPECT_EQ(stop_test.estimate.count, 8);
+  EXPECT_DOUBLE_EQ(stop_test.estimate.mean, 10);
+  EXPECT_NEAR(stop_test.half_width, 2.467 * 0.1 / std::sqrt(7), 1e-4);  // t(7) at 95.7 %
 }
 
 TEST(Cohorts, APointThatLosesItsWholeFirstCohortHasFailed) {
-  const std::vector<Look> looks = replay_looks(all_lost(50), five_percent, 10, 100);
-  ASSERT_EQ(looks.size(), 1U);
-  EXPECT_EQ(looks[0].verdict, Verdict::failed);
-  EXPECT_EQ(looks[0].lost, 10);
+  const std::vector<StopTest> stop_tests = replay_stop_tests(all_lost(50), five_percent, 10, 100);
+  ASSERT_EQ(stop_tests.size(), 1U);
+  EXPECT_EQ(stop_tests[0].verdict, Verdict::failed);
+  EXPECT_EQ(stop_tests[0].lost, 10);
 }
 
 TEST(Cohorts, OneValueCannotConvergeAndIsNoResultAtTheMaximum) {
   Outcomes outcomes = all_lost(13);
   outcomes[4] = value(10);
-  const std::vector<Look> looks = replay_looks(outcomes, five_percent, 10, 13);
-  ASSERT_EQ(looks.size(), 2U);
-  EXPECT_EQ(looks[0].verdict, Verdict::more);
-  EXPECT_TRUE(std::isnan(looks[0].half_width));
-  EXPECT_EQ(looks[1].verdict, Verdict::failed);
+  const std::vector<StopTest> stop_tests = replay_stop_tests(outcomes, five_percent, 10, 13);
+  ASSERT_EQ(stop_tests.size(), 2U);
+  EXPECT_EQ(stop_tests[0].verdict, Verdict::more);
+  EXPECT_TRUE(std::isnan(stop_tests[0].half_width));
+  EXPECT_EQ(stop_tests[1].verdict, Verdict::failed);
 }
 
 TEST(Cohorts, TheControlVariateIsAddedSeedBySeed) {
@@ -118,10 +120,10 @@ TEST(Cohorts, TheControlVariateIsAddedSeedBySeed) {
     const double noise = seed % 2 == 0 ? 0.25 : -0.25;
     outcomes.emplace_back(value(10 + noise, -noise));
   }
-  const Look look = replay_looks(outcomes, five_percent, 10, 10).at(0);
-  EXPECT_EQ(look.controlled.mean, 10);
-  EXPECT_EQ(look.controlled.standard_error, 0);
-  EXPECT_DOUBLE_EQ(look.estimate.standard_error, 0.25 / 3);
+  const StopTest stop_test = replay_stop_tests(outcomes, five_percent, 10, 10).at(0);
+  EXPECT_EQ(stop_test.controlled.mean, 10);
+  EXPECT_EQ(stop_test.controlled.standard_error, 0);
+  EXPECT_DOUBLE_EQ(stop_test.estimate.standard_error, 0.25 / 3);
 }
 
 // Student's interval of ten values 10 +- s at 95.7 % is 2.354 s / 3: s = 1 gives 7.8 %, s = 0.1 0.78 %.
@@ -132,10 +134,10 @@ TEST(Cohorts, TheControlledEstimateDecides) {
     narrow.emplace_back(value(10 + sign, -0.9 * sign));
     wide.emplace_back(value(10 + 0.1 * sign, 0.9 * sign));
   }
-  const Look converged = replay_looks(narrow, five_percent, 10, 20).at(0);
+  const StopTest converged = replay_stop_tests(narrow, five_percent, 10, 20).at(0);
   EXPECT_EQ(converged.verdict, Verdict::converged);
   EXPECT_NEAR(relative_width(converged), 0.00785, 1e-5);
-  const Look open = replay_looks(wide, five_percent, 10, 20).at(0);
+  const StopTest open = replay_stop_tests(wide, five_percent, 10, 20).at(0);
   EXPECT_EQ(open.verdict, Verdict::more);
   EXPECT_NEAR(relative_width(open), 0.0785, 1e-4);
 }
@@ -145,20 +147,20 @@ TEST(Cohorts, TheControlledEstimateDecides) {
 TEST(Cohorts, ALookWithinTheToleranceConvergesAndIsMarkedNearTheMaximum) {
   const Outcomes outcomes = alternating(10, 10, 0.6);
   for (const int maximum : {11, 23, 25, 1000}) {
-    const Look look = replay_looks(outcomes, five_percent, 10, maximum).at(0);
-    EXPECT_EQ(look.verdict, Verdict::converged);
-    EXPECT_EQ(look.near_maximum, maximum < 24) << maximum;
-    EXPECT_NEAR(look.controlled_half_width, 0.4708, 1e-4);
+    const StopTest stop_test = replay_stop_tests(outcomes, five_percent, 10, maximum).at(0);
+    EXPECT_EQ(stop_test.verdict, Verdict::converged);
+    EXPECT_EQ(stop_test.near_maximum, maximum < 24) << maximum;
+    EXPECT_NEAR(stop_test.controlled_half_width, 0.4708, 1e-4);
   }
-  const Look open = replay_looks(alternating(10, 10, 1), five_percent, 10, 11).at(0);
+  const StopTest open = replay_stop_tests(alternating(10, 10, 1), five_percent, 10, 11).at(0);
   EXPECT_EQ(open.verdict, Verdict::more);
   EXPECT_FALSE(open.near_maximum);
 }
 
-// With a single look t(9, 0.975) = 2.262 and w = 2.262 s / 30: 5 % at s = 0.663.
-TEST(Cohorts, TheLastLookIsConvergedOrCapped) {
+// With a single stop test t(9, 0.975) = 2.262 and w = 2.262 s / 30: 5 % at s = 0.663.
+TEST(Cohorts, TheLastStopTestIsConvergedOrCapped) {
   const auto last = [](double spread) {
-    return replay_looks(alternating(10, 10, spread), five_percent, 10, 10).at(0);
+    return replay_stop_tests(alternating(10, 10, spread), five_percent, 10, 10).at(0);
   };
   EXPECT_EQ(last(0.66).verdict, Verdict::converged);
   EXPECT_TRUE(last(0.66).near_maximum);
@@ -174,15 +176,15 @@ TEST(Cohorts, TheLastLookIsConvergedOrCapped) {
 TEST(Cohorts, AnAbsoluteToleranceNeedsNoMean) {
   const Target half{"first_normal_stress_difference", Tolerance::absolute(0.5), 0.95};
   const Outcomes outcomes = alternating(10, 0, 0.6);
-  EXPECT_EQ(replay_looks(outcomes, five_percent, 10, 32).at(0).verdict, Verdict::more);
-  const Look look = replay_looks(outcomes, half, 10, 32).at(0);
-  EXPECT_EQ(look.verdict, Verdict::converged);
-  EXPECT_NEAR(look.controlled_half_width, 0.4708, 1e-4);
-  EXPECT_EQ(replay_looks(alternating(10, 0, 0.65), half, 10, 32).at(0).verdict, Verdict::more);
+  EXPECT_EQ(replay_stop_tests(outcomes, five_percent, 10, 32).at(0).verdict, Verdict::more);
+  const StopTest stop_test = replay_stop_tests(outcomes, half, 10, 32).at(0);
+  EXPECT_EQ(stop_test.verdict, Verdict::converged);
+  EXPECT_NEAR(stop_test.controlled_half_width, 0.4708, 1e-4);
+  EXPECT_EQ(replay_stop_tests(alternating(10, 0, 0.65), half, 10, 32).at(0).verdict, Verdict::more);
 }
 
-// Values of every kind of population, at every look of the schedule and for tolerances of both kinds, from
-// those that the first look meets to those that no look does.
+// Values of every kind of population, at every stop test of the schedule and for tolerances of both kinds,
+// from those that the first stop test meets to those that no stop test does.
 TEST(Cohorts, NoIntervalDependsOnTheTolerance) {
   const auto alone = [](double tolerance) { return Target{"x", tolerance, 0.95}; };
   std::vector<Target> targets;
@@ -202,14 +204,14 @@ TEST(Cohorts, NoIntervalDependsOnTheTolerance) {
                                     : replication % 3 == 1 ? lognormal(random)
                                                            : static_cast<double>(share(random))));
       }
-      const std::vector<Look> all = replay_looks(outcomes, alone(1e-9), minimum, maximum);
-      ASSERT_EQ(all.size(), look_schedule(minimum, maximum).size());
+      const std::vector<StopTest> all = replay_stop_tests(outcomes, alone(1e-9), minimum, maximum);
+      ASSERT_EQ(all.size(), stop_test_schedule(minimum, maximum).size());
       for (const Target& target : targets) {
-        const std::vector<Look> looks = replay_looks(outcomes, target, minimum, maximum);
-        for (std::size_t i = 0; i < looks.size(); ++i) {
-          EXPECT_EQ(std::bit_cast<std::uint64_t>(looks[i].controlled_half_width),
+        const std::vector<StopTest> stop_tests = replay_stop_tests(outcomes, target, minimum, maximum);
+        for (std::size_t i = 0; i < stop_tests.size(); ++i) {
+          EXPECT_EQ(std::bit_cast<std::uint64_t>(stop_tests[i].controlled_half_width),
                     std::bit_cast<std::uint64_t>(all[i].controlled_half_width));
-          EXPECT_EQ(std::bit_cast<std::uint64_t>(looks[i].half_width),
+          EXPECT_EQ(std::bit_cast<std::uint64_t>(stop_tests[i].half_width),
                     std::bit_cast<std::uint64_t>(all[i].half_width));
         }
       }
@@ -218,12 +220,12 @@ TEST(Cohorts, NoIntervalDependsOnTheTolerance) {
 }
 
 // t(15, 0.975) = 2.131 (NIST): 0.2, 0.5 and 1 over sqrt(15) times it.
-TEST(Cohorts, TheIntervalOfASingleLookIsStudents) {
+TEST(Cohorts, TheIntervalOfASingleStopTestIsStudents) {
   for (const double spread : {0.2, 0.5, 1.0}) {
     for (const double tolerance : {0.06, 0.1, 1.0}) {
       const Target target{"x", tolerance, 0.95};
-      const Look look = replay_looks(alternating(16, 10, spread), target, 16, 16).at(0);
-      EXPECT_NEAR(look.controlled_half_width, 2.131 * spread / std::sqrt(15), 1e-3 * spread);
+      const StopTest stop_test = replay_stop_tests(alternating(16, 10, spread), target, 16, 16).at(0);
+      EXPECT_NEAR(stop_test.controlled_half_width, 2.131 * spread / std::sqrt(15), 1e-3 * spread);
     }
   }
 }
@@ -232,30 +234,30 @@ TEST(Cohorts, EqualValuesHaveNoIntervalAndNeverConverge) {
   const Target absolute{"x", Tolerance::absolute(1), 0.95};
   for (const double number : {10.0, 0.1, 0.0, 1.0, -3e-7}) {
     for (const Target& target : {five_percent, absolute}) {
-      const std::vector<Look> looks = replay_looks(Outcomes(20, value(number)), target, 8, 20);
-      EXPECT_EQ(looks.back().seeds, 20);
-      EXPECT_EQ(looks.back().verdict, Verdict::capped);
-      EXPECT_EQ(looks.back().controlled.mean, number);
-      EXPECT_TRUE(std::isnan(looks.back().controlled_half_width));
-      EXPECT_EQ(without_interval(looks.back(), target), (std::vector<std::string>{target.observable}));
+      const std::vector<StopTest> stop_tests = replay_stop_tests(Outcomes(20, value(number)), target, 8, 20);
+      EXPECT_EQ(stop_tests.back().seeds, 20);
+      EXPECT_EQ(stop_tests.back().verdict, Verdict::capped);
+      EXPECT_EQ(stop_tests.back().controlled.mean, number);
+      EXPECT_TRUE(std::isnan(stop_tests.back().controlled_half_width));
+      EXPECT_EQ(without_interval(stop_tests.back(), target), (std::vector<std::string>{target.observable}));
     }
   }
   // A sum of the same numbers in another order.
   Outcomes rounded(20, value(0.1 + 0.2 + 0.3));
   rounded[3] = value(0.3 + 0.2 + 0.1);
   EXPECT_NE(rounded[3]->value, rounded[2]->value);
-  EXPECT_EQ(replay_looks(rounded, five_percent, 8, 20).back().verdict, Verdict::capped);
+  EXPECT_EQ(replay_stop_tests(rounded, five_percent, 8, 20).back().verdict, Verdict::capped);
   // Values that a control variate makes equal.
   Outcomes controlled;
   for (int seed = 0; seed < 8; ++seed) controlled.emplace_back(value(10 + 0.25 * seed, -0.25 * seed));
-  const Look look = replay_looks(controlled, five_percent, 8, 8).at(0);
-  EXPECT_TRUE(std::isnan(look.controlled_half_width));
-  EXPECT_GT(look.half_width, 0);
+  const StopTest stop_test = replay_stop_tests(controlled, five_percent, 8, 8).at(0);
+  EXPECT_TRUE(std::isnan(stop_test.controlled_half_width));
+  EXPECT_GT(stop_test.half_width, 0);
   // Two seeds, and all but one equal, have a spread.
-  EXPECT_GT(replay_looks({value(10), value(10.1)}, five_percent, 2, 2).at(0).half_width, 0);
+  EXPECT_GT(replay_stop_tests({value(10), value(10.1)}, five_percent, 2, 2).at(0).half_width, 0);
   Outcomes but_one(8, value(10));
   but_one[5] = value(10.1);
-  EXPECT_NEAR(replay_looks(but_one, five_percent, 8, 8).at(0).half_width, 2.365 * 0.1 / 8, 1e-4);
+  EXPECT_NEAR(replay_stop_tests(but_one, five_percent, 8, 8).at(0).half_width, 2.365 * 0.1 / 8, 1e-4);
 }
 
 Outcome share(int number) {
@@ -265,12 +267,12 @@ Outcome share(int number) {
 }
 
 // 8 of 8: from 0.025^(1/8) = 0.6306 to 1; none of 10: up to 1 - 0.025^(1/10) = 0.3085. A tolerance of 0.1
-// takes 36 equal values, 0.025^(1/36) = 0.9026, with a single look.
+// takes 36 equal values, 0.025^(1/36) = 0.9026, with a single stop test.
 TEST(Cohorts, SharesHaveAnIntervalOfShares) {
   const Target tenth{"flowing", Tolerance::absolute(0.1), 0.95};
   const auto single = [&](const Outcomes& outcomes) {
     const int seeds = static_cast<int>(outcomes.size());
-    return replay_looks(outcomes, tenth, seeds, seeds).at(0);
+    return replay_stop_tests(outcomes, tenth, seeds, seeds).at(0);
   };
   EXPECT_NEAR(single(Outcomes(8, share(1))).controlled_half_width, 1 - 0.6306, 1e-4);
   EXPECT_EQ(single(Outcomes(8, share(1))).verdict, Verdict::capped);
@@ -290,12 +292,12 @@ TEST(Cohorts, ASkewedShareIsNotMarked) {
   Outcomes outcomes(60, share(1));
   outcomes[7] = share(0);
   const Target tenth{"flowing", Tolerance::absolute(0.1), 0.95};
-  const Look look = replay_looks(outcomes, tenth, 60, 60).at(0);
-  EXPECT_GT(std::abs(look.skewness), 5);
-  EXPECT_FALSE(is_skewed(look, 0.95));
+  const StopTest stop_test = replay_stop_tests(outcomes, tenth, 60, 60).at(0);
+  EXPECT_GT(std::abs(stop_test.skewness), 5);
+  EXPECT_FALSE(is_skewed(stop_test, 0.95));
   // As it is stored.
-  Estimate stored{look.controlled.count, look.controlled.mean, look.controlled.standard_error};
-  EXPECT_EQ(stored_values(stored, look.controlled_half_width), Estimate::Values::share);
+  Estimate stored{stop_test.controlled.count, stop_test.controlled.mean, stop_test.controlled.standard_error};
+  EXPECT_EQ(stored_values(stored, stop_test.controlled_half_width), Estimate::Values::share);
 }
 
 // The variance of 1e-13 +- 1e-14 differs from that of a share of 1e-13 by less than rounding errors of 1.
@@ -309,23 +311,24 @@ TEST(Cohorts, SmallNumbersAreNoShares) {
 TEST(Cohorts, SeedsThatEndInOneStateAreNotIndependent) {
   Outcomes outcomes = alternating(12, 10, 0.1);
   for (std::size_t seed = 0; seed < outcomes.size(); ++seed) outcomes[seed]->final_state = 1 + seed % 3;
-  const Look look = replay_looks(outcomes, five_percent, 12, 12).at(0);
-  EXPECT_EQ(look.verdict, Verdict::capped);
-  EXPECT_EQ(look.repeated, (std::vector<int>{3, 4, 5, 6, 7, 8, 9, 10, 11}));
-  EXPECT_TRUE(std::isnan(look.controlled_half_width));
-  EXPECT_TRUE(std::isnan(look.half_width));
+  const StopTest stop_test = replay_stop_tests(outcomes, five_percent, 12, 12).at(0);
+  EXPECT_EQ(stop_test.verdict, Verdict::capped);
+  EXPECT_EQ(stop_test.repeated, (std::vector<int>{3, 4, 5, 6, 7, 8, 9, 10, 11}));
+  EXPECT_TRUE(std::isnan(stop_test.controlled_half_width));
+  EXPECT_TRUE(std::isnan(stop_test.half_width));
   for (std::size_t seed = 0; seed < outcomes.size(); ++seed) outcomes[seed]->final_state = 1 + seed;
-  EXPECT_EQ(replay_looks(outcomes, five_percent, 12, 12).at(0).verdict, Verdict::converged);
+  EXPECT_EQ(replay_stop_tests(outcomes, five_percent, 12, 12).at(0).verdict, Verdict::converged);
   for (std::optional<Outcome>& outcome : outcomes) outcome->final_state = 0;  // not known
-  EXPECT_TRUE(replay_looks(outcomes, five_percent, 12, 12).at(0).repeated.empty());
+  EXPECT_TRUE(replay_stop_tests(outcomes, five_percent, 12, 12).at(0).repeated.empty());
 }
 
-TEST(Cohorts, IntervalsAreWidenedForRepeatedLooksOnly) {
+TEST(Cohorts, IntervalsAreWidenedForRepeatedStopTestsOnly) {
   EXPECT_DOUBLE_EQ(adjusted_confidence(0.95, 10, 100), 0.957);
   EXPECT_DOUBLE_EQ(adjusted_confidence(0.90, 14, 100), 0.91);
   EXPECT_DOUBLE_EQ(adjusted_confidence(0.95, 10, 10), 0.95);
   // t(9, 0.975) = 2.262
-  EXPECT_NEAR(replay_looks(alternating(10, 10, 0.3), five_percent, 10, 10).at(0).half_width, 0.2262, 1e-4);
+  EXPECT_NEAR(replay_stop_tests(alternating(10, 10, 0.3), five_percent, 10, 10).at(0).half_width, 0.2262,
+              1e-4);
 }
 
 // Seven values of 0 and one of 1: g = 2.268 (moments 1/8 and 7/8). A normal population of 8 shows a skewness
@@ -333,35 +336,36 @@ TEST(Cohorts, IntervalsAreWidenedForRepeatedLooksOnly) {
 TEST(Cohorts, ASkewedPopulationIsNoticed) {
   Outcomes skewed(8, value(10)), even = alternating(8, 10, 1);
   skewed[5] = value(11);
-  const Look look = replay_looks(skewed, five_percent, 8, 8).at(0);
-  EXPECT_NEAR(look.skewness, 2.268, 1e-3);
-  EXPECT_TRUE(is_skewed(look, 0.95));
-  EXPECT_FALSE(is_skewed(replay_looks(even, five_percent, 8, 8).at(0), 0.95));
-  EXPECT_FALSE(is_skewed(replay_looks(Outcomes(8, value(10)), five_percent, 8, 8).at(0), 0.95));
+  const StopTest stop_test = replay_stop_tests(skewed, five_percent, 8, 8).at(0);
+  EXPECT_NEAR(stop_test.skewness, 2.268, 1e-3);
+  EXPECT_TRUE(is_skewed(stop_test, 0.95));
+  EXPECT_FALSE(is_skewed(replay_stop_tests(even, five_percent, 8, 8).at(0), 0.95));
+  EXPECT_FALSE(is_skewed(replay_stop_tests(Outcomes(8, value(10)), five_percent, 8, 8).at(0), 0.95));
   // The same skewness among many values costs nothing: 0.247 * 2.268^2 / 200 = 0.6 %.
   Outcomes many;
   for (int i = 0; i < 25; ++i) many.insert(many.end(), skewed.begin(), skewed.end());
-  EXPECT_FALSE(is_skewed(replay_looks(many, five_percent, 200, 200).at(0), 0.95));
+  EXPECT_FALSE(is_skewed(replay_stop_tests(many, five_percent, 200, 200).at(0), 0.95));
 }
 
-TEST(Cohorts, OutcomesBeyondTheDecidingLookChangeNothing) {
-  const std::vector<Look> few = replay_looks(alternating(10, 10, 0.3), five_percent, 10, 100);
+TEST(Cohorts, OutcomesBeyondTheDecidingStopTestChangeNothing) {
+  const std::vector<StopTest> few = replay_stop_tests(alternating(10, 10, 0.3), five_percent, 10, 100);
   Outcomes more = alternating(10, 10, 0.3);
   for (int i = 0; i < 30; ++i) more.emplace_back(i % 3 == 0 ? lost() : value(1000));
-  const std::vector<Look> many = replay_looks(more, five_percent, 10, 100);
+  const std::vector<StopTest> many = replay_stop_tests(more, five_percent, 10, 100);
   ASSERT_EQ(many.size(), few.size());
   EXPECT_EQ(many[0].estimate.mean, few[0].estimate.mean);
 }
 
-// Seeds end in 200 random orders; after each one the looks are replayed from what is known by then. Every
-// order ends with the same looks, bit for bit, and no look is ever taken back or changed on the way.
+// Seeds end in 200 random orders; after each one the stop tests are replayed from what is known by then.
+// Every order ends with the same stop tests, bit for bit, and no stop test is ever taken back or changed on
+// the way.
 TEST(Cohorts, AnswerDoesNotDependOnTheOrderOfArrival) {
   std::mt19937 random(7);
   std::normal_distribution<double> normal(10, 2.5);
   Outcomes truth;
   for (int seed = 0; seed < 60; ++seed) truth.emplace_back(value(normal(random)));
   truth[5] = lost();
-  const std::vector<Look> expected = replay_looks(truth, five_percent, 10, 60);
+  const std::vector<StopTest> expected = replay_stop_tests(truth, five_percent, 10, 60);
   ASSERT_GE(expected.size(), 5U);
 
   std::vector<std::size_t> order(truth.size());
@@ -369,20 +373,20 @@ TEST(Cohorts, AnswerDoesNotDependOnTheOrderOfArrival) {
   for (int trial = 0; trial < 200; ++trial) {
     std::shuffle(order.begin(), order.end(), random);
     Outcomes known;
-    std::size_t looks_so_far = 0;
+    std::size_t tests_of_all_seeds = 0;
     for (const std::size_t seed : order) {
       known.resize(std::max(known.size(), seed + 1));
       known[seed] = truth[seed];
-      const std::vector<Look> looks = replay_looks(known, five_percent, 10, 60);
-      ASSERT_GE(looks.size(), looks_so_far);
-      looks_so_far = looks.size();
-      for (std::size_t i = 0; i < looks.size(); ++i) {
-        ASSERT_EQ(looks[i].estimate.mean, expected[i].estimate.mean);
-        ASSERT_EQ(looks[i].half_width, expected[i].half_width);
-        ASSERT_EQ(looks[i].verdict, expected[i].verdict);
+      const std::vector<StopTest> stop_tests = replay_stop_tests(known, five_percent, 10, 60);
+      ASSERT_GE(stop_tests.size(), tests_of_all_seeds);
+      tests_of_all_seeds = stop_tests.size();
+      for (std::size_t i = 0; i < stop_tests.size(); ++i) {
+        ASSERT_EQ(stop_tests[i].estimate.mean, expected[i].estimate.mean);
+        ASSERT_EQ(stop_tests[i].half_width, expected[i].half_width);
+        ASSERT_EQ(stop_tests[i].verdict, expected[i].verdict);
       }
     }
-    ASSERT_EQ(looks_so_far, expected.size());
+    ASSERT_EQ(tests_of_all_seeds, expected.size());
   }
 }
 
@@ -390,36 +394,37 @@ TEST(Cohorts, AnswerDoesNotDependOnTheOrderOfArrival) {
 const Target no_tolerance{"relative_viscosity", Tolerance::none(), 0.95};
 
 // scipy.stats.t.ppf(0.975, 4) = 2.776445; the values 1 to 5 have the variance 5/2.
-TEST(FixedNumber, HasOneLookWithStudentsInterval) {
+TEST(FixedNumber, HasOneStopTestWithStudentsInterval) {
   Outcomes outcomes;
   for (int seed = 0; seed < 5; ++seed) {
-    EXPECT_TRUE(replay_looks(outcomes, no_tolerance, 5, 5).empty());
+    EXPECT_TRUE(replay_stop_tests(outcomes, no_tolerance, 5, 5).empty());
     outcomes.emplace_back(value(seed + 1));
   }
-  const std::vector<Look> looks = replay_looks(outcomes, no_tolerance, 5, 5);
-  ASSERT_EQ(looks.size(), 1U);
-  EXPECT_EQ(looks[0].verdict, Verdict::complete);
-  EXPECT_DOUBLE_EQ(looks[0].controlled.mean, 3);
-  EXPECT_NEAR(looks[0].controlled_half_width, 2.776445 * std::sqrt(2.5 / 5), 1e-6);
-  EXPECT_FALSE(looks[0].near_maximum);
-  EXPECT_EQ(replay_looks(alternating(9, 10, 3), no_tolerance, 5, 5).size(), 1U) << "later seeds do not count";
+  const std::vector<StopTest> stop_tests = replay_stop_tests(outcomes, no_tolerance, 5, 5);
+  ASSERT_EQ(stop_tests.size(), 1U);
+  EXPECT_EQ(stop_tests[0].verdict, Verdict::complete);
+  EXPECT_DOUBLE_EQ(stop_tests[0].controlled.mean, 3);
+  EXPECT_NEAR(stop_tests[0].controlled_half_width, 2.776445 * std::sqrt(2.5 / 5), 1e-6);
+  EXPECT_FALSE(stop_tests[0].near_maximum);
+  EXPECT_EQ(replay_stop_tests(alternating(9, 10, 3), no_tolerance, 5, 5).size(), 1U)
+      << "later seeds do not count";
 }
 
 // scipy.stats.t.ppf(0.975, 3) = 3.182446; 1, 2, 4 and 5 have the variance 10/3.
 TEST(FixedNumber, LeavesOutLostSeedsAndSaysSo) {
   Outcomes outcomes{value(1), value(2), lost(), value(4), value(5)};
-  const Look look = replay_looks(outcomes, no_tolerance, 5, 5).at(0);
-  EXPECT_EQ(look.verdict, Verdict::complete_with_losses);
-  EXPECT_EQ(look.lost, 1);
-  EXPECT_NEAR(look.controlled_half_width, 3.182446 * std::sqrt(10.0 / 3 / 4), 1e-6);
-  EXPECT_EQ(replay_looks(all_lost(5), no_tolerance, 5, 5).at(0).verdict, Verdict::failed);
+  const StopTest stop_test = replay_stop_tests(outcomes, no_tolerance, 5, 5).at(0);
+  EXPECT_EQ(stop_test.verdict, Verdict::complete_with_losses);
+  EXPECT_EQ(stop_test.lost, 1);
+  EXPECT_NEAR(stop_test.controlled_half_width, 3.182446 * std::sqrt(10.0 / 3 / 4), 1e-6);
+  EXPECT_EQ(replay_stop_tests(all_lost(5), no_tolerance, 5, 5).at(0).verdict, Verdict::failed);
 }
 
 TEST(FixedNumber, OfOneHasAMeanWithoutAnInterval) {
-  const Look look = replay_looks({value(7)}, no_tolerance, 1, 1).at(0);
-  EXPECT_EQ(look.verdict, Verdict::complete);
-  EXPECT_EQ(look.controlled.mean, 7);
-  EXPECT_FALSE(std::isfinite(look.controlled_half_width));
+  const StopTest stop_test = replay_stop_tests({value(7)}, no_tolerance, 1, 1).at(0);
+  EXPECT_EQ(stop_test.verdict, Verdict::complete);
+  EXPECT_EQ(stop_test.controlled.mean, 7);
+  EXPECT_FALSE(std::isfinite(stop_test.controlled_half_width));
 }
 
 TEST(FixedNumber, GivesEachObservableThatIsShownItsInterval) {
@@ -430,13 +435,13 @@ TEST(FixedNumber, GivesEachObservableThatIsShownItsInterval) {
     outcomes.emplace_back(value(seed + 1));
     outcomes.back()->further = {{seed == 2 ? std::nan("") : 10.0 * (seed + 1)}};
   }
-  const Look look = replay_looks(outcomes, both, 5, 5).at(0);
-  ASSERT_EQ(look.each.size(), 2U);
-  EXPECT_EQ(look.each[0].verdict, Verdict::complete);
-  EXPECT_NEAR(look.each[0].half_width, 2.776445 * std::sqrt(2.5 / 5), 1e-6);
-  EXPECT_EQ(look.each[1].verdict, Verdict::complete_with_losses);
-  EXPECT_NEAR(look.each[1].half_width, 31.82446 * std::sqrt(10.0 / 3 / 4), 1e-5);
-  EXPECT_EQ(look.verdict, Verdict::complete_with_losses);
+  const StopTest stop_test = replay_stop_tests(outcomes, both, 5, 5).at(0);
+  ASSERT_EQ(stop_test.each.size(), 2U);
+  EXPECT_EQ(stop_test.each[0].verdict, Verdict::complete);
+  EXPECT_NEAR(stop_test.each[0].half_width, 2.776445 * std::sqrt(2.5 / 5), 1e-6);
+  EXPECT_EQ(stop_test.each[1].verdict, Verdict::complete_with_losses);
+  EXPECT_NEAR(stop_test.each[1].half_width, 31.82446 * std::sqrt(10.0 / 3 / 4), 1e-5);
+  EXPECT_EQ(stop_test.verdict, Verdict::complete_with_losses);
 }
 
 }  // namespace

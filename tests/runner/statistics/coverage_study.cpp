@@ -75,7 +75,7 @@ class Source {
 
 struct Tally {
   int count = 0, covered = 0, converged = 0, skewed = 0;
-  double bias = 0, seeds = 0, looks = 0;
+  double bias = 0, seeds = 0, stop_tests = 0;
 
   void add(const Estimate& mean, double half_width) {
     ++count;
@@ -121,9 +121,9 @@ void simulate_campaign(const Case& about, Source& source, Tally& tally) {
     scheduler.end(ended.id, {{ended.value}});
   }
   for (int point = 0; point < points_at_a_time; ++point) {
-    const Look& last = scheduler.looks(point).back();
+    const StopTest& last = scheduler.stop_tests(point).back();
     tally.add(last.controlled, last.controlled_half_width);
-    tally.looks += static_cast<double>(scheduler.looks(point).size());
+    tally.stop_tests += static_cast<double>(scheduler.stop_tests(point).size());
     if (last.verdict == Verdict::converged) ++tally.converged;
     if (is_skewed(last, confidence)) ++tally.skewed;
   }
@@ -196,7 +196,7 @@ void print_row(const Case& about, const Tally& rule, const Tally& naive) {
   fmt::print("{},{},{:g},{:.4g},{},{},{:.2f},{:.2f},{:.3f},{:.1f},{:.1f},{:.1f},{:.1f},{:.2f},{:.3f}\n",
              about.population.name, about.minimum, about.tolerance, about.needed, about.workers, rule.count,
              covered, std::sqrt(covered * (100 - covered) / rule.count), rule.bias / rule.count,
-             rule.seeds / rule.count, rule.looks / rule.count, share(rule.converged, rule.count),
+             rule.seeds / rule.count, rule.stop_tests / rule.count, share(rule.converged, rule.count),
              share(rule.skewed, rule.count), share(naive.covered, naive.count), naive.bias / naive.count);
 }
 

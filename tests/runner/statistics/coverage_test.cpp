@@ -11,9 +11,9 @@ namespace peclet::runner {
 namespace {
 
 struct Coverage {
-  double covered;     // share of intervals that hold the true mean
-  double mean_looks;  // until the decision
-  double bias;        // of the reported mean, in units of its own error
+  double covered;          // share of intervals that hold the true mean
+  double mean_stop_tests;  // until the decision
+  double bias;             // of the reported mean, in units of its own error
 };
 
 // Seeds of a distribution of mean 1, looked at as a campaign does. `hidden` is the standard deviation of what
@@ -24,25 +24,26 @@ Coverage simulate(int replications, Distribution seeds, double tolerance, unsign
   std::normal_distribution<double> noise(0, 1);
   const Target target{"relative_viscosity", tolerance, 0.95};
   int covered = 0;
-  double looks_made = 0, deviation = 0;
+  double stop_tests_made = 0, deviation = 0;
   for (int replication = 0; replication < replications; ++replication) {
     std::vector<std::optional<Outcome>> outcomes;
-    std::vector<Look> looks;
-    for (const int seeds_wanted : look_schedule(10, 400)) {
+    std::vector<StopTest> stop_tests;
+    for (const int seeds_wanted : stop_test_schedule(10, 400)) {
       while (std::ssize(outcomes) < seeds_wanted) {
         const double control = hidden > 0 ? hidden * noise(random) : 0;
         outcomes.emplace_back(Outcome{{seeds(random) - control, control}});
       }
-      looks = replay_looks(outcomes, target, 10, 400);
-      if (looks.back().verdict != Verdict::more) break;
+      stop_tests = replay_stop_tests(outcomes, target, 10, 400);
+      if (stop_tests.back().verdict != Verdict::more) break;
     }
-    const Look& last = looks.back();
+    const StopTest& last = stop_tests.back();
     EXPECT_EQ(last.verdict, Verdict::converged);
     if (std::abs(last.controlled.mean - 1) <= last.controlled_half_width) ++covered;
-    looks_made += static_cast<double>(looks.size());
+    stop_tests_made += static_cast<double>(stop_tests.size());
     deviation += (last.controlled.mean - 1) / last.controlled.standard_error;
   }
-  return {static_cast<double>(covered) / replications, looks_made / replications, deviation / replications};
+  return {static_cast<double>(covered) / replications, stop_tests_made / replications,
+          deviation / replications};
 }
 
 std::normal_distribution<double> normal_of(double spread) {
@@ -56,7 +57,7 @@ std::normal_distribution<double> normal_of(double spread) {
 // standard errors); the seed is fixed.
 TEST(Coverage, OfTheStopRuleStaysNearItsNominalValue) {
   const Coverage coverage = simulate(4000, normal_of(0.20), 0.07, 20260101);
-  EXPECT_GT(coverage.mean_looks, 4);
+  EXPECT_GT(coverage.mean_stop_tests, 4);
   EXPECT_GT(coverage.covered, 0.92);
   EXPECT_LT(coverage.covered, 0.96);
   // The tolerance is relative, so cohorts whose mean is too large stop a little earlier: a bias of about 0.05
@@ -65,21 +66,22 @@ TEST(Coverage, OfTheStopRuleStaysNearItsNominalValue) {
   EXPECT_LT(std::abs(coverage.bias), 0.2);
 }
 
-// The same with a control variate that hides two thirds of the variance: as many looks, the same coverage.
+// The same with a control variate that hides two thirds of the variance: as many stop tests, the same
+// coverage.
 TEST(Coverage, OfTheControlledEstimateIsTheSame) {
   const Coverage coverage = simulate(4000, normal_of(0.20), 0.07, 20260103, 0.20 * std::sqrt(2));
-  EXPECT_GT(coverage.mean_looks, 4);
-  EXPECT_LT(coverage.mean_looks, 8);  // 9 to 10 if the plain estimate decided
+  EXPECT_GT(coverage.mean_stop_tests, 4);
+  EXPECT_LT(coverage.mean_stop_tests, 8);  // 9 to 10 if the plain estimate decided
   EXPECT_GT(coverage.covered, 0.92);
   EXPECT_LT(coverage.covered, 0.96);
   EXPECT_LT(std::abs(coverage.bias), 0.2);
 }
 
-// With a tolerance that the first look meets always, the rule is Student's interval, which is exact: 95 %
-// with a standard error of 0.34 %; outside the band by chance less than once in 10^4 (4 standard errors).
-TEST(Coverage, WithoutRepeatedLooksIsStudents) {
+// With a tolerance that the first stop test meets always, the rule is Student's interval, which is exact: 95
+// % with a standard error of 0.34 %; outside the band by chance less than once in 10^4 (4 standard errors).
+TEST(Coverage, WithoutRepeatedStopTestsIsStudents) {
   const Coverage coverage = simulate(4000, normal_of(0.02), 0.20, 20260102);
-  EXPECT_EQ(coverage.mean_looks, 1);
+  EXPECT_EQ(coverage.mean_stop_tests, 1);
   EXPECT_NEAR(coverage.covered, 0.95, 0.0138);
 }
 
@@ -88,7 +90,7 @@ TEST(Coverage, WithoutRepeatedLooksIsStudents) {
 // normal seeds; the same band leaves room for 1 % of it, and lets 93 % pass by 2.6 standard errors of 0.38 %.
 TEST(Coverage, OfMeansOfSquaresStaysNearItsNominalValueToo) {
   const Coverage coverage = simulate(4000, gamma_of(0.20), 0.07, 20260106);
-  EXPECT_GT(coverage.mean_looks, 4);
+  EXPECT_GT(coverage.mean_stop_tests, 4);
   EXPECT_GT(coverage.covered, 0.92);
   EXPECT_LT(coverage.covered, 0.96);
   EXPECT_LT(std::abs(coverage.bias), 0.25);
@@ -115,7 +117,7 @@ Verdicts simulate_near_maximum(int replications, double needed, int maximum, uns
   for (int replication = 0; replication < replications; ++replication) {
     std::vector<std::optional<Outcome>> outcomes(static_cast<std::size_t>(maximum));
     for (std::optional<Outcome>& outcome : outcomes) outcome = Outcome{{seeds(random), 0}};
-    const Look last = replay_looks(outcomes, target, 8, maximum).back();
+    const StopTest last = replay_stop_tests(outcomes, target, 8, maximum).back();
     for (OfVerdict* of : {&verdicts.all, last.verdict == Verdict::capped ? &verdicts.capped
                                          : last.near_maximum             ? &verdicts.near_maximum
                                                                          : &verdicts.early}) {

@@ -109,7 +109,7 @@ History run(const Case& about, double expected_time, unsigned start) {
     std::vector<PointForecast> forecasts;
     for (int point = 0; point < points; ++point) {
       const int all_ended = scheduler.all_ended(point);
-      forecasts.push_back({costs[static_cast<std::size_t>(point)], scheduler.so_far(point), all_ended,
+      forecasts.push_back({costs[static_cast<std::size_t>(point)], scheduler.all_seeds(point), all_ended,
                            scheduler.begun(point) - all_ended, scheduler.decided(point)});
     }
     for (const Running& one : clock) {

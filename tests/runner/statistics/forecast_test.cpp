@@ -12,27 +12,27 @@ namespace {
 
 const Target ten_percent{"relative_viscosity", 0.1, 0.95};
 
-Look look(int seeds, double mean, double half_width) {
-  Look made;
+StopTest stop_test(int seeds, double mean, double half_width) {
+  StopTest made;
   made.seeds = seeds;
   made.controlled = {seeds, mean, half_width / 2};
   made.controlled_half_width = half_width;
   return made;
 }
 
-TEST(Forecast, ExpectsTheMinimumBeforeTheFirstLook) {
+TEST(Forecast, ExpectsTheMinimumBeforeTheFirstStopTest) {
   EXPECT_EQ(expected_seeds({}, ten_percent, 10, 100), 10);
 }
 
-// Half-width 2 where 1 is tolerated: four times the seeds, at the first look that has them (of 10, 13, 17,
-// 22, 28, 35, 44), if the maximum is far.
+// Half-width 2 where 1 is tolerated: four times the seeds, at the first stop test that has them (of 10, 13,
+// 17, 22, 28, 35, 44), if the maximum is far.
 TEST(Forecast, FourTimesTheSeedsHalveTheInterval) {
-  EXPECT_EQ(expected_seeds({look(10, 10, 2)}, ten_percent, 10, 1000), 44);
+  EXPECT_EQ(expected_seeds({stop_test(10, 10, 2)}, ten_percent, 10, 1000), 44);
 }
 
-TEST(Forecast, NeverExpectsMoreThanTheMaximumOrLessThanTheNextLook) {
-  EXPECT_EQ(expected_seeds({look(10, 10, 50)}, ten_percent, 10, 100), 100);
-  EXPECT_EQ(expected_seeds({look(10, 10, 1.001)}, ten_percent, 10, 1000), 13);
+TEST(Forecast, NeverExpectsMoreThanTheMaximumOrLessThanTheNextStopTest) {
+  EXPECT_EQ(expected_seeds({stop_test(10, 10, 50)}, ten_percent, 10, 100), 100);
+  EXPECT_EQ(expected_seeds({stop_test(10, 10, 1.001)}, ten_percent, 10, 1000), 13);
 }
 
 TEST(Forecast, SaysNothingBeforeAnythingHasEnded) {
@@ -43,7 +43,7 @@ PointForecast five_of_six_seconds() {
   PointForecast point;
   for (int i = 0; i < 5; ++i) point.cost.add(6);
   point.ended = 5;
-  point.so_far = {{5, 10, 0.01}};
+  point.all_seeds = {{5, 10, 0.01}};
   return point;
 }
 
@@ -122,7 +122,7 @@ TEST(Forecast, TheNumberOfSeedsIsNotKnownBetterThanTheSpread) {
   PointForecast point;
   for (int i = 0; i < 10; ++i) point.cost.add(6);
   point.ended = 10;
-  point.so_far = {{10, 10, 0.7}};
+  point.all_seeds = {{10, 10, 0.7}};
   const std::optional<TimeToGo> left = time_to_go({point}, ten_percent, 10, 1000, 1);
   ASSERT_TRUE(left);
   EXPECT_GT(left->upper / left->likely, 2 * machine_allowance);
@@ -133,7 +133,7 @@ TEST(Forecast, BeforeTwoValuesAnyNumberOfSeedsMayBeNeeded) {
   PointForecast point;
   point.cost.add(6);
   point.ended = 1;
-  point.so_far = {{1, 10, std::nan("")}};
+  point.all_seeds = {{1, 10, std::nan("")}};
   EXPECT_GE(time_to_go({point}, ten_percent, 10, 100, 1)->upper, 99 * 6);
 }
 

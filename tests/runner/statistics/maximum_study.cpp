@@ -87,9 +87,9 @@ Population jamming(double jams) {
 
 struct Tally {
   int count = 0, covered = 0;
-  void add(const Look& look, double mean) {
+  void add(const StopTest& stop_test, double mean) {
     ++count;
-    covered += std::abs(look.controlled.mean - mean) <= look.controlled_half_width ? 1 : 0;
+    covered += std::abs(stop_test.controlled.mean - mean) <= stop_test.controlled_half_width ? 1 : 0;
   }
   std::string text(int of) const {
     return fmt::format("{:.2f},{}", 100.0 * count / of,
@@ -106,10 +106,13 @@ void print_row(const Case& about, int replications, unsigned start) {
   for (int replication = 0; replication < replications; ++replication) {
     std::vector<std::optional<Outcome>> outcomes(static_cast<std::size_t>(about.maximum));
     for (std::optional<Outcome>& outcome : outcomes) outcome = about.population.draw(random);
-    const Look look = replay_looks(outcomes, target, about.minimum, about.maximum).back();
-    all.add(look, mean);
-    (look.verdict == Verdict::capped ? capped : look.near_maximum ? near_maximum : early).add(look, mean);
-    seeds += look.seeds;
+    const StopTest stop_test = replay_stop_tests(outcomes, target, about.minimum, about.maximum).back();
+    all.add(stop_test, mean);
+    (stop_test.verdict == Verdict::capped ? capped
+     : stop_test.near_maximum             ? near_maximum
+                                          : early)
+        .add(stop_test, mean);
+    seeds += stop_test.seeds;
   }
   fmt::print("{},{},{},{},{},{},{},{},{},{:.1f}\n", about.population.name, about.minimum, about.maximum,
              to_string(about.tolerance), replications, early.text(replications),

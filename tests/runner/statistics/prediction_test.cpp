@@ -25,7 +25,7 @@ Outcomes values(int count, double deviation) {
 }
 
 struct Record {
-  double held = 0;          // share of the campaigns whose deciding look lay within the range
+  double held = 0;          // share of the campaigns whose deciding stop test lay within the range
   double median_ratio = 0;  // of expected to actual seeds
 };
 
@@ -40,13 +40,13 @@ Record judge(int campaigns, int pilot, double spread, double tolerance, unsigned
     Outcomes outcomes;
     const auto looks_at = [&](int seeds) {
       while (std::ssize(outcomes) < seeds) outcomes.emplace_back(Outcome{{value(random)}});
-      return replay_looks(outcomes, target(tolerance), minimum, maximum);
+      return replay_stop_tests(outcomes, target(tolerance), minimum, maximum);
     };
-    const std::vector<Look> first = looks_at(pilot);
+    const std::vector<StopTest> first = looks_at(pilot);
     if (!first.empty() && first.back().verdict != Verdict::more) continue;
     const Prediction made = predict(outcomes, target(tolerance), minimum, maximum);
     int actual = 0;
-    for (const int seeds : look_schedule(minimum, maximum)) {
+    for (const int seeds : stop_test_schedule(minimum, maximum)) {
       actual = seeds;
       if (looks_at(seeds).back().verdict != Verdict::more) break;
     }
@@ -61,7 +61,7 @@ Record judge(int campaigns, int pilot, double spread, double tolerance, unsigned
 // below 91 % with a probability of 1e-5 (4.5 standard errors); a range that holds everything would fail, too:
 // 3 misses or fewer where 20 to 30 are due have 3e-6. The logarithm of the ratio scatters by about 1 with a
 // pilot of four, its median by 0.05: outside 0.8 .. 1.25 by chance once in 10^5. The seeds are fixed.
-TEST(Prediction, RangeHoldsTheDecidingLookNineteenTimesInTwenty) {
+TEST(Prediction, RangeHoldsTheDecidingStopTestNineteenTimesInTwenty) {
   for (const int pilot : {4, 8}) {
     const Record record = judge(600, pilot, 0.2, 0.06, 20260201);
     EXPECT_GT(record.held, 0.91) << pilot;
@@ -71,8 +71,8 @@ TEST(Prediction, RangeHoldsTheDecidingLookNineteenTimesInTwenty) {
   }
 }
 
-// (1.96 * 0.2 / 0.03)^2 = 171 seeds, between the looks at 155 and 194. The variance of 40 values is known to
-// 2 sqrt(2 / 39) = 45 %: 94 to 248 seeds, one look wider for the looks.
+// (1.96 * 0.2 / 0.03)^2 = 171 seeds, between the stop tests at 155 and 194. The variance of 40 values is
+// known to 2 sqrt(2 / 39) = 45 %: 94 to 248 seeds, one stop test wider for the stop tests.
 TEST(Prediction, ManyPilotSeedsGiveTheSeedsOfTheFormula) {
   const Prediction made = predict(values(40, 0.2), target(0.03), 40, 2000);
   EXPECT_GE(made.seeds.likely, 155);
@@ -117,7 +117,7 @@ TEST(Prediction, WhereHalfTheSeedsAreLostTwiceAsManyAreNeeded) {
   const double all = predict(values(20, 0.2), target(0.03), 40, 4000).seeds.likely;
   const Prediction half = predict(with_losses, target(0.03), 40, 4000);
   EXPECT_EQ(half.lost, 20);
-  EXPECT_NEAR(half.seeds.likely / all, 2, 0.5);  // one look more or less
+  EXPECT_NEAR(half.seeds.likely / all, 2, 0.5);  // one stop test more or less
 }
 
 // scipy.stats.chi2.ppf([0.025, 0.5, 0.975], 3) = 0.2158, 2.366, 9.348; of 30 degrees 16.79 and 46.98.

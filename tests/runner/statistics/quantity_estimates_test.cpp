@@ -93,8 +93,8 @@ TEST(QuantityEstimates, AreOfTheControlledValueWithThePlainOneBesideIt) {
   EXPECT_NEAR(pressure["standard_error"].get<double>(), error, 1e-14);
   EXPECT_NEAR(pressure["half_width"].get<double>(), 4.302653 * error,
               1e-6 * error);  // t of 2 degrees, 97.5 %
-  EXPECT_NEAR(pressure["uncontrolled"]["mean"].get<double>(), 12, 1e-14);
-  EXPECT_NEAR(pressure["uncontrolled"]["standard_error"].get<double>(), std::sqrt(4.0 / 3), 1e-14);
+  EXPECT_NEAR(pressure["plain"]["mean"].get<double>(), 12, 1e-14);
+  EXPECT_NEAR(pressure["plain"]["standard_error"].get<double>(), std::sqrt(4.0 / 3), 1e-14);
   EXPECT_EQ(pressure["symbol"], "P");
   EXPECT_EQ(pressure["unit"], "stress");
   EXPECT_EQ(pressure["axes"], Json::array());
@@ -148,7 +148,7 @@ TEST(QuantityEstimates, OfAnotherControlAreUnlikeWhateverComesFirst) {
   EXPECT_EQ(first_described.json(0.95)["pressure"]["unlike"], 1);
 }
 
-// As in a look: value + 0. The control has the mean 1.
+// As in a stop test: value + 0. The control has the mean 1.
 TEST(QuantityEstimates, AValueWithoutItsControlCountsAsItIs) {
   const QuantityEstimates estimates = of({{{"pressure", 10}, {"noise", 3}, {"g", nullptr}},
                                           {{"pressure", 20}, {"noise", nullptr}, {"g", nullptr}}});

@@ -76,9 +76,9 @@ TEST(Scheduler, ThePointThatNeedsMoreSeedsGoesFirst) {
   // Half-widths of some 50 % and of 6 %: the first needs the maximum, the second a few more seeds.
   const Outcomes known{alternating(4, 10, 0.3), alternating(4, 10, 3)};
   Scheduler scheduler(known, five_percent, 4, 40);
-  ASSERT_EQ(scheduler.looks(0).back().verdict, Verdict::more);
+  ASSERT_EQ(scheduler.stop_tests(0).back().verdict, Verdict::more);
   EXPECT_EQ(take(scheduler), (SeedId{1, 4}));
-  EXPECT_EQ(take(scheduler), (SeedId{0, 4})) << "seeds that are needed go before surplus ones";
+  EXPECT_EQ(take(scheduler), (SeedId{0, 4})) << "seeds that are needed go before extra ones";
 }
 
 TEST(Scheduler, UnderABudgetThePointWhoseErrorFallsFastestGoesFirst) {
@@ -126,7 +126,7 @@ TEST(Scheduler, UnderABudgetOnlySeedsGoThatItPaysFor) {
 }
 
 TEST(Scheduler, UnderABudgetALookThatItPaysForAsAWholeGoesFirst) {
-  // Both at 9 seeds and wanting three more; the first is wider, but 20 s do not buy its look.
+  // Both at 9 seeds and wanting three more; the first is wider, but 20 s do not buy its stop test.
   const Outcomes known{alternating(9, 10, 5), alternating(9, 10, 1)};
   Scheduler scheduler(known, five_percent, 4, 40);
   scheduler.set_allocation(Allocation::steepest_first);
@@ -134,7 +134,7 @@ TEST(Scheduler, UnderABudgetALookThatItPaysForAsAWholeGoesFirst) {
   scheduler.set_cost(1, 4);
   EXPECT_EQ(scheduler.next_within(24), (SeedId{0, 9}));
   EXPECT_EQ(scheduler.next_within(20), (SeedId{1, 9}));
-  EXPECT_EQ(scheduler.next_within(9), (SeedId{0, 9})) << "when it buys no look, seeds for later ones";
+  EXPECT_EQ(scheduler.next_within(9), (SeedId{0, 9})) << "when it buys no stop test, seeds for later ones";
 }
 
 TEST(Scheduler, CostsThatAreNotKnownFollowFromTheWork) {
@@ -151,8 +151,8 @@ TEST(Scheduler, CostsThatAreNotKnownFollowFromTheWork) {
   EXPECT_EQ(scheduler.next_within(0.49), std::nullopt);
 }
 
-// A look at all points for each of them would be 4e10 looks, more than a test may take.
-TEST(Scheduler, WhatManyPointsHaveOutIsSeenAtOneLook) {
+// A stop test at all points for each of them would be 4e10 looks, more than a test may take.
+TEST(Scheduler, WhatManyPointsHaveOutIsSeenAtOneStopTest) {
   constexpr int many = 200'000;
   Scheduler scheduler(Outcomes(many), five_percent, 4, 4);
   for (int point = 0; point < many; ++point) scheduler.set_work(point, 1);

@@ -13,16 +13,16 @@ namespace {
 
 TEST(Scheduler, KnowsTheMeanOfWhatHasEndedInAnyOrder) {
   Scheduler scheduler = fresh(1, 8);
-  EXPECT_EQ(scheduler.so_far(0)[0].count, 0);
+  EXPECT_EQ(scheduler.all_seeds(0)[0].count, 0);
   for (const int seed : {5, 0, 3}) scheduler.end({0, seed}, value(seed));
   scheduler.end({0, 1}, Outcome{});
-  EXPECT_EQ(scheduler.so_far(0)[0].count, 3);
-  EXPECT_DOUBLE_EQ(scheduler.so_far(0)[0].mean, 8.0 / 3);
+  EXPECT_EQ(scheduler.all_seeds(0)[0].count, 3);
+  EXPECT_DOUBLE_EQ(scheduler.all_seeds(0)[0].mean, 8.0 / 3);
   // Deviations 7/3, -8/3 and 1/3: variance 19/3, of the mean a third of it.
-  EXPECT_DOUBLE_EQ(scheduler.so_far(0)[0].standard_error, std::sqrt(19.0) / 3);
+  EXPECT_DOUBLE_EQ(scheduler.all_seeds(0)[0].standard_error, std::sqrt(19.0) / 3);
   EXPECT_EQ(scheduler.all_ended(0), 4);
   scheduler.end({0, 1}, value(8.0 / 3));  // its late result
-  EXPECT_EQ(scheduler.so_far(0)[0].count, 4);
+  EXPECT_EQ(scheduler.all_seeds(0)[0].count, 4);
   EXPECT_EQ(scheduler.all_ended(0), 4);
 }
 
@@ -39,7 +39,7 @@ TEST(Scheduler, UnderACeilingOnlyTheFirstSeedsGo) {
   EXPECT_FALSE(scheduler.decided(0));
 }
 
-// A campaign of a fixed number of realisations: no seed is surplus, and losses are not made up for.
+// A campaign of a fixed number of realisations: no seed is extra, and losses are not made up for.
 TEST(Scheduler, GivesEveryPointTheFixedNumberOfSeeds) {
   const Target target{"relative_viscosity", Tolerance::none(), 0.95};
   Scheduler scheduler(Outcomes(2), target, 6, 6);
@@ -51,8 +51,8 @@ TEST(Scheduler, GivesEveryPointTheFixedNumberOfSeeds) {
     scheduler.end({1, seed}, seed == 3 ? Outcome{} : steady_outcome(seed));
   }
   EXPECT_TRUE(scheduler.finished());
-  EXPECT_EQ(scheduler.looks(0).back().verdict, Verdict::complete);
-  EXPECT_EQ(scheduler.looks(1).back().verdict, Verdict::complete_with_losses);
+  EXPECT_EQ(scheduler.stop_tests(0).back().verdict, Verdict::complete);
+  EXPECT_EQ(scheduler.stop_tests(1).back().verdict, Verdict::complete_with_losses);
 }
 
 TEST(Scheduler, PriorityGoesBeforeCost) {
@@ -61,7 +61,7 @@ TEST(Scheduler, PriorityGoesBeforeCost) {
   scheduler.set_cost(1, 100);
   scheduler.set_priority(0, 1);
   for (int seed = 0; seed < 4; ++seed) EXPECT_EQ(take(scheduler), (SeedId{0, seed}));
-  EXPECT_EQ(take(scheduler), (SeedId{1, 0})) << "nobody waits for surplus seeds";
+  EXPECT_EQ(take(scheduler), (SeedId{1, 0})) << "nobody waits for extra seeds";
 }
 
 TEST(Scheduler, ACancelledPointGetsNoSeedsAndHoldsNothingUp) {
@@ -78,13 +78,13 @@ TEST(Scheduler, ACancelledPointGetsNoSeedsAndHoldsNothingUp) {
   EXPECT_EQ(take(scheduler), (SeedId{0, 2}));
 }
 
-TEST(Scheduler, RunsAheadByOneLookWhenAllNeededSeedsAreOutAndNoFurther) {
+TEST(Scheduler, RunsAheadByOneStopTestWhenAllNeededSeedsAreOutAndNoFurther) {
   Scheduler scheduler = fresh(1);
   for (int seed = 0; seed < 5; ++seed) EXPECT_EQ(take(scheduler), (SeedId{0, seed}));
   EXPECT_EQ(scheduler.next(), std::nullopt);
 }
 
-TEST(Scheduler, NeededSeedsGoBeforeSurplusOnes) {
+TEST(Scheduler, NeededSeedsGoBeforeExtraOnes) {
   Scheduler scheduler = fresh(2);
   for (int i = 0; i < 8; ++i) EXPECT_LT(take(scheduler).seed, 4);
   EXPECT_EQ(take(scheduler), (SeedId{0, 4}));
@@ -102,11 +102,11 @@ TEST(Scheduler, LooksOnlyAtClosedCohorts) {
   for (int i = 0; i < 5; ++i) take(scheduler);
   for (const int seed : {4, 3, 2, 1}) {
     EXPECT_FALSE(scheduler.end({0, seed}, steady_outcome(seed)));
-    EXPECT_TRUE(scheduler.looks(0).empty());
+    EXPECT_TRUE(scheduler.stop_tests(0).empty());
   }
   EXPECT_TRUE(scheduler.end({0, 0}, steady_outcome(0)));
-  ASSERT_EQ(scheduler.looks(0).size(), 1U);
-  EXPECT_EQ(scheduler.looks(0)[0].seeds, 4);  // seed 4 is surplus
+  ASSERT_EQ(scheduler.stop_tests(0).size(), 1U);
+  EXPECT_EQ(scheduler.stop_tests(0)[0].seeds, 4);  // seed 4 is extra
   EXPECT_TRUE(scheduler.finished());
 }
 
@@ -119,7 +119,7 @@ TEST(Scheduler, ADecidedPointGetsNoMoreSeeds) {
   EXPECT_EQ(scheduler.next(), std::nullopt);
 }
 
-TEST(Scheduler, AnUndecidedLookAsksForTheSeedsOfTheNextOne) {
+TEST(Scheduler, AnUndecidedStopTestAsksForTheSeedsOfTheNextOne) {
   Scheduler scheduler = fresh(1);
   for (int seed = 0; seed < 4; ++seed) {
     take(scheduler);
@@ -137,7 +137,7 @@ TEST(Scheduler, StopsAtTheMaximum) {
     scheduler.end({0, seed}, scattered(seed));
   }
   EXPECT_TRUE(scheduler.finished());
-  EXPECT_EQ(scheduler.looks(0).back().verdict, Verdict::capped);
+  EXPECT_EQ(scheduler.stop_tests(0).back().verdict, Verdict::capped);
   EXPECT_EQ(scheduler.next(), std::nullopt);
 }
 
@@ -148,16 +148,16 @@ TEST(Scheduler, ATighterToleranceReopensAPointAndRunsNothingTwice) {
   EXPECT_TRUE(loose.finished());
   Scheduler tight(known, {"relative_viscosity", 1e-6, 0.95}, 4, 40);
   EXPECT_FALSE(tight.finished());
-  EXPECT_EQ(tight.looks(0).size(), 3U);  // at 4, 5 and 7: surplus seeds are used
+  EXPECT_EQ(tight.stop_tests(0).size(), 3U);  // at 4, 5 and 7: extra seeds are used
   EXPECT_EQ(take(tight), (SeedId{0, 7}));
 }
 
-TEST(Scheduler, ALowerMaximumLeavesLaterSeedsOutOfTheLooks) {
+TEST(Scheduler, ALowerMaximumLeavesLaterSeedsOutOfTheStopTests) {
   Outcomes known(1);
   for (int seed = 0; seed < 20; ++seed) known[0].push_back(scattered(seed));
   const Scheduler scheduler(known, five_percent, 4, 9);
   EXPECT_TRUE(scheduler.finished());
-  EXPECT_EQ(scheduler.looks(0).back().seeds, 9);
+  EXPECT_EQ(scheduler.stop_tests(0).back().seeds, 9);
 }
 
 TEST(Scheduler, ALateResultOfALostSeedIsLookedAtAgain) {
@@ -166,9 +166,9 @@ TEST(Scheduler, ALateResultOfALostSeedIsLookedAtAgain) {
     take(scheduler);
     scheduler.end({0, seed}, seed == 2 ? Outcome{} : steady_outcome(seed));
   }
-  EXPECT_EQ(scheduler.looks(0).back().verdict, Verdict::converged_with_losses);
+  EXPECT_EQ(scheduler.stop_tests(0).back().verdict, Verdict::converged_with_losses);
   EXPECT_TRUE(scheduler.end({0, 2}, steady_outcome(2)));
-  EXPECT_EQ(scheduler.looks(0).back().verdict, Verdict::converged);
+  EXPECT_EQ(scheduler.stop_tests(0).back().verdict, Verdict::converged);
 }
 
 // A list of its outcomes alone would take 80 GB.
@@ -187,12 +187,12 @@ TEST(Scheduler, AMaximumThatNoPointComesNearCostsNothing) {
 // What the scheduler answers of its only point, and the seeds that it would give out one after the other once
 // another one has ended.
 std::vector<double> answers(Scheduler scheduler, int beyond) {
-  const Estimate so_far = scheduler.so_far(0)[0];
-  std::vector<double> all{
-      scheduler.begun(0) + 0.0,       scheduler.all_ended(0) + 0.0, scheduler.ended(0) + 0.0,
-      scheduler.wanted(0) + 0.0,      so_far.count + 0.0,           so_far.count > 0 ? so_far.mean : 0,
-      scheduler.expected_seconds({1})};
-  for (const Look& look : scheduler.looks(0)) all.push_back(look.estimate.mean);
+  const Estimate all_seeds = scheduler.all_seeds(0)[0];
+  std::vector<double> all{scheduler.begun(0) + 0.0,       scheduler.all_ended(0) + 0.0,
+                          scheduler.ended(0) + 0.0,       scheduler.wanted(0) + 0.0,
+                          all_seeds.count + 0.0,          all_seeds.count > 0 ? all_seeds.mean : 0,
+                          scheduler.expected_seconds({1})};
+  for (const StopTest& stop_test : scheduler.stop_tests(0)) all.push_back(stop_test.estimate.mean);
   scheduler.end({0, beyond}, scattered(beyond));
   while (const std::optional<SeedId> id = scheduler.next()) {
     scheduler.begin(*id);
@@ -232,7 +232,7 @@ TEST(Scheduler, LooksDoNotDependOnWorkersOrOrderOfArrival) {
     if (generator() % 10 == 0) return Outcome{};
     return value(10 + std::normal_distribution<double>(0, 1 + id.point)(generator));
   };
-  std::vector<std::vector<Look>> expected;
+  std::vector<std::vector<StopTest>> expected;
   for (unsigned trial = 0; trial < 40; ++trial) {
     std::mt19937 generator(trial);
     const std::size_t workers = trial == 0 ? 1 : 1 + generator() % 16;
@@ -250,16 +250,16 @@ TEST(Scheduler, LooksDoNotDependOnWorkersOrOrderOfArrival) {
       out.pop_back();
     }
     for (int point = 0; point < 3; ++point) {
-      const std::vector<Look>& looks = scheduler.looks(point);
+      const std::vector<StopTest>& stop_tests = scheduler.stop_tests(point);
       if (trial == 0) {
-        expected.push_back(looks);
+        expected.push_back(stop_tests);
         continue;
       }
-      const std::vector<Look>& first = expected[static_cast<std::size_t>(point)];
-      ASSERT_EQ(looks.size(), first.size()) << "trial " << trial;
-      EXPECT_EQ(looks.back().seeds, first.back().seeds);
-      EXPECT_EQ(looks.back().verdict, first.back().verdict);
-      EXPECT_EQ(looks.back().estimate.mean, first.back().estimate.mean);  // the same bits
+      const std::vector<StopTest>& first = expected[static_cast<std::size_t>(point)];
+      ASSERT_EQ(stop_tests.size(), first.size()) << "trial " << trial;
+      EXPECT_EQ(stop_tests.back().seeds, first.back().seeds);
+      EXPECT_EQ(stop_tests.back().verdict, first.back().verdict);
+      EXPECT_EQ(stop_tests.back().estimate.mean, first.back().estimate.mean);  // the same bits
     }
   }
 }

@@ -64,28 +64,28 @@ TEST(SeveralTargets, TheLessFavourableVerdictCounts) {
 // At 95.7 % t(9) = 2.354 and t(27) = 2.126: half-widths of the other are 0.392 at 10 seeds, 0.205 at 28.
 TEST(SeveralTargets, APointGoesOnUntilAllAreWithinTheirTolerances) {
   const Target target = viscosity_and({"other", Tolerance::absolute(0.21)});
-  const std::vector<Look> looks = replay_looks(both_alternating(100, 5, 0.5), target, 10, 1000);
-  ASSERT_EQ(looks.size(), 5U);
-  EXPECT_EQ(looks.front().verdict, Verdict::more);
-  EXPECT_EQ(looks.front().each[0].verdict, Verdict::converged);
-  EXPECT_EQ(looks.front().each[1].verdict, Verdict::more);
-  EXPECT_NEAR(looks.front().each[1].half_width, 0.392, 1e-3);
-  EXPECT_NEAR(looks.front().each[1].share, 0.392 / 0.21, 5e-3);
-  EXPECT_NEAR(largest_share(looks.front(), target), 0.392 / 0.21, 5e-3);
-  EXPECT_EQ(looks.back().seeds, 28);
-  EXPECT_EQ(looks.back().verdict, Verdict::converged);
-  EXPECT_NEAR(looks.back().each[1].half_width, 0.205, 1e-3);
-  EXPECT_DOUBLE_EQ(looks.back().each[1].estimate.mean, 5);
-  EXPECT_DOUBLE_EQ(looks.back().controlled.mean, 10);
+  const std::vector<StopTest> stop_tests = replay_stop_tests(both_alternating(100, 5, 0.5), target, 10, 1000);
+  ASSERT_EQ(stop_tests.size(), 5U);
+  EXPECT_EQ(stop_tests.front().verdict, Verdict::more);
+  EXPECT_EQ(stop_tests.front().each[0].verdict, Verdict::converged);
+  EXPECT_EQ(stop_tests.front().each[1].verdict, Verdict::more);
+  EXPECT_NEAR(stop_tests.front().each[1].half_width, 0.392, 1e-3);
+  EXPECT_NEAR(stop_tests.front().each[1].share, 0.392 / 0.21, 5e-3);
+  EXPECT_NEAR(largest_share(stop_tests.front(), target), 0.392 / 0.21, 5e-3);
+  EXPECT_EQ(stop_tests.back().seeds, 28);
+  EXPECT_EQ(stop_tests.back().verdict, Verdict::converged);
+  EXPECT_NEAR(stop_tests.back().each[1].half_width, 0.205, 1e-3);
+  EXPECT_DOUBLE_EQ(stop_tests.back().each[1].estimate.mean, 5);
+  EXPECT_DOUBLE_EQ(stop_tests.back().controlled.mean, 10);
 }
 
 // A mean of 0 has no relative width of its own; 5 % of the viscosity is 0.5, less its error of 0.0785.
 TEST(SeveralTargets, OneMayBeMeasuredByAnother) {
   const Target target = viscosity_and({"N1", relative_to("viscosity", 0.05)});
-  const std::vector<Look> looks = replay_looks(both_alternating(100, 0, 0.5), target, 10, 1000);
-  ASSERT_EQ(looks.size(), 1U);
-  EXPECT_EQ(looks[0].verdict, Verdict::converged);
-  EXPECT_NEAR(looks[0].each[1].share, 0.392 / (0.05 * (10 - 0.0785)), 2e-3);
+  const std::vector<StopTest> stop_tests = replay_stop_tests(both_alternating(100, 0, 0.5), target, 10, 1000);
+  ASSERT_EQ(stop_tests.size(), 1U);
+  EXPECT_EQ(stop_tests[0].verdict, Verdict::converged);
+  EXPECT_NEAR(stop_tests[0].each[1].share, 0.392 / (0.05 * (10 - 0.0785)), 2e-3);
 }
 
 TEST(SeveralTargets, WhatOnlyMeasuresNeedsNoInterval) {
@@ -96,16 +96,16 @@ TEST(SeveralTargets, WhatOnlyMeasuresNeedsNoInterval) {
     outcome.further = {{10.0}};
     outcomes.emplace_back(outcome);
   }
-  const Look look = replay_looks(outcomes, target, 10, 10).at(0);
-  EXPECT_TRUE(std::isnan(look.each[1].half_width));
-  EXPECT_EQ(look.verdict, Verdict::converged);
-  EXPECT_TRUE(without_interval(look, target).empty());
+  const StopTest stop_test = replay_stop_tests(outcomes, target, 10, 10).at(0);
+  EXPECT_TRUE(std::isnan(stop_test.each[1].half_width));
+  EXPECT_EQ(stop_test.verdict, Verdict::converged);
+  EXPECT_TRUE(without_interval(stop_test, target).empty());
 }
 
 // Measures 10 +- s with a half-width of 2.354 s / 3, 5 at s = 6.37: 5 % of what they may be at least is 0.25.
 // The other's half-width is 2.354 * 0.5 / 3 = 0.392: within 5 % of a mean of 10, and of 10 less 2.1.
 TEST(SeveralTargets, TheErrorOfTheMeasureCounts) {
-  const auto look_at = [](double spread) {
+  const auto stop_test_at = [](double spread) {
     Target target{"N1", relative_to("viscosity", 0.05), 0.95};
     Outcomes outcomes;
     for (int seed = 0; seed < 10; ++seed) {
@@ -114,29 +114,30 @@ TEST(SeveralTargets, TheErrorOfTheMeasureCounts) {
       outcome.further = {{10 + spread * sign}};
       outcomes.emplace_back(outcome);
     }
-    return replay_looks(outcomes, target, 10, 10000).at(0);
+    return replay_stop_tests(outcomes, target, 10, 10000).at(0);
   };
-  EXPECT_EQ(look_at(0).verdict, Verdict::converged);  // a constant is exact
-  EXPECT_NEAR(look_at(0).each[0].share, 0.392 / 0.5, 1e-3);
-  EXPECT_EQ(look_at(2.6).verdict, Verdict::converged);
-  EXPECT_EQ(look_at(2.8).verdict, Verdict::more);
-  EXPECT_EQ(look_at(6.37).verdict, Verdict::more);
-  EXPECT_NEAR(look_at(6.37).each[1].half_width, 5, 2e-2);
-  EXPECT_NEAR(look_at(6.37).each[0].share, 0.392 / 0.25, 1e-2);
-  EXPECT_EQ(look_at(20).verdict, Verdict::more);  // it may be 0
+  EXPECT_EQ(stop_test_at(0).verdict, Verdict::converged);  // a constant is exact
+  EXPECT_NEAR(stop_test_at(0).each[0].share, 0.392 / 0.5, 1e-3);
+  EXPECT_EQ(stop_test_at(2.6).verdict, Verdict::converged);
+  EXPECT_EQ(stop_test_at(2.8).verdict, Verdict::more);
+  EXPECT_EQ(stop_test_at(6.37).verdict, Verdict::more);
+  EXPECT_NEAR(stop_test_at(6.37).each[1].half_width, 5, 2e-2);
+  EXPECT_NEAR(stop_test_at(6.37).each[0].share, 0.392 / 0.25, 1e-2);
+  EXPECT_EQ(stop_test_at(20).verdict, Verdict::more);  // it may be 0
 }
 
 // The other's half-width at 10 seeds is 0.392 around a mean of 0.
 TEST(SeveralTargets, AFloorIsEnoughForAMeanOfZero) {
   Tolerance tolerance = 0.05;
-  EXPECT_EQ(
-      replay_looks(both_alternating(10, 0, 0.5), viscosity_and({"N1", tolerance}), 10, 1000).back().verdict,
-      Verdict::more);
+  EXPECT_EQ(replay_stop_tests(both_alternating(10, 0, 0.5), viscosity_and({"N1", tolerance}), 10, 1000)
+                .back()
+                .verdict,
+            Verdict::more);
   tolerance.floor = 0.4;
-  const Look look =
-      replay_looks(both_alternating(10, 0, 0.5), viscosity_and({"N1", tolerance}), 10, 1000).back();
-  EXPECT_EQ(look.verdict, Verdict::converged);
-  EXPECT_NEAR(look.each[1].share, 0.392 / 0.4, 3e-3);
+  const StopTest stop_test =
+      replay_stop_tests(both_alternating(10, 0, 0.5), viscosity_and({"N1", tolerance}), 10, 1000).back();
+  EXPECT_EQ(stop_test.verdict, Verdict::converged);
+  EXPECT_NEAR(stop_test.each[1].share, 0.392 / 0.4, 3e-3);
 }
 
 // A measure that may be zero has no relative width: where the floor counts, it has no part in it.
@@ -144,9 +145,9 @@ TEST(SeveralTargets, AFloorNeedsNoMeasure) {
   Tolerance tolerance = relative_to("other", 0.05);
   tolerance.floor = 0.5;
   const Target target{"viscosity", tolerance, 0.95};
-  const Look look = replay_looks(both_alternating(10, 0, 0.5), target, 10, 1000).back();
-  EXPECT_EQ(look.verdict, Verdict::converged);
-  EXPECT_NEAR(look.each[0].share, 2.354 * 0.1 / 3 / 0.5, 1e-3);
+  const StopTest stop_test = replay_stop_tests(both_alternating(10, 0, 0.5), target, 10, 1000).back();
+  EXPECT_EQ(stop_test.verdict, Verdict::converged);
+  EXPECT_NEAR(stop_test.each[0].share, 2.354 * 0.1 / 3 / 0.5, 1e-3);
 }
 
 // What only measures others has an interval, but no verdict, and holds nothing up.
@@ -158,58 +159,58 @@ TEST(SeveralTargets, AMeasureNeedsNoPrecision) {
     outcome.further = other->further;
     outcomes.emplace_back(outcome);
   }
-  const std::vector<Look> looks = replay_looks(outcomes, target, 10, 1000);
-  ASSERT_EQ(looks.size(), 1U);
-  EXPECT_EQ(looks[0].verdict, Verdict::converged);
-  EXPECT_EQ(looks[0].each[1].verdict, std::nullopt);
-  EXPECT_NEAR(looks[0].each[1].half_width, 2.354 * 3 / 3, 2e-3);
-  EXPECT_NEAR(looks[0].each[0].share, 2.354 * 0.1 / 3 / (0.05 * (10 - 2.354)), 1e-3);
+  const std::vector<StopTest> stop_tests = replay_stop_tests(outcomes, target, 10, 1000);
+  ASSERT_EQ(stop_tests.size(), 1U);
+  EXPECT_EQ(stop_tests[0].verdict, Verdict::converged);
+  EXPECT_EQ(stop_tests[0].each[1].verdict, std::nullopt);
+  EXPECT_NEAR(stop_tests[0].each[1].half_width, 2.354 * 3 / 3, 2e-3);
+  EXPECT_NEAR(stop_tests[0].each[0].share, 2.354 * 0.1 / 3 / (0.05 * (10 - 2.354)), 1e-3);
 }
 
 TEST(SeveralTargets, ASeedWithoutOneOfThemIsLostToThatOne) {
   const Target target = viscosity_and({"other", Tolerance::absolute(1)});
   Outcomes outcomes = both_alternating(10, 5, 0.1);
   outcomes[3]->further = {Observation{}};
-  const std::vector<Look> looks = replay_looks(outcomes, target, 10, 1000);
-  EXPECT_EQ(looks.back().verdict, Verdict::converged_with_losses);
-  EXPECT_EQ(looks.back().lost, 0);
-  EXPECT_EQ(looks.back().each[0].verdict, Verdict::converged);
-  EXPECT_EQ(looks.back().each[1].estimate.count, 9);
+  const std::vector<StopTest> stop_tests = replay_stop_tests(outcomes, target, 10, 1000);
+  EXPECT_EQ(stop_tests.back().verdict, Verdict::converged_with_losses);
+  EXPECT_EQ(stop_tests.back().lost, 0);
+  EXPECT_EQ(stop_tests.back().each[0].verdict, Verdict::converged);
+  EXPECT_EQ(stop_tests.back().each[1].estimate.count, 9);
   for (std::optional<Outcome>& outcome : outcomes) outcome->further = {Observation{}};
-  EXPECT_EQ(replay_looks(outcomes, target, 10, 1000).back().verdict, Verdict::failed);
+  EXPECT_EQ(replay_stop_tests(outcomes, target, 10, 1000).back().verdict, Verdict::failed);
 }
 
 TEST(SeveralTargets, OneThatIsNotMetCapsThePoint) {
   const Target target = viscosity_and({"other", Tolerance::absolute(0.01)});
-  const Look last = replay_looks(both_alternating(13, 5, 0.5), target, 10, 13).back();
+  const StopTest last = replay_stop_tests(both_alternating(13, 5, 0.5), target, 10, 13).back();
   EXPECT_EQ(last.verdict, Verdict::capped);
   EXPECT_EQ(last.each[0].verdict, Verdict::converged);
   EXPECT_EQ(last.each[1].verdict, Verdict::capped);
 }
 
-TEST(SeveralTargets, ATransientOfAnyIsOneOfTheLook) {
+TEST(SeveralTargets, ATransientOfAnyIsOneOfTheStopTest) {
   const Target target = viscosity_and({"other", Tolerance::absolute(1)});
   Outcomes outcomes = both_alternating(10, 5, 0.001);
   for (std::optional<Outcome>& outcome : outcomes) {
     outcome->first_quarter = outcome->first_half = outcome->value;
     outcome->further[0].first_quarter = outcome->further[0].first_half = outcome->further[0].value + 0.1;
   }
-  const Look look = replay_looks(outcomes, target, 10, 1000).back();
-  EXPECT_TRUE(look.transient);
-  EXPECT_FALSE(look.each[0].transient);
-  EXPECT_TRUE(look.each[1].transient);
+  const StopTest stop_test = replay_stop_tests(outcomes, target, 10, 1000).back();
+  EXPECT_TRUE(stop_test.transient);
+  EXPECT_FALSE(stop_test.each[0].transient);
+  EXPECT_TRUE(stop_test.each[1].transient);
   outcomes[0]->further[0].first_half = std::nan("");
-  EXPECT_FALSE(replay_looks(outcomes, target, 10, 1000).back().untested);
+  EXPECT_FALSE(replay_stop_tests(outcomes, target, 10, 1000).back().untested);
   for (std::optional<Outcome>& outcome : outcomes) outcome->further[0].first_half = std::nan("");
-  EXPECT_TRUE(replay_looks(outcomes, target, 10, 1000).back().untested);
+  EXPECT_TRUE(replay_stop_tests(outcomes, target, 10, 1000).back().untested);
 }
 
-// The viscosity alone would stop at the first look. The other's half-width is t(n - 1) 0.527 / sqrt(n): 0.103
-// at the look of 109 seeds, with t = 2.047, and 0.092 at that of 137.
+// The viscosity alone would stop at the first stop test. The other's half-width is t(n - 1) 0.527 / sqrt(n):
+// 0.103 at the stop test of 109 seeds, with t = 2.047, and 0.092 at that of 137.
 TEST(SeveralTargets, TheHardestToKnowTellsHowManySeedsToExpect) {
   const Target target = viscosity_and({"other", Tolerance::absolute(0.1)});
   const Outcomes outcomes = both_alternating(10, 5, 0.5);
-  const int expected = expected_seeds(replay_looks(outcomes, target, 10, 10000), target, 10, 10000);
+  const int expected = expected_seeds(replay_stop_tests(outcomes, target, 10, 10000), target, 10, 10000);
   EXPECT_EQ(expected, 137);
   const Target alone{"viscosity", 0.05, 0.95};
   const Prediction together = predict(outcomes, target, 20, 10000);
@@ -218,8 +219,8 @@ TEST(SeveralTargets, TheHardestToKnowTellsHowManySeedsToExpect) {
   EXPECT_LE(together.seeds.likely, 215);
   Scheduler scheduler({outcomes}, target, 10, 10000);
   EXPECT_FALSE(scheduler.finished());
-  ASSERT_EQ(scheduler.so_far(0).size(), 2U);
-  EXPECT_DOUBLE_EQ(scheduler.so_far(0)[1].mean, 5);
+  ASSERT_EQ(scheduler.all_seeds(0).size(), 2U);
+  EXPECT_DOUBLE_EQ(scheduler.all_seeds(0)[1].mean, 5);
   EXPECT_TRUE(Scheduler({outcomes}, alone, 10, 10000).finished());
 }
 
@@ -227,12 +228,12 @@ TEST(SeveralTargets, ATimeToGoIsThatOfTheHardest) {
   PointForecast point;
   for (int i = 0; i < 10; ++i) point.cost.add(6);
   point.ended = 10;
-  point.so_far = {{10, 10, 0.1 / 3}, {10, 5, 0.5 / 3}};
+  point.all_seeds = {{10, 10, 0.1 / 3}, {10, 5, 0.5 / 3}};
   const Target target = viscosity_and({"other", Tolerance::absolute(0.1)});
   const std::optional<TimeToGo> left = time_to_go({point}, target, 10, 10000, 1);
   ASSERT_TRUE(left);
   EXPECT_GE(left->likely, 99 * 6);
-  point.so_far[1].standard_error = 0.001;
+  point.all_seeds[1].standard_error = 0.001;
   EXPECT_LT(time_to_go({point}, target, 10, 10000, 1)->likely, 10 * 6);
 }
 
@@ -247,14 +248,14 @@ TEST(SeveralTargets, EachIntervalIsHonest) {
   int covered = 0, covered_other = 0;
   for (int replication = 0; replication < replications; ++replication) {
     Outcomes outcomes;
-    Look last;
-    for (const int wanted : look_schedule(10, 1000)) {
+    StopTest last;
+    for (const int wanted : stop_test_schedule(10, 1000)) {
       while (std::ssize(outcomes) < wanted) {
         Outcome outcome{{viscosities(random)}};
         outcome.further = {{others(random)}};
         outcomes.emplace_back(outcome);
       }
-      last = replay_looks(outcomes, target, 10, 1000).back();
+      last = replay_stop_tests(outcomes, target, 10, 1000).back();
       if (last.verdict != Verdict::more) break;
     }
     ASSERT_EQ(last.verdict, Verdict::converged);

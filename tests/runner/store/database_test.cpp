@@ -103,9 +103,9 @@ TEST_F(Databases, TablesThatThisProgramDidNotMakeAreNotRead) {
          CREATE VIEW point AS WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n)
          SELECT i AS point_id, i AS place FROM n)",
       "CREATE TRIGGER more AFTER INSERT ON event BEGIN UPDATE realisation SET cause = 'x'; END",
-      "ALTER TABLE look ADD COLUMN more INTEGER",
-      "ALTER TABLE look ADD COLUMN more BLOB AS (zeroblob(1000000000))",
-      "DROP VIEW estimates; DROP TABLE look",
+      "ALTER TABLE stop_test ADD COLUMN more INTEGER",
+      "ALTER TABLE stop_test ADD COLUMN more BLOB AS (zeroblob(1000000000))",
+      "DROP VIEW estimates; DROP TABLE stop_test",
       "DROP TABLE prediction; CREATE VIRTUAL TABLE prediction USING fts5(point_id)",
   };
   for (const char* const change : changes) {
@@ -271,21 +271,20 @@ TEST_F(Databases, AnUncommittedTransactionLeavesNothing) {
 TEST_F(Databases, NumbersThatDoNotExistAreNull) {
   Database owner = Database::open_owner(path());
   PointStore(owner).adopt(plain_campaign(1, 4, 40, 0.05));
-  Look look;
-  look.seeds = 4;
-  look.lost = 3;
-  look.estimate = {1, 12, std::nan("")};
-  look.half_width = std::nan("");
-  look.controlled = look.estimate;
-  look.controlled_half_width = std::nan("");
-  look.verdict = Verdict::more;
-  ResultStore(owner).store_looks(1, {look});
-  EXPECT_EQ(owner.connection().integer(
-                "SELECT half_width IS NULL AND uncontrolled_half_width IS NULL FROM estimates"),
-            1);
-  ASSERT_EQ(owner.looks(1).size(), 1U);
-  EXPECT_TRUE(std::isnan(owner.looks(1)[0].look.half_width));
-  EXPECT_EQ(owner.looks(1)[0].look.estimate.mean, 12);
+  StopTest stop_test;
+  stop_test.seeds = 4;
+  stop_test.lost = 3;
+  stop_test.estimate = {1, 12, std::nan("")};
+  stop_test.half_width = std::nan("");
+  stop_test.controlled = stop_test.estimate;
+  stop_test.controlled_half_width = std::nan("");
+  stop_test.verdict = Verdict::more;
+  ResultStore(owner).store_stop_tests(1, {stop_test});
+  EXPECT_EQ(
+      owner.connection().integer("SELECT half_width IS NULL AND plain_half_width IS NULL FROM estimates"), 1);
+  ASSERT_EQ(owner.stop_tests(1).size(), 1U);
+  EXPECT_TRUE(std::isnan(owner.stop_tests(1)[0].stop_test.half_width));
+  EXPECT_EQ(owner.stop_tests(1)[0].stop_test.estimate.mean, 12);
 }
 
 }  // namespace

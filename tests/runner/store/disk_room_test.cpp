@@ -63,12 +63,12 @@ class FullDatabase : public testing::Test {
   FullDatabase() {
     create_folders(directory_);
     PointStore(database_).adopt(campaign_);
-    ledger_.emplace(database_, campaign_, directory_, listener_, 2);
+    state_.emplace(database_, campaign_, directory_, listener_, 2);
     pool_.result_size = 40'000;  // more than what is free in a page of the table of results
   }
 
   Dispatcher::Ending run(const DispatchSettings& settings = {}) {
-    Dispatcher dispatcher(database_, *ledger_, pool_, listener_, settings, [this] { return pool_.now; });
+    Dispatcher dispatcher(database_, *state_, pool_, listener_, settings, [this] { return pool_.now; });
     return dispatcher.run();
   }
   // From now on the database cannot grow.
@@ -104,7 +104,7 @@ class FullDatabase : public testing::Test {
   Database database_ = Database::open_owner(directory_.database());
   ScriptedPool pool_{2};
   SilentListener listener_;
-  std::optional<Ledger> ledger_;
+  std::optional<CampaignState> state_;
 };
 
 TEST_F(FullDatabase, LosesNothingGivesOutNothingAndGoesOn) {
@@ -132,7 +132,7 @@ TEST_F(FullDatabase, LosesNothingGivesOutNothingAndGoesOn) {
   EXPECT_NE(listener_.warnings.at(0).find("is full"), std::string::npos);
   // What was taken back with its booking has been told once all the same.
   EXPECT_EQ(listener_.count<SeedEnded>(), count("SELECT count(*) FROM result"));
-  EXPECT_EQ(listener_.count<Looked>(), count("SELECT count(*) FROM look"));
+  EXPECT_EQ(listener_.count<StopTestMade>(), count("SELECT count(*) FROM stop_test"));
   EXPECT_EQ(listener_.count<ShortageBegan>(), 1);
   EXPECT_EQ(listener_.count<ShortageEnded>(), 1);
 }
@@ -181,32 +181,32 @@ TEST_F(FullDatabase, LosesNothingOfWorkersThatHaveTwoJobs) {
   EXPECT_GT(turns, 60);
   EXPECT_EQ(count("SELECT count(*) FROM attempt WHERE outcome = 'result'"),
             count("SELECT count(*) FROM result"));
-  // The others were surplus when the point was decided.
+  // The others were extra when the point was decided.
   EXPECT_EQ(count("SELECT count(*) FROM attempt WHERE outcome NOT IN ('result', 'drained') OR blamed"), 0);
   EXPECT_EQ(count("SELECT count(*) FROM attempt WHERE outcome = 'drained' AND seed < 8"), 0);
   EXPECT_TRUE(spool_files(directory_).empty());
 }
 
 TEST_F(FullDatabase, TellsWhatIsCommittedAndNothingThatWasTakenBack) {
-  const std::int64_t engine = ledger_->admit_engine(plain_engine());
+  const std::int64_t engine = state_->admit_engine(plain_engine());
   {
     const Transaction booking(database_.connection());
-    ledger_->end_attempt(*ledger_->give_out(0, 4711, engine), {AttemptOutcome::crashed});
+    state_->end_attempt(*state_->give_out(0, 4711, engine), {AttemptOutcome::crashed});
   }
-  ledger_->roll_back();
-  ledger_->after_commit();
+  state_->roll_back();
+  state_->after_commit();
   EXPECT_EQ(listener_.count<AttemptFailed>(), 0);
 
   Transaction booking(database_.connection());
-  ledger_->end_attempt(*ledger_->give_out(0, 4711, engine), {AttemptOutcome::crashed});
+  state_->end_attempt(*state_->give_out(0, 4711, engine), {AttemptOutcome::crashed});
   EXPECT_EQ(listener_.count<AttemptFailed>(), 0);
   booking.commit();
-  ledger_->after_commit();
+  state_->after_commit();
   EXPECT_EQ(listener_.count<AttemptFailed>(), 1);
 }
 
 TEST_F(FullDatabase, KeepsARequestUntilThereIsRoom) {
-  RequestHandler requests(database_, *ledger_, directory_, listener_);
+  RequestHandler requests(database_, *state_, directory_, listener_);
   DispatchSettings settings;
   settings.requests = [&] { return requests.carry_out(); };
   int turns = 0;
@@ -246,7 +246,7 @@ TEST_F(FullDatabase, CanBeStoppedAndTheSpoolKeepsTheResults) {
   EXPECT_EQ(spool_files(directory_).size(), 2U);
   make_room();
   const std::int64_t before = count("SELECT count(*) FROM result");
-  ledger_.emplace(database_, campaign_, directory_, listener_, 2);  // the next run
+  state_.emplace(database_, campaign_, directory_, listener_, 2);  // the next run
   EXPECT_EQ(count("SELECT count(*) FROM result"), before + 2);
   EXPECT_TRUE(spool_files(directory_).empty());
 }

@@ -61,7 +61,7 @@ TEST_F(Numbers, GiveTheMeansOfTheResults) {
   ASSERT_EQ(found.size(), 4U);  // g, noise, pressure, stress
   EXPECT_EQ(found[0].estimates[0].mean, (1.0 + 3) / (2 + 2));
   EXPECT_EQ(found[0].estimates[1].mean, 0.5);
-  EXPECT_EQ(found[2].uncontrolled[0].mean, 2);
+  EXPECT_EQ(found[2].plain[0].mean, 2);
   EXPECT_EQ(found[2].estimates[0].mean, 2 + 0.5 - 0.25);
   EXPECT_EQ(found[2].estimates[0].standard_error, 1);  // |3 - 1| / 2
   EXPECT_EQ(found[3].estimates[3].mean, 4);
@@ -74,7 +74,7 @@ TEST_F(Numbers, OfAnEngineThatDescribesNothingCountToo) {
   const std::vector<QuantityEstimate> found = estimates(1);
   ASSERT_EQ(found.size(), 3U);  // control_variates/brownian_pairwise, pressure, relative_viscosity
   EXPECT_EQ(found[1].estimates[0].mean, 20);
-  EXPECT_EQ(found[2].uncontrolled[0].mean, 10);
+  EXPECT_EQ(found[2].plain[0].mean, 10);
   EXPECT_EQ(found[2].estimates[0].mean, 10.25);
 }
 

@@ -187,17 +187,17 @@ TEST_F(Stores, PointsThatLeaveTheSweepStayAndComeBack) {
 }
 
 TEST_F(Stores, LooksOfAnOlderTargetStayInTheHistory) {
-  Look look;
-  look.seeds = 4;
-  look.estimate = {4, 12, 0.1};
-  look.half_width = 0.3;
-  look.verdict = Verdict::converged;
-  ResultStore(database_).store_looks(1, {look});
+  StopTest stop_test;
+  stop_test.seeds = 4;
+  stop_test.estimate = {4, 12, 0.1};
+  stop_test.half_width = 0.3;
+  stop_test.verdict = Verdict::converged;
+  ResultStore(database_).store_stop_tests(1, {stop_test});
   PointStore(database_).adopt(plain_campaign(2, 4, 40, 0.01));
-  EXPECT_TRUE(database_.looks(1).empty());
+  EXPECT_TRUE(database_.stop_tests(1).empty());
   PointStore(database_).adopt(plain_campaign(2, 4, 40, 0.05));
-  ASSERT_EQ(database_.looks(1).size(), 1U);
-  EXPECT_EQ(database_.looks(1)[0].target.target.tolerance, Tolerance(0.05));
+  ASSERT_EQ(database_.stop_tests(1).size(), 1U);
+  EXPECT_EQ(database_.stop_tests(1)[0].target.target.tolerance, Tolerance(0.05));
 }
 
 TEST_F(Stores, AnotherObservableIsTakenFromTheResultsThatAreThere) {
@@ -230,7 +230,7 @@ TEST_F(Stores, ResultsKeptApartNeedNotHaveAnotherObservable) {
   Json bare = plain_result(hash(), 0, 12.5, "old");
   bare["mean"].erase("pressure");
   offer(bare);
-  PointStore(database_).keep_apart(database_.points().at(0), engine_identity(plain_engine("new")));
+  PointStore(database_).set_aside(database_.points().at(0), engine_identity(plain_engine("new")));
   Campaign other = campaign_;
   other.target.observable = "pressure";
   PointStore(database_).adopt(other);

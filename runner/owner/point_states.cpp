@@ -1,17 +1,17 @@
-#include "runner/owner/board.h"
+#include "runner/owner/point_states.h"
 
 #include <algorithm>
 #include <utility>
 
 namespace peclet::runner {
 
-void Board::read_points(Database& database) {
+void PointStates::read_points(Database& database) {
   points_ = database.points();
   places_.clear();
   for (const PointRecord& known : points_) places_[known.hash] = *known.place;
 }
 
-void Board::read_seeds(Database& database, const Campaign& campaign) {
+void PointStates::read_seeds(Database& database, const Campaign& campaign) {
   std::vector<std::vector<std::optional<Outcome>>> outcomes;
   std::vector<SeedId> out;
   processor_.assign(points_.size(), {});
@@ -36,18 +36,18 @@ void Board::read_seeds(Database& database, const Campaign& campaign) {
     scheduler_->set_cancelled(*known.place, known.cancelled);
   }
   for (const SeedId id : out) {
-    // A seed beyond the maximum (it was larger once) has no part in the looks.
+    // A seed beyond the maximum (it was larger once) has no part in the stop tests.
     if (id.seed < maximum_) begin(id);
   }
   apply_bounds();
 }
 
-void Board::set_bounds(Bounds bounds) {
+void PointStates::set_bounds(Bounds bounds) {
   bounds_ = std::move(bounds);
   apply_bounds();
 }
 
-void Board::apply_bounds() {
+void PointStates::apply_bounds() {
   scheduler_->set_allocation(bounds_.budget_seconds ? Allocation::steepest_first : Allocation::longest_first);
   scheduler_->set_ceiling(bounds_.ceiling.value_or(maximum_));
   // A point whose work is not known is taken for an average one.
@@ -61,45 +61,45 @@ void Board::apply_bounds() {
   }
 }
 
-std::optional<int> Board::place_of(const std::string& hash) const {
+std::optional<int> PointStates::place_of(const std::string& hash) const {
   const auto known = places_.find(hash);
   return known == places_.end() ? std::nullopt : std::optional(known->second);
 }
 
-std::optional<int> Board::place_of(std::int64_t point_id) const {
+std::optional<int> PointStates::place_of(std::int64_t point_id) const {
   const auto known = std::find_if(points_.begin(), points_.end(),
                                   [&](const PointRecord& about) { return about.id == point_id; });
   return known == points_.end() ? std::nullopt : known->place;
 }
 
-void Board::add_cost(int place, double wall_seconds, double cpu_seconds) {
+void PointStates::add_cost(int place, double wall_seconds, double cpu_seconds) {
   forecasts_[static_cast<std::size_t>(place)].cost.add(wall_seconds);
   processor_[static_cast<std::size_t>(place)].add(cpu_seconds);
   tell_cost(place);
 }
 
-void Board::begin(SeedId id) {
+void PointStates::begin(SeedId id) {
   scheduler_->begin(id);
   ++running_[static_cast<std::size_t>(id.point)];
 }
 
 // Workers are occupied for the wall time of a seed; a budget is of processor time.
-void Board::tell_cost(int place) {
+void PointStates::tell_cost(int place) {
   const auto number = static_cast<std::size_t>(place);
   const Cost& cost = bounds_.budget_seconds ? processor_[number] : forecasts_[number].cost;
   if (cost.count() > 0) scheduler_->set_cost(place, cost.mean());
 }
 
-std::optional<double> Board::wall_seconds(int place) const {
+std::optional<double> PointStates::wall_seconds(int place) const {
   const Cost& cost = forecasts_.at(static_cast<std::size_t>(place)).cost;
   return cost.count() > 0 ? std::optional(cost.mean()) : std::nullopt;
 }
 
-const std::vector<PointForecast>& Board::forecasts(
+const std::vector<PointForecast>& PointStates::forecasts(
     std::map<std::int64_t, std::vector<Unfinished>> unfinished) {
   for (int place = 0; place < size(); ++place) {
     PointForecast& known = forecasts_[static_cast<std::size_t>(place)];
-    known.so_far = scheduler_->so_far(place);
+    known.all_seeds = scheduler_->all_seeds(place);
     known.ended = scheduler_->all_ended(place);
     known.running = scheduler_->begun(place) - known.ended;
     known.decided = scheduler_->decided(place) || scheduler_->cancelled(place);

@@ -19,7 +19,7 @@
 #include "runner/campaign/paths.h"
 #include "runner/engines/worker_process.h"
 #include "runner/owner/after_commit.h"
-#include "runner/owner/board.h"
+#include "runner/owner/point_states.h"
 #include "runner/owner/run_listener.h"
 #include "runner/store/campaign_directory.h"
 #include "runner/store/point_store.h"
@@ -41,12 +41,12 @@ struct GivenSeed {
   Job job;
 };
 
-class Ledger {
+class CampaignState {
  public:
   // Requires that the database has adopted the campaign. Takes in what earlier runs left in the spool, then
-  // puts the seeds of a dead owner back. All references must outlive the ledger.
-  Ledger(Database& database, const Campaign& campaign, CampaignDirectory directory, RunListener& listener,
-         int retries);
+  // puts the seeds of a dead owner back. All references must outlive the state.
+  CampaignState(Database& database, const Campaign& campaign, CampaignDirectory directory,
+                RunListener& listener, int retries);
 
   // From now on. With a budget seeds go where they lower the summed relative error most, without one to the
   // point that will take longest.
@@ -73,8 +73,8 @@ class Ledger {
   void warn(std::string text) { changes_.after.warn(std::move(text)); }
   void renew_lease(const GivenSeed& given_seed, const JobProgress& progress);
 
-  // The seeds that the next looks need and nobody runs, with `ahead` those of the looks after them, too. They
-  // are out from now on; the caller hands them over.
+  // The seeds that the next stop tests need and nobody runs, with `ahead` those of the looks after them, too.
+  // They are out from now on; the caller hands them over.
   std::vector<SeedId> draw(bool ahead);
   // Nothing for a point that has left the sweep.
   std::optional<SeedId> identify(std::int64_t point_id, int seed) const;
@@ -98,8 +98,8 @@ class Ledger {
   // observable.
   void take_over(const Campaign& campaign);
   // Takes the picture from the database again, to which others have written within the transaction, and
-  // stores the looks and seeds that follow. Throws OtherEngine as admit_engine(). The places of the seeds
-  // that workers have are then to be found with find_place().
+  // stores the stop tests and seeds that follow. Throws OtherEngine as admit_engine(). The places of the
+  // seeds that workers have are then to be found with find_place().
   void refresh();
   // Drops what was to follow a transaction that failed, and takes the picture from the database again. The
   // places of seeds are then to be found as after refresh().
@@ -113,8 +113,8 @@ class Ledger {
   void after_commit();
 
   const Campaign& campaign() const { return next_campaign_ ? *next_campaign_ : campaign_; }
-  const PointRecord& point(int place) const { return board_.point(place); }
-  const Scheduler& scheduler() const { return board_.scheduler(); }
+  const PointRecord& point(int place) const { return point_states_.point(place); }
+  const Scheduler& scheduler() const { return point_states_.scheduler(); }
   // Processor time that this run's attempts took: that of results, and of others the time times the threads.
   // A result that began in an earlier run counts with what it took in this one.
   double spent_seconds() const { return committed_.spent_seconds + changes_.spent_seconds; }
@@ -127,10 +127,10 @@ class Ledger {
   void remove_late_checkpoints();
   // Nothing for a file that is no checkpoint of a point in the sweep.
   std::optional<SeedId> seed_of_checkpoint(const fs::path& file) const;
-  void read_board();
-  void book_looks();
+  void read_point_states();
+  void book_stop_tests();
   void refuse_other_engine(const std::string& identity) const;
-  // Whether the seed has a part in the looks.
+  // Whether the seed has a part in the stop tests.
   bool takes_part(SeedId id) const {
     return id.point != nowhere && id.seed < campaign().maximum_realisations;
   }
@@ -148,7 +148,7 @@ class Ledger {
   void take(const RealisationResult& result, const fs::path& spool);
   void note_lacking(const RealisationResult& result);
   void book_outcome(SeedId id, const Outcome& outcome);
-  void store_looks(int place, std::size_t known);
+  void store_stop_tests(int place, std::size_t known);
   void turn_down(const fs::path& spool, const std::string& why);
 
   Database& database_;
@@ -160,7 +160,7 @@ class Ledger {
   CampaignDirectory directory_;
   RunListener& listener_;
   int retries_;
-  Board board_;
+  PointStates point_states_;
   std::string engine_;  // identity of the one that runs; "" before one has
   struct Lacking {
     std::string observable;  // of the target, that results do not have
@@ -171,7 +171,7 @@ class Ledger {
     AfterCommit after;
     double spent_seconds = 0;
     std::optional<Lacking> lacking;
-    bool are_on_board = false;  // a result has changed the board
+    bool have_changed_points = false;  // a result has changed the board
     void add(Changes&& later);
   };
   Changes changes_;                        // of the open transaction

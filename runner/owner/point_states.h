@@ -1,5 +1,5 @@
 // Where every point of a running campaign stands: its record, the scheduler's picture, what its seeds cost
-// and how many of them workers have. In memory only; the ledger keeps it in step with the database.
+// and how many of them workers have. In memory only; the state keeps it in step with the database.
 #pragma once
 
 #include <map>
@@ -23,7 +23,7 @@ struct Bounds {
 
 constexpr int nowhere = -1;
 
-class Board {
+class PointStates {
  public:
   // Reads the records of the points in the sweep, without what their seeds did.
   void read_points(Database& database);

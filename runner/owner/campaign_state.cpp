@@ -1,4 +1,4 @@
-#include "runner/owner/ledger.h"
+#include "runner/owner/campaign_state.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -55,8 +55,8 @@ bool is_of_the_result(const std::exception& error) {
 
 }  // namespace
 
-Ledger::Ledger(Database& database, const Campaign& campaign, CampaignDirectory directory,
-               RunListener& listener, int retries)
+CampaignState::CampaignState(Database& database, const Campaign& campaign, CampaignDirectory directory,
+                             RunListener& listener, int retries)
     : database_(database),
       seeds_(database),
       results_(database),
@@ -67,37 +67,37 @@ Ledger::Ledger(Database& database, const Campaign& campaign, CampaignDirectory d
       listener_(listener),
       retries_(retries) {
   move_intruders_aside(directory_, [&](const std::string& text) { listener_.warn(text); });
-  board_.read_points(database_);
+  point_states_.read_points(database_);
   ingest_spool();
   if (const int recovered = seeds_.recover(); recovered > 0) {
     listener_.note(fmt::format("{} seeds that an earlier run left unfinished go on", recovered));
   }
   remove_files_of_the_dead(database_, directory_);
-  read_board();
+  read_point_states();
   remove_late_checkpoints();
   Transaction booking(database_.connection());
-  book_looks();
+  book_stop_tests();
   booking.commit();
   after_commit();
 }
 
 // A worker that outlived its owner may have saved one after its seed had ended elsewhere. Files are few where
 // seeds are many.
-void Ledger::remove_late_checkpoints() {
+void CampaignState::remove_late_checkpoints() {
   for (const fs::path& file : whole_files(directory_.checkpoints())) {
     const std::optional<SeedId> id = seed_of_checkpoint(checkpoint_of(file));
     if (id && has_ended(*id)) fs::remove(file);
   }
 }
 
-std::optional<SeedId> Ledger::seed_of_checkpoint(const fs::path& file) const {
+std::optional<SeedId> CampaignState::seed_of_checkpoint(const fs::path& file) const {
   const std::string name = file.filename().string();
   const std::size_t hyphen = name.find('-');
   if (hyphen == std::string::npos) return std::nullopt;
   const std::string_view hash = std::string_view(name).substr(0, hyphen);
   int seed = 0;
   std::from_chars(name.data() + hyphen + 1, name.data() + name.size(), seed);
-  for (const PointRecord& known : board_.points()) {
+  for (const PointRecord& known : point_states_.points()) {
     // However the name is to be read: there is one way to write it.
     if (known.hash.starts_with(hash) && directory_.checkpoint(known.hash, seed) == file)
       return SeedId{*known.place, seed};
@@ -105,51 +105,52 @@ std::optional<SeedId> Ledger::seed_of_checkpoint(const fs::path& file) const {
   return std::nullopt;
 }
 
-void Ledger::book_looks() {
-  for (int place = 0; place < board_.size(); ++place) {
-    store_looks(place, database_.looks(point(place).id).size());
+void CampaignState::book_stop_tests() {
+  for (int place = 0; place < point_states_.size(); ++place) {
+    store_stop_tests(place, database_.stop_tests(point(place).id).size());
     if (!scheduler().decided(place)) seeds_.enqueue(point(place).id, scheduler().wanted(place));
   }
 }
 
-void Ledger::read_board() {
-  board_.read_seeds(database_, campaign());
-  for (int place = 0; place < board_.size(); ++place) leave_to_batch_system(place);
+void CampaignState::read_point_states() {
+  point_states_.read_seeds(database_, campaign());
+  for (int place = 0; place < point_states_.size(); ++place) leave_to_batch_system(place);
 }
 
-void Ledger::roll_back() {
+void CampaignState::roll_back() {
   changes_ = {};
   next_campaign_.reset();
-  board_.read_points(database_);
-  read_board();
+  point_states_.read_points(database_);
+  read_point_states();
 }
 
 // `known` looks of the point are stored already.
-void Ledger::store_looks(int place, std::size_t known) {
-  const std::vector<Look>& looks = scheduler().looks(place);
-  results_.store_looks(point(place).id, looks);
-  for (std::size_t i = known; i < looks.size(); ++i) changes_.after.tell(Looked{point_name(place), looks[i]});
-  if (looks.size() > known && scheduler().decided(place)) {
-    changes_.after.tell(Decided{point_name(place), looks.back()});
+void CampaignState::store_stop_tests(int place, std::size_t known) {
+  const std::vector<StopTest>& stop_tests = scheduler().stop_tests(place);
+  results_.store_stop_tests(point(place).id, stop_tests);
+  for (std::size_t i = known; i < stop_tests.size(); ++i)
+    changes_.after.tell(StopTestMade{point_name(place), stop_tests[i]});
+  if (stop_tests.size() > known && scheduler().decided(place)) {
+    changes_.after.tell(Decided{point_name(place), stop_tests.back()});
   }
 }
 
-void Ledger::book_outcome(SeedId id, const Outcome& outcome) {
-  const std::size_t known = scheduler().looks(id.point).size();
-  if (!board_.scheduler().end(id, outcome)) return;
+void CampaignState::book_outcome(SeedId id, const Outcome& outcome) {
+  const std::size_t known = scheduler().stop_tests(id.point).size();
+  if (!point_states_.scheduler().end(id, outcome)) return;
   const PointRecord& about = point(id.point);
-  store_looks(id.point, known);
+  store_stop_tests(id.point, known);
   if (!scheduler().decided(id.point)) {
     seeds_.enqueue(about.id, scheduler().wanted(id.point));
     return;
   }
-  const Look& last = scheduler().looks(id.point).back();
+  const StopTest& last = scheduler().stop_tests(id.point).back();
   const std::string message = fmt::format("{} after {} seeds", to_string(last.verdict), last.seeds);
   events_.write("decided", about.id, std::nullopt, message);
   changes_.after.note(fmt::format("{}: {}", about.label, message));
 }
 
-std::optional<GivenSeed> Ledger::give_out(int worker, std::int64_t process, std::int64_t engine) {
+std::optional<GivenSeed> CampaignState::give_out(int worker, std::int64_t process, std::int64_t engine) {
   const std::optional<SeedId> id = next();
   if (!id) return std::nullopt;
   const PointRecord& about = point(id->point);
@@ -161,11 +162,11 @@ std::optional<GivenSeed> Ledger::give_out(int worker, std::int64_t process, std:
   given_seed.job.checkpoint = directory_.checkpoint(about.hash, id->seed);
   given_seed.job.spool = directory_.spool_file(about.hash, id->seed, given_seed.job.attempt);
   given_seed.job.failures = directory_.failures();
-  board_.begin(*id);
+  point_states_.begin(*id);
   return given_seed;
 }
 
-void Ledger::end_attempt(const GivenSeed& given_seed, const AttemptEnd& end) {
+void CampaignState::end_attempt(const GivenSeed& given_seed, const AttemptEnd& end) {
   leave(given_seed);
   changes_.spent_seconds += end.held_seconds;
   seeds_.end_attempt(given_seed.job.attempt, end);
@@ -180,7 +181,7 @@ void Ledger::end_attempt(const GivenSeed& given_seed, const AttemptEnd& end) {
       AttemptFailed{point_name(given_seed), given_seed.id.seed, end.outcome, end.message, fate.quarantine});
   if (!fate.quarantine) {
     seeds_.requeue(given_seed.point_id, given_seed.id.seed);
-    if (takes_part(given_seed.id)) board_.scheduler().give_back(given_seed.id);
+    if (takes_part(given_seed.id)) point_states_.scheduler().give_back(given_seed.id);
     return;
   }
   seeds_.quarantine(given_seed.point_id, given_seed.id.seed, fate.cause);
@@ -189,18 +190,19 @@ void Ledger::end_attempt(const GivenSeed& given_seed, const AttemptEnd& end) {
   if (takes_part(given_seed.id)) book_outcome(given_seed.id, Outcome{});
 }
 
-void Ledger::leave(const GivenSeed& given_seed) {
-  if (takes_part(given_seed.id)) board_.leave(given_seed.id);
+void CampaignState::leave(const GivenSeed& given_seed) {
+  if (takes_part(given_seed.id)) point_states_.leave(given_seed.id);
 }
 
-void Ledger::renew_lease(const GivenSeed& given_seed, const JobProgress& progress) {
+void CampaignState::renew_lease(const GivenSeed& given_seed, const JobProgress& progress) {
   seeds_.renew_lease(given_seed.job.attempt, phase_name(progress.phase), progress.step, progress.steps,
                      progress.strain);
 }
 
-void Ledger::refuse_other_engine(const std::string& identity) const {
-  for (const PointRecord& about : board_.points()) {
-    if (board_.is_to_be_run(about) && !about.engine_identity.empty() && about.engine_identity != identity) {
+void CampaignState::refuse_other_engine(const std::string& identity) const {
+  for (const PointRecord& about : point_states_.points()) {
+    if (point_states_.is_to_be_run(about) && !about.engine_identity.empty() &&
+        about.engine_identity != identity) {
       throw OtherEngine(
           fmt::format("{}: has results of engine {}, but the engine now is {}; one point never mixes two",
                       about.label, about.engine_identity, identity));
@@ -208,7 +210,7 @@ void Ledger::refuse_other_engine(const std::string& identity) const {
   }
 }
 
-std::int64_t Ledger::admit_engine(const Json& engine) {
+std::int64_t CampaignState::admit_engine(const Json& engine) {
   std::string identity;
   try {
     identity = engine_identity(engine);
@@ -224,13 +226,13 @@ std::int64_t Ledger::admit_engine(const Json& engine) {
   return engine_row(database_, engine);
 }
 
-void Ledger::Changes::add(Changes&& later) {
+void CampaignState::Changes::add(Changes&& later) {
   after.add(std::move(later.after));
   spent_seconds += later.spent_seconds;
   if (later.lacking) lacking = std::move(later.lacking);
 }
 
-void Ledger::after_commit() {
+void CampaignState::after_commit() {
   if (next_campaign_) campaign_ = *std::exchange(next_campaign_, std::nullopt);
   committed_.add(std::exchange(changes_, {}));
   committed_.after.carry_out(listener_, removal_);
@@ -240,60 +242,60 @@ void Ledger::after_commit() {
   }
 }
 
-RunReport Ledger::report(int workers) {
+RunReport CampaignState::report(int workers) {
   RunReport report;
-  report.points = board_.size();
+  report.points = point_states_.size();
   report.has_target = campaign_.target.has_tolerance();
   for (int place = 0; place < report.points; ++place) {
-    const std::vector<Look>& looks = scheduler().looks(place);
+    const std::vector<StopTest>& stop_tests = scheduler().stop_tests(place);
     const bool decided = scheduler().decided(place);
     const bool is_left_alone = !decided && scheduler().cancelled(place);
     report.cancelled += is_left_alone ? 1 : 0;
     report.decided += decided ? 1 : 0;
-    report.converged += decided && is_reached(looks.back().verdict) ? 1 : 0;
+    report.converged += decided && is_reached(stop_tests.back().verdict) ? 1 : 0;
     report.seeds_ended += scheduler().ended(place);
     report.seeds_wanted += is_left_alone ? scheduler().ended(place) : scheduler().wanted(place);
   }
   report.spent_seconds = spent_seconds();
-  report.budget_seconds = board_.bounds().budget_seconds;
+  report.budget_seconds = point_states_.bounds().budget_seconds;
   // No forecast under a budget or a ceiling: not every point will be decided.
-  if (board_.bounds().ceiling || report.budget_seconds) return report;
-  report.to_go = time_to_go(board_.forecasts(database_.unfinished()), campaign_.target,
+  if (point_states_.bounds().ceiling || report.budget_seconds) return report;
+  report.to_go = time_to_go(point_states_.forecasts(database_.unfinished()), campaign_.target,
                             campaign_.minimum_realisations, campaign_.maximum_realisations, workers);
   return report;
 }
 
-std::string Ledger::name(SeedId id) const {
+std::string CampaignState::name(SeedId id) const {
   return fmt::format("{} seed {}", point(id.point).label, id.seed);
 }
 
-PointName Ledger::point_name(int place) const { return {point(place).label, point(place).hash}; }
+PointName CampaignState::point_name(int place) const { return {point(place).label, point(place).hash}; }
 
 // A point that has left the sweep is known by its hash alone.
-PointName Ledger::point_name(const GivenSeed& given_seed) const {
+PointName CampaignState::point_name(const GivenSeed& given_seed) const {
   return {given_seed.id.point == nowhere ? given_seed.job.point : point(given_seed.id.point).label,
           given_seed.job.point};
 }
 
-std::string Ledger::name_of(const GivenSeed& given_seed) const {
+std::string CampaignState::name_of(const GivenSeed& given_seed) const {
   if (given_seed.id.point != nowhere) return name(given_seed.id);
   return fmt::format("{} (no longer in the sweep) seed {}", given_seed.job.point.substr(0, 12),
                      given_seed.id.seed);
 }
 
-void Ledger::set_bounds(Bounds bounds) { board_.set_bounds(std::move(bounds)); }
+void CampaignState::set_bounds(Bounds bounds) { point_states_.set_bounds(std::move(bounds)); }
 
-std::optional<double> Ledger::wall_seconds(const GivenSeed& given_seed) const {
-  return given_seed.id.point == nowhere ? std::nullopt : board_.wall_seconds(given_seed.id.point);
+std::optional<double> CampaignState::wall_seconds(const GivenSeed& given_seed) const {
+  return given_seed.id.point == nowhere ? std::nullopt : point_states_.wall_seconds(given_seed.id.point);
 }
 
-std::optional<SeedId> Ledger::next() const {
-  const std::optional<double> budget = board_.bounds().budget_seconds;
+std::optional<SeedId> CampaignState::next() const {
+  const std::optional<double> budget = point_states_.bounds().budget_seconds;
   if (!budget) return scheduler().next();
-  return scheduler().next_within(*budget - spent_seconds() - board_.expected_seconds());
+  return scheduler().next_within(*budget - spent_seconds() - point_states_.expected_seconds());
 }
 
-void Ledger::ingest_spool() {
+void CampaignState::ingest_spool() {
   removal_.finish();  // of what has been taken already
   ingest_spool_of(directory_);
   const BundleStore book(database_.connection());
@@ -322,33 +324,34 @@ void Ledger::ingest_spool() {
   removal_.finish();
 }
 
-void Ledger::leave_to_batch_system(int place) {
+void CampaignState::leave_to_batch_system(int place) {
   const BundleStore book(database_.connection());
   for (const int seed : book.seeds_out_of_point(point(place).id)) {
-    // A seed beyond the maximum (it was larger once) has no part in the looks.
+    // A seed beyond the maximum (it was larger once) has no part in the stop tests.
     if (seed < campaign().maximum_realisations && !has_ended({place, seed}))
-      board_.scheduler().begin({place, seed});
+      point_states_.scheduler().begin({place, seed});
   }
 }
 
-std::vector<SeedId> Ledger::draw(bool ahead) {
+std::vector<SeedId> CampaignState::draw(bool ahead) {
   std::vector<SeedId> drawn;
   while (const std::optional<SeedId> id = scheduler().next()) {
     if (!ahead && id->seed >= scheduler().wanted(id->point)) break;
-    board_.scheduler().begin(*id);
+    point_states_.scheduler().begin(*id);
     drawn.push_back(*id);
   }
   return drawn;
 }
 
-std::optional<SeedId> Ledger::identify(std::int64_t point_id, int seed) const {
-  const std::optional<int> place = board_.place_of(point_id);
+std::optional<SeedId> CampaignState::identify(std::int64_t point_id, int seed) const {
+  const std::optional<int> place = point_states_.place_of(point_id);
   return place ? std::optional(SeedId{*place, seed}) : std::nullopt;
 }
 
-bool Ledger::has_ended(SeedId id) { return seeds_.has_ended(point(id.point).id, id.seed); }
+bool CampaignState::has_ended(SeedId id) { return seeds_.has_ended(point(id.point).id, id.seed); }
 
-void Ledger::end_handed_over(SeedId id, int task, const AttemptReport& report, const fs::path& checkpoint) {
+void CampaignState::end_handed_over(SeedId id, int task, const AttemptReport& report,
+                                    const fs::path& checkpoint) {
   const PointRecord& about = point(id.point);
   seeds_.attempt_elsewhere(about.id, id.seed, task, report);
   if (has_ended(id)) return;
@@ -369,40 +372,41 @@ void Ledger::end_handed_over(SeedId id, int task, const AttemptReport& report, c
   book_outcome(id, Outcome{});
 }
 
-void Ledger::take_back(SeedId id) {
-  if (id.seed < campaign().maximum_realisations && !has_ended(id)) board_.scheduler().give_back(id);
+void CampaignState::take_back(SeedId id) {
+  if (id.seed < campaign().maximum_realisations && !has_ended(id)) point_states_.scheduler().give_back(id);
 }
 
-void Ledger::take_over(const Campaign& campaign) {
+void CampaignState::take_over(const Campaign& campaign) {
   rows_.take_over(campaign);
   next_campaign_ = campaign;
 }
 
-void Ledger::refresh() {
-  board_.read_points(database_);
-  read_board();
-  book_looks();
+void CampaignState::refresh() {
+  point_states_.read_points(database_);
+  read_point_states();
+  book_stop_tests();
   if (has_engine()) refuse_other_engine(engine_);
 }
 
-bool Ledger::find_place(GivenSeed& given_seed) const {
-  given_seed.id.point = board_.place_of(given_seed.job.point).value_or(nowhere);
+bool CampaignState::find_place(GivenSeed& given_seed) const {
+  given_seed.id.point = point_states_.place_of(given_seed.job.point).value_or(nowhere);
   return takes_part(given_seed.id) && !scheduler().cancelled(given_seed.id.point);
 }
 
-int Ledger::accept_engine(const std::string& identity) {
+int CampaignState::accept_engine(const std::string& identity) {
   int points = 0;
   std::set<std::string> folders{directory_.root().string()};
   const BundleStore book(database_.connection());
   if (const std::string shared = book.last_shared(); !shared.empty()) folders.insert(shared);
   for (const BundleRecord& bundle : book.open_bundles()) folders.insert(bundle.shared);
   Transaction booking(database_.connection());
-  for (const PointRecord& about : board_.points()) {
-    if (!board_.is_to_be_run(about) || about.engine_identity.empty() || about.engine_identity == identity)
+  for (const PointRecord& about : point_states_.points()) {
+    if (!point_states_.is_to_be_run(about) || about.engine_identity.empty() ||
+        about.engine_identity == identity)
       continue;
-    rows_.keep_apart(about, identity);
+    rows_.set_aside(about, identity);
     changes_.after.note(
-        fmt::format("{}: results of engine {} are kept apart", about.label, about.engine_identity));
+        fmt::format("{}: results of engine {} are set aside", about.label, about.engine_identity));
     ++points;
     // Another engine could not go on from where they stand.
     for (const RealisationRecord& record : database_.realisations(about.id)) {
@@ -417,13 +421,13 @@ int Ledger::accept_engine(const std::string& identity) {
   return points;
 }
 
-// How the ledger takes a result in: wholly or not at all.
+// How the state takes a result in: wholly or not at all.
 //
 // A result comes from outside, and what is done with it touches six tables, the scheduler's picture and what
 // is to happen after the commit. Whatever fails on the way, nothing of it may stay: what was half stored
 // would be counted.
 
-std::string Ledger::take_whole(const fs::path& spool, const Reading& read, const Booking& book) {
+std::string CampaignState::take_whole(const fs::path& spool, const Reading& read, const Booking& book) {
   Changes of_others = std::exchange(changes_, {});
   bool is_taken = false;
   std::string why;
@@ -442,12 +446,12 @@ std::string Ledger::take_whole(const fs::path& spool, const Reading& read, const
     changes_.add(std::move(of_result));
     return "";
   }
-  if (of_result.are_on_board) read_board();
+  if (of_result.have_changed_points) read_point_states();
   turn_down(spool, why);
   return why;
 }
 
-void Ledger::take(const RealisationResult& result, const fs::path& spool) {
+void CampaignState::take(const RealisationResult& result, const fs::path& spool) {
   const StoredResult stored = results_.store(result, campaign_.target);
   const auto take_in = [&] {
     take_files(database_.connection(), directory_, result, spool, stored,
@@ -478,16 +482,16 @@ void Ledger::take(const RealisationResult& result, const fs::path& spool) {
       turn_down(spool, "it belongs to no point of this campaign");
       return;
   }
-  const std::optional<int> place = board_.place_of(result.point);
+  const std::optional<int> place = point_states_.place_of(result.point);
   if (stored.what == Stored::duplicate || !place) return;
   if (result.completed()) note_lacking(result);
   const bool is_lost = stored.outcome.is_lost();
   const std::optional<double> value = is_lost ? std::nullopt : std::optional(stored.outcome.value);
   const double cpu_seconds = cost_of(result, "cpu_seconds");
   changes_.after.tell(SeedEnded{point_name(*place), result.seed, stored.cause, value, cpu_seconds});
-  if (!board_.has_seeds()) return;  // it is found when they are read
-  changes_.are_on_board = true;
-  board_.add_cost(*place, cost_of(result, "wall_seconds"), cpu_seconds);
+  if (!point_states_.has_seeds()) return;  // it is found when they are read
+  changes_.have_changed_points = true;
+  point_states_.add_cost(*place, cost_of(result, "wall_seconds"), cpu_seconds);
   if (is_lost) {
     changes_.after.note(fmt::format("{}: ended with {}{}{}", name({*place, result.seed}), stored.cause,
                                     stored.reason.empty() ? "" : ": ", stored.reason));
@@ -495,14 +499,14 @@ void Ledger::take(const RealisationResult& result, const fs::path& spool) {
   book_outcome({*place, result.seed}, stored.outcome);
 }
 
-void Ledger::note_lacking(const RealisationResult& result) {
+void CampaignState::note_lacking(const RealisationResult& result) {
   const std::string name = lacking_in(result.document, campaign_.target.observables());
   if (name.empty()) return;
   const std::string names = names_of_targets(result.document);
   changes_.lacking = {name, names.empty() ? "none" : names};
 }
 
-void Ledger::turn_down(const fs::path& spool, const std::string& why) {
+void CampaignState::turn_down(const fs::path& spool, const std::string& why) {
   const std::string message = fmt::format("{} is not taken: {}", plain_name(spool), why);
   events_.write("rejected", message);
   // Of a crowd nobody reads every name.
@@ -513,7 +517,7 @@ void Ledger::turn_down(const fs::path& spool, const std::string& why) {
   if (is_there(spool)) changes_.after.reject(spool);
 }
 
-void Ledger::ingest_spool_of(const CampaignDirectory& directory) {
+void CampaignState::ingest_spool_of(const CampaignDirectory& directory) {
   turned_down_ = 0;
   // Some at a time, because each commit waits for the disk: a crash in between finds the rest where it was.
   const std::vector<fs::path> files = spool_files(directory);
@@ -530,7 +534,7 @@ void Ledger::ingest_spool_of(const CampaignDirectory& directory) {
   }
 }
 
-void Ledger::ingest(const fs::path& file) {
+void CampaignState::ingest(const fs::path& file) {
   const auto read = [&file] {
     RealisationResult result = read_spool_file(file, "");
     // An engine that answers with another seed's result may die before it is found out.
@@ -540,8 +544,8 @@ void Ledger::ingest(const fs::path& file) {
   take_whole(file, read, [&](const RealisationResult& result) { take(result, file); });
 }
 
-bool Ledger::take_result(const GivenSeed& given_seed, const std::string& sha256, std::int64_t step,
-                         double held_seconds, std::string& why) {
+bool CampaignState::take_result(const GivenSeed& given_seed, const std::string& sha256, std::int64_t step,
+                                double held_seconds, std::string& why) {
   turned_down_ = 0;
   const auto read = [&] {
     RealisationResult result = read_spool_file(given_seed.job.spool, sha256);
