@@ -125,11 +125,11 @@ class Results:
 
     def estimates(self, quantity=None):
         """A row for each point: the swept parameters, label, verdict, seeds and lost ones; and `count`, `mean`,
-        `standard_error` and `half_width` of the 95 % interval (of the campaign's confidence) at the point's last stop test,
-        with the control variate where there is one. Those of the target, by which the campaign stops, or of another
+        `standard_error` and `half_width` of the 95 % interval (of the campaign's confidence) at the point's last stop
+        test, with the control variate where there is one. Those of the target, by which the campaign stops, or of another
         single number, such as pressure, stress/total/xy or transient/shear_stress/3; the half-width of such is
-        Student's, or of shares Clopper and Pearson's. `provisional` rows have had no stop test yet: their mean is that of
-        all seeds so far, and has no interval. `jammed`: half of the seeds or more have jammed, as `peclet jamming`
+        Student's, or of shares Clopper and Pearson's. `provisional` rows have had no stop test yet: their mean is that
+        of all seeds so far, and has no interval. `jammed`: half of the seeds or more have jammed, as `peclet jamming`
         counts them; such a point has no viscosity."""
         rows, axes = self._named(self._rows("csv"))
         for row in rows:
@@ -238,8 +238,8 @@ class Results:
         log       logarithmic axes: "", "x", "y" or "xy"; those that fit unless given
         where     values of swept parameters by name: of the points that have them
 
-        Open marks are points that have not converged; without a bar they have had no stop test yet. Crosses have jammed: at
-        their number, or at the edge of the frame where they have none.
+        Open marks are points that have not converged; without a bar they have had no stop test yet. Crosses have jammed:
+        at their number, or at the edge of the frame where they have none.
         """
         try:
             import matplotlib.pyplot as pyplot

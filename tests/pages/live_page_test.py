@@ -120,12 +120,12 @@ class Life(LiveTest):
         name, database = self.copy()
         page = self.look(self.serve(name))
         with database:
-            database.execute("UPDATE look SET count = count + 1")
+            database.execute("UPDATE stop_test SET count = count + 1")
             database.execute("UPDATE realisation SET cpu_seconds = cpu_seconds + 1")
         page.wait_for(f"{LIVE}.startsWith('The campaign cannot be read: ')")
         self.assertEqual(page.evaluate("document.querySelectorAll('#results tbody tr').length"), 9)
         with database:
-            database.execute("UPDATE look SET count = count - 1")
+            database.execute("UPDATE stop_test SET count = count - 1")
         database.close()
         page.wait_for(f"{LIVE}.startsWith('Live; ')")
 

@@ -92,9 +92,9 @@ class Numbers(PageTest):
         for label, row in exported.items():
             choose(page, "#point select", label)
             running = rows(saved(page, "#point figure:nth-child(1)", "CSV"))
-            looks = [one for one in running if one["kind"] == "look"]
-            self.assertEqual(float(looks[-1]["mean"]), float(row["mean"]))
-            self.assertAlmostEqual(float(looks[-1]["good_enough"]), 0.3 * abs(float(row["mean"])), places=12)
+            tests = [one for one in running if one["kind"] == "stop test"]
+            self.assertEqual(float(tests[-1]["mean"]), float(row["mean"]))
+            self.assertAlmostEqual(float(tests[-1]["good_enough"]), 0.3 * abs(float(row["mean"])), places=12)
             values = [float(one["value"]) for one in rows(saved(page, "#point figure:nth-child(3)", "CSV"))]
             self.assertEqual(len(values), int(row["count"]))
             for line in (one for one in running if one["kind"] == "running"):

@@ -69,7 +69,9 @@ class Figures(PageTest):
                     and (row["quantity"], row["axis_1_value"]) == (name or quantity, element if name else "")
                 ]
                 # Of the target the stop test's, which sums in another order and has a wider interval.
-                expected = point["stop_test"] if quantity == QUANTITIES[0] else {key: float(row[key]) for key in NUMBERS}
+                expected = (
+                    point["stop_test"] if quantity == QUANTITIES[0] else {key: float(row[key]) for key in NUMBERS}
+                )
                 self.assertEqual({key: mark[key] for key in NUMBERS}, {key: expected[key] for key in NUMBERS})
                 self.assertEqual(mark["count"], int(row["count"]))
                 self.assertAlmostEqual(mark["mean"], float(row["mean"]), delta=1e-12 * abs(mark["mean"]))

@@ -194,7 +194,7 @@ class PointView {
     const causes = Object.entries(point.losses).map(([cause, count]) => `${count} ${Format.words(cause)}`);
     if (causes.length)
       this.losses.append(Page.paragraph(`Lost seeds, which the mean leaves out: ${causes.join(', ')}.`));
-    const shown = [point.hash, data.quantities, point.estimates, point.uncontrolled];
+    const shown = [point.hash, data.quantities, point.estimates, point.plain];
     Page.renew(this.numbers, shown, () => this.showNumbers(point));
   }
 

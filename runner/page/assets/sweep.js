@@ -172,8 +172,8 @@ class Sweep {
           text: `${point.label}${terms ? `, ${term(index)}` : ''}: ${number} (${Format.counted(count, 'seed')}, ${state})`,
         });
         kinds.add(kind);
-        const state = endings.has_jammed ? `${point.state}, jammed` : point.state;
-        rows.push([point.label, ...this.parameters.map((one) => one.cells[i]), path, y, error, half, count, state]);
+        const row = [point.label, ...this.parameters.map((one) => one.cells[i]), path, y, error, half, count];
+        rows.push([...row, endings.has_jammed ? `${point.state}, jammed` : point.state]);
       }
     });
     const inOrder = (a, b) =>

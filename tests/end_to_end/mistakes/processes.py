@@ -88,7 +88,7 @@ def connection_lost_under_nohup(night):
     run = running(night, milliseconds=40, command="nohup peclet run night.json --workers 2")
     os.killpg(run.pid, signal.SIGHUP)
     night.lets_go()
-    night.waits(run, 0, ["2 converged"], ["stop"])
+    night.waits(run, 0, ["2 converged"], ["stopp"])
 
 
 def too_short(night):
