@@ -6,8 +6,8 @@
 namespace peclet::engine {
 namespace {
 
-// About the rate of spheres without friction: the viscosity of Krieger & Dougherty (1959), (1 - phi /
-// phi_m)^-1.6 with phi_m = 0.65. Friction, noise and other forces between spheres add to it.
+// Estimates the shear rate [1/time] of frictionless spheres at this stress: the relative viscosity is that of
+// Krieger & Dougherty (1959), (1 - phi / 0.65)^-1.6. Friction, noise and other forces raise it.
 double estimated_rate(double stress, double viscosity, double volume_fraction) {
   constexpr double densest = 0.6, largest = 0.65, exponent = 1.6;
   return stress / viscosity * std::pow(1 - std::min(volume_fraction, densest) / largest, exponent);
@@ -19,8 +19,8 @@ std::shared_ptr<const Deformation> read_stress(const FlowSource& source) {
   if (source.thermal_energy > 0 && scene.has("/lubrication/form") &&
       scene.at("/lubrication/form") == "mari") {
     scene.refuse("/lubrication/form",
-                 "must be another one where a stress acts with noise: its stress is not that of the forces "
-                 "alone");
+                 "must be kim-karrila with /flow/stress and noise: the stress of mari is not that of the "
+                 "forces alone");
   }
   const double stress = scene.number("/flow/stress");
   return std::make_shared<ControlledShear>(
@@ -31,18 +31,17 @@ std::shared_ptr<const Deformation> read_stress(const FlowSource& source) {
 }  // namespace
 
 FlowKind stress_flow() {
-  return {
-      .key = "/flow/stress",
-      .keys = R"(
-/flow/stress? | number > 0; in stress; named shear stress, σ | Shear stress that is held in the place of a
-    rate: its mean rate is what is measured.
-/flow/jammed_viscosity? | number > 0; if stress | Relative viscosity beyond which a realisation under a stress
-    has jammed; 10000 unless given.
+  return {.key = "/flow/stress",
+          .keys = R"(
+/flow/stress? | number > 0; in stress; named shear stress, σ | Shear stress that is held in place of a rate;
+    the mean rate is measured.
+/flow/jammed_viscosity? | number > 0; if stress | Relative viscosity above which a realisation at a given
+    stress has jammed; 10000 unless given.
 )",
-      .read = read_stress,
-      .unit = "stress_times",
-      .without_strain = "whose strain is not known beforehand; stress_times are the same for all stresses",
-      .refused_observables = {"mean_squared_displacement", "profiles", "transient"}};
+          .read = read_stress,
+          .unit = "stress_times",
+          .without_strain = "whose strain is not known beforehand; give stress_times instead",
+          .refused_observables = {"mean_squared_displacement", "profiles", "transient"}};
 }
 
 }  // namespace peclet::engine

@@ -1,5 +1,5 @@
-// Simple shear at a given stress. Its rate is constant in each step; realisation/driver.h sets it
-// from step to step.
+// ControlledShear is simple shear at a given stress. Its rate is constant in each step; realisation/driver.h
+// sets it.
 #pragma once
 
 #include <limits>
@@ -10,8 +10,8 @@ namespace peclet::engine {
 
 class ControlledShear final : public Deformation {
  public:
-  // `rate`: at the start, and an estimate of the largest one, which sets times. `jammed_viscosity`: relative
-  // viscosity beyond which the suspension counts as jammed.
+  // `rate` is the rate at the start and an estimate of the largest one [1/time]. `viscosity` is that of the
+  // solvent. `jammed_viscosity` is the relative viscosity above which the suspension counts as jammed.
   ControlledShear(double stress, double rate, double viscosity, double jammed_viscosity)
       : stress_(stress),
         stress_time_(viscosity / stress),
@@ -21,15 +21,14 @@ class ControlledShear final : public Deformation {
 
   const ControlledShear* at_stress() const override { return this; }
   double stress() const { return stress_; }
-  // The unit of time, viscosity / stress.
-  double stress_time() const { return stress_time_; }
-  // A suspension that does not strain by `least_strain` within its patience has jammed,
-  //   patience = least_strain jammed_viscosity viscosity / stress  [time].
+  double stress_time() const { return stress_time_; }  // viscosity / stress, the unit of time
+  // A suspension has jammed if it does not strain by `least_strain` within its patience [time],
+  //   patience = least_strain jammed_viscosity viscosity / stress.
   static constexpr double least_strain = 0.01;
   double patience() const { return patience_; }
   double present_rate() const { return rate_; }
 
-  // Goes on from this time and strain at this rate.
+  // Continues from this time and strain at this rate.
   void go_on(double time, double strain, double rate) {
     time_ = time;
     strain_ = strain;
@@ -42,7 +41,7 @@ class ControlledShear final : public Deformation {
   }
   double largest_rate() const override { return usual_rate_; }
   Matrix3 steady_gradient(double /*from*/) const override { return {}; }
-  // The strain of a time to come is unknown.
+  // Returns infinity, because future strain is unknown.
   double time_of(double /*strain*/, double /*from*/) const override {
     return std::numeric_limits<double>::infinity();
   }

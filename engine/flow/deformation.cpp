@@ -8,7 +8,7 @@
 namespace peclet::engine {
 namespace {
 
-// a:b
+// Returns a:b.
 double contracted(const SymmetricTensor& a, const SymmetricTensor& b) {
   return a.xx * b.xx + a.yy * b.yy + a.zz * b.zz + 2 * (a.xy * b.xy + a.xz * b.xz + a.yz * b.yz);
 }

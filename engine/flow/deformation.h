@@ -1,8 +1,10 @@
-// The deformation of the periodic cell in time, and with it the uniform part of the flow: dH/dt = L(t) H.
+// Deformation tells how the periodic cell deforms in time, and thus the uniform part of the flow:
+//   dH/dt = L(t) H
+// with the lattice vectors as columns of H and the velocity gradient L [1/time].
 //
-// The system keeps the displacement gradient D of its cell and the present L; a deformation has no state,
-// except for the rate of one at a given stress. Override what has a default here where a flow differs from
-// one at a constant rate.
+// The system keeps the displacement gradient D of its cell and the present L. A deformation has no state,
+// except for the rate of one at a given stress. The defaults are those of a constant rate: override them
+// where a flow differs.
 #pragma once
 
 #include <memory>
@@ -13,9 +15,9 @@
 
 namespace peclet::engine {
 
-// An oscillating strain g sin(w t), and the component of its stress.
+// Swing is an oscillating strain g sin(w t) and the stress component that it drives.
 struct Swing {
-  double amplitude = 0, frequency = 0;  // g, and w in radians per time
+  double amplitude = 0, frequency = 0;  // g, and w [radians/time]
   double SymmetricTensor::*component = &SymmetricTensor::xy;
 };
 
@@ -25,42 +27,43 @@ class Deformation {
  public:
   virtual ~Deformation() = default;
 
-  // The velocity gradient L at this time, and the displacement gradient D since time 0.
+  // Return L at this time, and the displacement gradient D since time 0.
   virtual Matrix3 velocity_gradient(double time) const = 0;
   virtual Matrix3 displacement_gradient(double time) const = 0;
-  // D after whole steps. Override it if D follows from the number of steps without rounding the time first.
+  // Returns D at the time of the clock. Override it to avoid rounding the time first.
   virtual Matrix3 displacement_gradient(const Clock& clock) const {
     return displacement_gradient(clock.time());
   }
 
+  // Returns the largest rate of strain at any time [1/time].
   virtual double largest_rate() const = 0;
-  // Strain per time in the long run, summed over both directions.
+  // Returns the long-time average of the strain per time [1/time], summed over both directions.
   virtual double mean_rate() const { return largest_rate(); }
-  // Returns whether L jumps in [from, to).
+  // Returns true if L jumps in [from, to).
   virtual bool jumps_between(double /*from*/, double /*to*/) const { return false; }
   // Returns the steady part of L after `from`, without the oscillation; 0 if no part is steady.
   virtual Matrix3 steady_gradient(double from) const = 0;
-  // The shortest distance between images of a point at any time, over the edge of the cube that the box is.
+  // Returns the shortest distance between images of a point at any time, over the edge of the initial cube.
   virtual double nearest_image() const { return 1; }
-  // The flow as one at a given stress; null if its rate is given.
+  // Returns this flow if its stress is given; null if its rate is given.
   virtual const ControlledShear* at_stress() const { return nullptr; }
-  // The oscillating part, if there is one.
+  // Returns the oscillating part; empty in a flow without oscillation.
   virtual std::optional<Swing> swing() const { return std::nullopt; }
   // Returns the time after `from` in which the cell makes this strain, summed over both directions; infinity
   // if it never does.
   virtual double time_of(double strain, double from) const = 0;
-  // Strain of the steps `from` to `to` of a run, summed over both directions.
+  // Returns the strain of the steps `from` to `to` of a run, summed over both directions.
   virtual double strain_between(double timestep, std::uint64_t from, std::uint64_t to) const {
     return timestep * mean_rate() * static_cast<double>(to - from);
   }
-  // Lattice vectors, as columns, at the start of a box with these edges.
+  // Returns the initial lattice vectors of a box with these edges, as columns.
   virtual Matrix3 edges_at_start(const Vector3& box) const {
     return {Vector3{box.x, 0, 0}, Vector3{0, box.y, 0}, Vector3{0, 0, box.z}};
   }
 };
 
-// The flow that a scene imposes: a deformation of the cell, and the variation within it. Copies share both.
-// By default the fluid is at rest.
+// ImposedFlow is the flow that a scene imposes: a deformation of the cell and the variation within it. Copies
+// share both. By default the fluid is at rest.
 class ImposedFlow {
  public:
   ImposedFlow();
@@ -71,34 +74,35 @@ class ImposedFlow {
   }
 
   const Deformation& deformation() const { return *deformation_; }
-  // The largest shear rate of the cell, which sets times; 0 if the cell keeps its shape.
+  // Returns the largest rate of strain of the cell [1/time]; 0 if the cell keeps its shape.
   double rate() const { return deformation_->largest_rate(); }
-  // Rate sqrt(2 E:E) of the part of the flow that is constant in the window of all means, which sets the unit
-  // of stresses; 0 if no part is.
+  // Returns the rate sqrt(2 E:E) [1/time] of the flow that is steady in the window of all means; 0 if no part
+  // is. Times the viscosity it is the unit of stresses.
   double steady_rate() const { return steady_rate_; }
   const Matrix3& steady_gradient() const { return steady_gradient_; }
-  // Begins the window at this time.
+  // Begins the window of all means at this time.
   void measure_from(double time);
-  // Rate of strain of the steady part, E / sqrt(2 E:E).
+  // Returns E / sqrt(2 E:E) of the steady part; that of simple shear if no part is steady.
   const SymmetricTensor& direction() const { return direction_; }
   // Returns the part of a stress that does the work of the steady flow, sigma:E / sqrt(2 E:E): sigma_xy in
   // simple shear, and if no part of the flow is steady.
   double shear_part(const SymmetricTensor& stress) const;
+  // Returns the period of the oscillation [time]; empty without an oscillation.
   std::optional<double> period() const;
-  // Returns whether one gradient, constant in the window, does all work: the stress of waves cancels over the
-  // cell, that of cycles over time.
+  // Returns true if one gradient, constant in the window, does all work. The work of waves and of cycles does
+  // not show in the mean stress: it cancels over the cell, or over time.
   bool is_steady() const { return steady_rate_ > 0 && !varies() && !deformation_->swing(); }
   bool varies() const { return variation_ != nullptr; }
-  // An upper bound of the velocity gradient anywhere in this cell.
+  // Returns an upper bound of the velocity gradient anywhere in this cell [1/time].
   double largest_rate(const PeriodicCell& cell) const {
     return rate() + (varies() ? variation_->largest_rate(cell) : 0);
   }
-  // Returns the flow in this cell, which must outlive it.
+  // Returns the flow in this cell, which must outlive the result.
   BackgroundFlow at(const PeriodicCell& cell) const { return BackgroundFlow(cell, variation_.get()); }
 
  private:
   std::shared_ptr<const Deformation> deformation_;
-  std::shared_ptr<const FlowVariation> variation_;  // of the flow within the cell, if it varies
+  std::shared_ptr<const FlowVariation> variation_;  // null if the flow is uniform
   Matrix3 steady_gradient_;
   double steady_rate_ = 0;
   SymmetricTensor direction_;

@@ -5,7 +5,7 @@ namespace peclet::engine {
 FlowKind planar_extension_flow() {
   return {.key = "/flow/extension_rate",
           .keys = R"(
-/flow/extension_rate? | number > 0; in 1 / time; named extension rate, ε̇ | Planar extension in the place of
+/flow/extension_rate? | number > 0; in 1 / time; named extension rate, ε̇ | Planar extension in place of
     shear: (rate x, -rate y, 0). Strains are Hencky strains, at most 10 in a realisation.
 )",
           .read = [](const FlowSource& source) -> std::shared_ptr<const Deformation> {
@@ -19,8 +19,8 @@ FlowKind planar_extension_flow() {
 FlowKind uniaxial_extension_flow() {
   return {.key = "/flow/uniaxial_rate",
           .keys = R"(
-/flow/uniaxial_rate? | number; in 1 / time; named uniaxial extension rate, ε̇ | Uniaxial extension in the
-    place of shear: (rate x, -rate y / 2, -rate z / 2); biaxial extension along y and z where it is below 0.
+/flow/uniaxial_rate? | number; in 1 / time; named uniaxial extension rate, ε̇ | Uniaxial extension in place
+    of shear: (rate x, -rate y / 2, -rate z / 2); biaxial extension along y and z if the rate is below 0.
     Strains are Hencky strains along x, at most 10 in a realisation.
 )",
           .read = [](const FlowSource& source) -> std::shared_ptr<const Deformation> {

@@ -1,5 +1,5 @@
-// Extension of the fluid, planar and uniaxial. The cell follows by changes of its basis
-// (state/periodic_cell.h).
+// PlanarExtension and UniaxialExtension stretch the fluid at a constant rate. The cell stays compact by
+// changes of its basis (state/periodic_cell.h).
 #pragma once
 
 #include <cmath>
@@ -9,18 +9,17 @@
 
 namespace peclet::engine {
 
-// Planar extension u = rate (x, -y, 0).
+// PlanarExtension is the flow u = rate (x, -y, 0) [rate: 1/time].
 //
-// A square lattice in the plane, turned by atan(2) / 2, meets itself again after every Hencky strain of
-// ln((3 + sqrt 5) / 2) = 0.9624, and its points never come closer than 0.946 of its edge: Kraynik & Reinelt,
-// Int. J. Multiphase Flow 18, 1045 (1992). Strain is Hencky strain, rate times time; the invariant sqrt(2
-// E:E) of the rate of strain is 2 rate.
+// A square lattice in the plane, turned by atan(2) / 2, coincides with itself after every Hencky strain of
+// ln((3 + sqrt 5) / 2) = 0.9624. Its points never come closer than 0.946 of its edge (Kraynik & Reinelt, Int.
+// J. Multiphase Flow 18, 1045 (1992)). Strain is Hencky strain, rate times time; sqrt(2 E:E) is 2 rate.
 class PlanarExtension final : public Deformation {
  public:
   explicit PlanarExtension(double rate) : rate_(rate) {}
 
-  // The cell is what the lattice of the start has become: digits are lost as exp(2 strain), and at this
-  // strain 5e-8 of its edges are.
+  // The largest strain of a realisation. Edges of the cell lose digits as exp(2 strain), because they follow
+  // from those at the start: here their relative error is 5e-8.
   static constexpr double largest_strain = 10;
 
   Matrix3 velocity_gradient(double /*time*/) const override {
@@ -36,8 +35,7 @@ class PlanarExtension final : public Deformation {
     const double angle = 0.5 * std::atan(2.0), c = std::cos(angle), s = std::sin(angle);
     return {box.x * Vector3{c, s, 0}, box.y * Vector3{-s, c, 0}, Vector3{0, 0, box.z}};
   }
-  // sqrt(2) / 5^(1/4), rounded down.
-  double nearest_image() const override { return 0.9457; }
+  double nearest_image() const override { return 0.9457; }  // sqrt(2) / 5^(1/4), rounded down
 
  private:
   double rate_;
@@ -45,22 +43,20 @@ class PlanarExtension final : public Deformation {
 
 FlowKind planar_extension_flow();
 
-// Uniaxial extension u = rate (x, -y/2, -z/2), and biaxial extension of the plane of y and z where the rate
-// is below 0.
+// UniaxialExtension is the flow u = rate (x, -y/2, -z/2) [rate: 1/time]; biaxial extension if rate < 0.
 //
-// No lattice meets itself again in this flow, but a cube can be turned so that its lattice never has points
-// close to each other. With edges of length 1 along
-//   e_k = -2/sqrt(7) [sin((2k - 1) pi/7), sin((2k - 1) 2pi/7), sin((2k - 1) 3pi/7)],   k = 1, 2, 3,
-// the cube is the ring of integers of the field of cos(2pi/7) (Bayer-Fluckiger, Oggier & Viterbo, IEEE Trans.
-// Inf. Theory 50, 702, 2004): |x y z| >= 1/7 for every point but the origin. A flow diag(a, b, c) with a + b
-// + c = 0 keeps that product, so that points stay at least sqrt(3) / 7^(1/3) = 0.9054 apart. Lattices of this
-// kind are those of Dobson, J. Chem. Phys. 141, 184103 (2014). Strain is Hencky strain, |rate| times time;
-// the invariant sqrt(2 E:E) is sqrt(3) |rate|.
+// No lattice coincides with itself again in this flow, but points of a suitably turned cubic lattice never
+// come close to each other (Dobson, J. Chem. Phys. 141, 184103 (2014)). Its edges of length 1 are
+//   e_k = -2/sqrt(7) [sin((2k - 1) pi/7), sin((2k - 1) 2pi/7), sin((2k - 1) 3pi/7)],   k = 1, 2, 3.
+// The lattice is the ring of integers of the field of cos(2pi/7) (Bayer-Fluckiger, Oggier & Viterbo, IEEE
+// Trans. Inf. Theory 50, 702, 2004): |x y z| >= 1/7 for every point but the origin. A flow diag(a, b, c) with
+// a + b + c = 0 keeps that product, so points stay at least sqrt(3) / 7^(1/3) = 0.9054 apart. Strain is
+// Hencky strain, |rate| times time; sqrt(2 E:E) is sqrt(3) |rate|.
 class UniaxialExtension final : public Deformation {
  public:
   explicit UniaxialExtension(double rate) : rate_(rate) {}
 
-  // Digits of the cell are lost as exp(3/2 strain): at this strain 7e-10 of its edges are.
+  // The largest strain of a realisation. Edges lose digits as exp(3/2 strain): their error here is 7e-10.
   static constexpr double largest_strain = 10;
 
   Matrix3 velocity_gradient(double /*time*/) const override {
@@ -80,8 +76,7 @@ class UniaxialExtension final : public Deformation {
     };
     return {edge(1, box.x), edge(2, box.y), edge(3, box.z)};
   }
-  // sqrt(3) / 7^(1/3), rounded down.
-  double nearest_image() const override { return 0.9054; }
+  double nearest_image() const override { return 0.9054; }  // sqrt(3) / 7^(1/3), rounded down
 
  private:
   double rate_;

@@ -1,4 +1,4 @@
-// The values of a scene whose keys are valid, and the faults of their meaning.
+// SceneDocument reads the values of a scene whose keys are valid, and reports faults of their meaning.
 #pragma once
 
 #include <fmt/format.h>
@@ -12,8 +12,7 @@
 
 namespace peclet::engine {
 
-// Pointers are from the document's top; `file` names it in messages. Functions that refuse or miss throw
-// InputError.
+// Pointers start at the top of the document. `file` names it in messages.
 class SceneDocument {
  public:
   SceneDocument(const Json& document, std::string file) : document_(document), file_(std::move(file)) {}
@@ -27,13 +26,14 @@ class SceneDocument {
     return has(pointer) ? number(pointer) : fallback;
   }
 
-  // What is allowed is a format with its arguments.
+  // Throws InputError for the value at this pointer. `allowed` and its arguments say what is allowed.
   template <class... Arguments>
   [[noreturn]] void refuse(const std::string& pointer, fmt::format_string<Arguments...> allowed,
                            Arguments&&... arguments) const {
     throw InputError(file_, pointer, shortened(at(pointer)),
                      fmt::format(allowed, std::forward<Arguments>(arguments)...));
   }
+  // Throws InputError for a value that is missing at this pointer.
   template <class... Arguments>
   [[noreturn]] void miss(const std::string& pointer, fmt::format_string<Arguments...> allowed,
                          Arguments&&... arguments) const {

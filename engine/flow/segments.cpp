@@ -13,14 +13,14 @@ Segment read_segment(const SceneDocument& scene, const std::string& pointer) {
   segment.first_rate = keys.at("shear_rate").get<double>();
   segment.last_rate = keys.value("final_rate", segment.first_rate);
   if (keys.contains("strain") == keys.contains("time")) {
-    scene.refuse(pointer, "must have either strain or time, how long it lasts; only the last one has none");
+    scene.refuse(pointer, "must have either strain or time; only the last segment has neither");
   }
   if (keys.contains("time")) {
     segment.time = keys.at("time").get<double>();
     return segment;
   }
   if (segment.first_rate == 0 && segment.last_rate == 0) {
-    scene.refuse(pointer + "/strain", "must be a time instead where the shear rate is 0");
+    scene.refuse(pointer + "/strain", "must be left out where the shear rate is 0; give time instead");
   }
   segment.time = time_of_segment(segment.first_rate, segment.last_rate, keys.at("strain").get<double>());
   return segment;
@@ -35,21 +35,21 @@ std::shared_ptr<const Deformation> read_segments(const FlowSource& source) {
   const std::string pointer = fmt::format("/flow/segments/{}", last);
   for (const char* key : {"strain", "time", "final_rate"}) {
     if (scene.at(pointer).contains(key)) {
-      scene.refuse(pointer + '/' + key, "must be left out of the last segment, which goes on");
+      scene.refuse(pointer + '/' + key, "must be left out of the last segment, which does not end");
     }
   }
   return std::make_shared<Segments>(all, scene.at(pointer).at("shear_rate").get<double>());
 }
 
 constexpr const char* segment_keys = R"(
-/flow/segments? | array of 1 to 64 | Shear in the place of shear_rate whose rate changes: a list of segments
-    in time. Reversals, stops and ramps are such lists.
-/flow/segments/* | object | One segment; the last one goes on and says its rate alone.
+/flow/segments? | array of 1 to 64 | Shear whose rate changes, in place of shear_rate: a list of segments in
+    time, for reversals, stops and ramps.
+/flow/segments/* | object | One segment; the last one does not end and has a shear_rate only.
 /flow/segments/*/shear_rate | number; in 1 / time | Shear rate, of either sign.
-/flow/segments/*/final_rate? | number; in 1 / time | Shear rate at its end, to which it changes linearly; that
-    of its beginning unless given.
-/flow/segments/*/strain? | number > 0 | Strain that it makes, summed over both directions.
-/flow/segments/*/time? | number > 0; in time | Time that it takes, in the place of strain.
+/flow/segments/*/final_rate? | number; in 1 / time | Shear rate at the end of the segment, to which the rate
+    changes linearly; shear_rate unless given.
+/flow/segments/*/strain? | number > 0 | Strain of the segment, summed over both directions.
+/flow/segments/*/time? | number > 0; in time | Duration of the segment, in place of strain.
 )";
 
 }  // namespace

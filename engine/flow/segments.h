@@ -1,4 +1,4 @@
-// Simple shear whose rate is constant or changes linearly in each of a list of segments in time.
+// Segments is simple shear whose rate is constant or changes linearly in each of a list of segments in time.
 #pragma once
 
 #include <algorithm>
@@ -11,21 +11,21 @@
 namespace peclet::engine {
 
 struct Segment {
-  double first_rate = 0, last_rate = 0;  // either sign
-  double time = 0;                       // its duration
+  double first_rate = 0, last_rate = 0;  // [1/time], of either sign
+  double time = 0;                       // duration
 
   double strain() const { return 0.5 * (first_rate + last_rate) * time; }
   double slope() const { return std::isinf(time) ? 0 : (last_rate - first_rate) / time; }
-  // Returns the strain after this time in it.
+  // Returns the net strain at the time t after the beginning of the segment.
   double strain_after(double t) const { return (first_rate + 0.5 * slope() * t) * t; }
 };
 
-// Returns the duration of a segment of these rates and this strain, summed over both directions.
+// Returns the duration [time] in which a segment makes this strain, summed over both directions.
 double time_of_segment(double first_rate, double last_rate, double strain);
 
 class Segments final : public Deformation {
  public:
-  // `rate`: after the last segment.
+  // `rate` is the shear rate after the last segment [1/time].
   Segments(const std::vector<Segment>& segments, double rate) {
     double begin = 0, strain = 0, way = 0;
     const auto add = [&](const Segment& segment) {
@@ -67,7 +67,7 @@ class Segments final : public Deformation {
     }
     return false;
   }
-  // Tolerates rounding at the end of a segment.
+  // Tolerates rounding at the end of the last segment that ends.
   Matrix3 steady_gradient(double from) const override {
     const Part& last = parts_.back();
     return from >= last.begin * (1 - 1e-9) ? simple_shear(last.segment.first_rate) : Matrix3{};
@@ -79,7 +79,7 @@ class Segments final : public Deformation {
     const Part& part = *(std::lower_bound(parts_.begin() + 1, parts_.end(), way, before) - 1);
     const double rest = way - part.way, first = std::abs(part.segment.first_rate);
     if (rest == 0) return part.begin - from;
-    // first t + slope t^2 / 2 = rest, in a form that has no difference of near numbers for a rising rate.
+    // Solves first t + slope t^2 / 2 = rest, without cancellation if the rate rises.
     const double rise =
         part.segment.slope() * (part.segment.first_rate + part.segment.last_rate < 0 ? -1 : 1);
     const double root = first + std::sqrt(std::max(first * first + 2 * rise * rest, 0.0));
@@ -90,10 +90,10 @@ class Segments final : public Deformation {
   }
 
  private:
-  // A segment whose rate keeps its sign, and the time and strain at its beginning.
+  // A segment whose rate keeps its sign, with time and strain at its beginning.
   struct Part {
     Segment segment;
-    double begin = 0, strain = 0, way = 0;  // `way`: the strain summed over both directions
+    double begin = 0, strain = 0, way = 0;  // `way` is the strain summed over both directions
   };
   const Part& part_at(double time) const {
     const auto after = [](double t, const Part& part) { return t < part.begin; };

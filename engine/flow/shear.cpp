@@ -27,7 +27,7 @@ FlowKind oscillation_flow() {
                                                       source.scene.number("/flow/oscillation/frequency"));
           },
           .unit = "cycles",
-          .without_strain = "whose strain comes and goes; cycles are even",
+          .without_strain = "whose strain oscillates; give cycles instead",
           .has_whole_cycles = true,
           .refused_observables = {"transient"}};
 }
@@ -37,16 +37,15 @@ FlowKind cross_shear_flow() {
           .keys = R"(
 /flow/cross_shear? | object | Oscillating shear across the steady one: u_z = y d/dt [amplitude sin(frequency
     t)].
-/flow/cross_shear/amplitude | number > 0; named amplitude of the strain across, γ_0 | Its largest strain.
+/flow/cross_shear/amplitude | number > 0; named amplitude of the strain across, γ_0 | Largest strain across.
 /flow/cross_shear/frequency | number > 0; in 1 / time; named angular frequency across, ω | Angular frequency,
     in radians per time.
 )",
           .read = [](const FlowSource& source) -> std::shared_ptr<const Deformation> {
             if (!(source.shear_rate > 0)) {
-              source.scene.refuse(
-                  "/flow/cross_shear",
-                  "must be left out unless the shear rate is > 0; /flow/oscillation shears to "
-                  "and fro alone");
+              source.scene.refuse("/flow/cross_shear",
+                                  "must be left out unless the shear rate is > 0; /flow/oscillation is "
+                                  "oscillating shear alone");
             }
             return std::make_shared<CrossShear>(source.shear_rate,
                                                 source.scene.number("/flow/cross_shear/amplitude"),

@@ -1,4 +1,4 @@
-// Simple shear at a given rate: steady, oscillating, and oscillating across a steady one.
+// SteadyShear, OscillatoryShear and CrossShear are simple shear at a given rate.
 #pragma once
 
 #include <cmath>
@@ -9,8 +9,7 @@
 
 namespace peclet::engine {
 
-// Simple shear (rate y, 0, 0), constant in time: the flow of a scene that asks for no other, at rest where
-// the rate is 0.
+// SteadyShear is the flow u = (rate y, 0, 0), constant in time; a fluid at rest if the rate is 0.
 class SteadyShear final : public Deformation {
  public:
   explicit SteadyShear(double rate) : rate_(rate) {}
@@ -34,7 +33,8 @@ inline ImposedFlow steady_shear(double rate) { return ImposedFlow(std::make_shar
 
 FlowKind steady_shear_flow();
 
-// Simple shear gamma = g sin(w t), which begins at time 0 in the undeformed cell at its largest rate, g w.
+// OscillatoryShear is simple shear of the strain g sin(w t). It begins at time 0 without strain, at its
+// largest rate g w.
 class OscillatoryShear final : public Deformation {
  public:
   // Amplitude g > 0 and frequency w > 0 [radians/time].
@@ -50,8 +50,8 @@ class OscillatoryShear final : public Deformation {
   double mean_rate() const override { return 2 * amplitude_ * frequency_ / std::numbers::pi; }
   Matrix3 steady_gradient(double /*from*/) const override { return {}; }
   std::optional<Swing> swing() const override { return Swing{amplitude_, frequency_, &SymmetricTensor::xy}; }
-  // `from` must be the end of a cycle.
-  // Quarters of a cycle have a strain of g each, away from the cube and back to it in turn.
+  // Requires `from` at the end of a cycle. Each quarter of a cycle strains by g, alternately away from the
+  // cube and back.
   double time_of(double strain, double /*from*/) const override {
     if (std::isinf(strain)) return strain;
     const double quarters = std::floor(strain / amplitude_), rest = strain / amplitude_ - quarters;
@@ -64,8 +64,8 @@ class OscillatoryShear final : public Deformation {
   double amplitude_, frequency_;
 };
 
-// Simple shear (rate y, 0, 0) and across it u_z = g w cos(w t) y: orthogonal superposition. Only the steady
-// part counts as strain.
+// CrossShear superposes the steady flow u_x = rate y and the oscillation u_z = g w cos(w t) y (orthogonal
+// superposition). Only the steady part counts as strain.
 class CrossShear final : public Deformation {
  public:
   CrossShear(double rate, double amplitude, double frequency)
@@ -74,7 +74,7 @@ class CrossShear final : public Deformation {
   Matrix3 velocity_gradient(double time) const override {
     return shears_along_y(rate_, amplitude_ * frequency_ * std::cos(frequency_ * time));
   }
-  // The two shears commute: neither moves what the other one shears.
+  // Adds the two shears, which commute: neither moves what the other one shears.
   Matrix3 displacement_gradient(double time) const override {
     return shears_along_y(rate_ * time, amplitude_ * std::sin(frequency_ * time));
   }
@@ -85,7 +85,7 @@ class CrossShear final : public Deformation {
   double time_of(double strain, double /*from*/) const override { return strain / rate_; }
 
  private:
-  // Along x and along z, both of them along y.
+  // Returns the gradient with du_x / dy = x and du_z / dy = z.
   static Matrix3 shears_along_y(double x, double z) { return {Vector3{}, Vector3{x, 0, z}, Vector3{}}; }
 
   double rate_, amplitude_, frequency_;

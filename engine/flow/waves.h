@@ -1,10 +1,9 @@
-// Waves along y in the flow, as Monti, Rathee, Shen & Rosti (2021), Phys. Fluids 33, 103314, drive theirs:
+// Waves adds waves along y to the flow, as in Monti, Rathee, Shen & Rosti (2021), Phys. Fluids 33, 103314:
 //   u'_x(y) = sum over waves of S sin(k y) + C cos(k y),   k = 2 pi periods / Ly.
-// Each is an eigenfunction of the Laplacian: for a sphere of radius a, (1 + a^2/6 lap) takes the factor
-// 1 - a^2 k^2 / 6 from its velocity, and (1 + a^2/10 lap) the factor 1 - a^2 k^2 / 10 from its gradient.
-// Powers of sines are sums of such waves, sin^3 t = (3 sin t - sin 3 t) / 4.
-//
-// Ly is the height of the cell over its first lattice vector, which simple shear along x leaves alone.
+// S and C are amplitudes [length/time]. Ly is the height of the cell above its first lattice vector, which
+// simple shear along x does not change. Waves are eigenfunctions of the Laplacian: (1 + a^2/6 lap) multiplies
+// their velocity by 1 - a^2 k^2 / 6, and (1 + a^2/10 lap) their gradient by 1 - a^2 k^2 / 10, for a sphere of
+// radius a. Powers of sines are sums of such waves: sin^3 t = (3 sin t - sin 3 t) / 4.
 #pragma once
 
 #include <cmath>
@@ -19,13 +18,13 @@
 namespace peclet::engine {
 
 struct Wave {
-  int periods = 1;              // along y, whole ones
-  double sine = 0, cosine = 0;  // amplitudes, velocities
+  int periods = 1;              // number in the height of the cell
+  double sine = 0, cosine = 0;  // amplitudes S and C [length/time]
 };
 
 class Waves final : public FlowVariation {
  public:
-  // `faxen`: whether spheres feel the curvature of the flow.
+  // `faxen`: spheres feel the curvature of the flow.
   Waves(std::vector<Wave> waves, bool faxen) : waves_(std::move(waves)), faxen_(faxen) {}
 
   Local at(const Vector3& x, const PeriodicCell& cell) const override {
@@ -67,17 +66,17 @@ class Waves final : public FlowVariation {
 };
 
 inline constexpr const char* wave_keys = R"(
-/flow/waves? | array of 1 to 64 | Waves along y that the flow has besides: u_x = sum of sine sin(k y) + cosine
-    cos(k y) with k = 2 pi periods / L.
+/flow/waves? | array of 1 to 64 | Waves along y that are added to the flow: u_x = sum of sine sin(k y) +
+    cosine cos(k y) with k = 2 pi periods / L.
 /flow/waves/* | object | One wave.
 /flow/waves/*/periods | integer >= 1 and <= 1000 | Periods of the wave along the edge of the box.
 /flow/waves/*/sine | number; in length / time; default 0 | Amplitude of the sine.
 /flow/waves/*/cosine | number; in length / time; default 0 | Amplitude of the cosine.
 /flow/faxen? | true or false | Whether spheres feel the curvature of the waves: their velocity with the factor
-    1 - a^2 k^2 / 6, the strain of their stresslet with 1 - a^2 k^2 / 10. Must be given with waves; without
-    them nothing is curved.
+    1 - a^2 k^2 / 6, the strain of their stresslet with 1 - a^2 k^2 / 10. Required with waves; without them it
+    has no effect.
 )";
-// Returns the waves of the scene; null without any.
+// Returns the waves of the scene; null if it has none. Throws InputError if /flow/faxen is missing.
 inline std::shared_ptr<const FlowVariation> read_waves(const SceneDocument& scene) {
   if (!scene.has("/flow/waves")) return nullptr;
   if (!scene.has("/flow/faxen"))

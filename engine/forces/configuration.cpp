@@ -157,8 +157,8 @@ const KeyTable& configuration_keys() {
 /state/noise/pairs/*/j | integer >= 0 | second particle, above i
 /state/noise/pairs/*/image | array of 3; as /state/springs/*/image | lattice vectors added to the second
     particle's position as given
-/state/noise/pairs/*/theta | array of 3; as /state/position/* | of force and turning
-/state/noise/pairs/*/chi | array of 3; as /state/position/* | of the spins
+/state/noise/pairs/*/theta | array of 3; as /state/position/* | normal vector of the force and its torques
+/state/noise/pairs/*/chi | array of 3; as /state/position/* | normal vector of the other torques
 )",
                                                            fmt::join(blocks_of_physics(), ", ")));
   return table;
@@ -167,8 +167,6 @@ const KeyTable& configuration_keys() {
 Configuration read_configuration(const Json& document, const std::string& file) {
   return Reader(configuration_keys().validate(document, file), file).read();
 }
-
-// The answer to `peclet-engine forces`: the kernels of the time loop, term by term.
 
 namespace {
 
@@ -186,7 +184,7 @@ Json to_json(const SymmetricTensor& t) {
   return {{t.xx, t.xy, t.xz}, {t.xy, t.yy, t.yz}, {t.xz, t.yz, t.zz}};
 }
 
-// Forces, torques and stress of each term that occurs.
+// ByTerm collects forces, torques and stress of each term that occurs.
 class ByTerm {
  public:
   explicit ByTerm(const Configuration& configuration) : configuration_(configuration) {}
@@ -224,14 +222,14 @@ class ByTerm {
   std::map<std::string, Sums> sums_;
 };
 
-// A term is what the pairs of this physics do with it less what they do without it.
+// TermRecipe defines a term: the loads of the pairs `with` it less those `without` it.
 struct TermRecipe {
   const char* name;
   Terms with, without;
   Physics physics;
 };
 
-// With one conservative law alone.
+// Returns the physics with one conservative law alone.
 Physics without_others(Physics physics, StressTerm kept) {
   for_each_conservative_law(
       [&](StressTerm part, auto& law) {
@@ -258,7 +256,7 @@ std::vector<TermRecipe> recipes_of(const Physics& physics) {
   add(terms.noise, "brownian_lubrication", noisy, lubricated);
   add(terms.contact, "contact_normal", touching, {});
   if (terms.damping) {
-    // Without the normal force, beside which it would lose its digits.
+    // Damping would lose digits beside the normal force, which is left out.
     recipes.push_back({"contact_damping", {.contact = true, .damping = true}, touching, physics});
     recipes.back().physics.contact->normal_stiffness = 0;
   }
@@ -273,6 +271,7 @@ std::vector<TermRecipe> recipes_of(const Physics& physics) {
   return recipes;
 }
 
+// Evaluation answers `peclet-engine forces` with the kernels of the time loop, term by term.
 class Evaluation {
  public:
   explicit Evaluation(const Configuration& configuration)
@@ -422,7 +421,7 @@ class Evaluation {
   std::vector<PairKind> kinds_;
   NeighbourList list_;
   SpringField springs_;
-  std::vector<NormalPair> noise_;  // of each pair
+  std::vector<NormalPair> noise_;  // has an entry for each pair
   FlowAtCentres varying_;
 };
 

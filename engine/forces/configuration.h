@@ -1,4 +1,4 @@
-// A single configuration to be evaluated: positions, velocities, springs and random vectors as given.
+// Configuration is a state to evaluate: positions, velocities, springs and random vectors as given.
 #pragma once
 
 #include <optional>
@@ -27,20 +27,20 @@ struct GivenNoise {
 
 struct Configuration {
   Physics physics;
-  ParticleState particles;  // of unit density: masses do not enter forces
+  ParticleState particles;  // have the density 1, because masses do not enter forces
   PeriodicCell box;
-  std::vector<HeldContact> springs;  // image: the shift added to the second particle's position as given
+  std::vector<HeldContact> springs;  // `image` is added to the given position of the second particle
   std::optional<GivenNoise> noise;
-  std::optional<double> advance;  // time by which the springs are to be advanced
+  std::optional<double> advance;  // time by which springs are advanced
 };
 
 const KeyTable& configuration_keys();
 
-// Throws InputError.
+// Reads a configuration. Throws InputError if keys or values have faults.
 Configuration read_configuration(const Json& document, const std::string& file);
 
-// Forces, torques and stress by term, and the advanced springs where asked for; schema/README.md describes
-// both documents. Throws std::invalid_argument when a particle interacts with its own image.
+// Returns forces, torques and stress by term, and the advanced springs if `advance` is set. schema/README.md
+// describes both documents. Throws std::invalid_argument if a particle interacts with its own image.
 Json evaluate_configuration(const Configuration& configuration);
 
 }  // namespace peclet::engine

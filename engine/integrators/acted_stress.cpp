@@ -14,7 +14,7 @@ std::size_t number_of(const System& system, const Pair& pair) {
   return static_cast<std::size_t>(&pair - system.list.pairs().data());
 }
 
-// The term that has what bringing forces along adds.
+// Returns the term to which moving the forces to x_n + dt V / 2 adds.
 StressTerm carried_term(const Physics& physics) {
   if (physics.lubrication) return StressTerm::lubrication;
   if (physics.contact) return StressTerm::contact_normal;

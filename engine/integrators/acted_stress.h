@@ -1,12 +1,13 @@
-// The stress that acts in a step (kernels/pair_pass.h), of forces that act at several places.
+// ActedStress sums the stress of an implicit step with noise, whose forces act at two places
+// (kernels/pair_pass.h).
 //
-// With noise an implicit step acts upon its pairs at two places: with the random forces, and what else
-// belongs to the beginning, at x_n; and with F(x', V') - A (V - V') at x', where the velocities V' have been
-// predicted and A, the matrix of the links, has turned them into V. Both are brought to x_n + dt V / 2. What
-// a step's strain makes of its own stress is left out.
+// The random forces, and the resistance at the beginning of the step, act at x_n. The forces F(x', V') - A (V
+// - V') act at x'. V' are the predicted velocities, V the final ones; A is the matrix of the links by which V
+// follows from V'. All forces are moved to x_n + dt V / 2. The change of the stress by the strain of the step
+// itself is left out.
 //
-// By term: each force belongs to its law. The random stress is that of x_n, where its mean is zero; what
-// bringing forces along adds belongs to the resistance that they work against, lubrication.
+// Each force counts in the term of its law. The random stress is taken at x_n, where its mean is zero. What
+// moving the forces adds is their work against the resistance and counts as lubrication.
 #pragma once
 
 #include <vector>
@@ -17,7 +18,7 @@
 
 namespace peclet::engine {
 
-// Returns the sum of of_particle(i) over all particles, with the same bits for any number of threads.
+// Returns the sum of of_particle(i) over all particles: the same bits for any number of threads.
 template <class OfParticle>
 SymmetricTensor sum_over_particles(const System& system, int threads, OfParticle&& of_particle) {
   const std::vector<ParticleBlock>& blocks = system.list.blocks();
@@ -30,27 +31,27 @@ SymmetricTensor sum_over_particles(const System& system, int threads, OfParticle
   return total;
 }
 
-// A velocity at the place of a particle, relative to the uniform flow of the cell.
+// Returns a velocity at the place of particle i, relative to the uniform flow of the cell.
 inline Vector3 relative_to_flow(const System& system, std::size_t i, const Vector3& velocity) {
   return velocity - system.box.velocity_gradient() * system.particles.position[i];
 }
 
 class ActedStress {
  public:
-  // `sums` and `force` are those of the pairs at x_n.
+  // Takes the sums and forces of the pairs at x_n.
   void begin(const PairSums& sums, const VectorField& force);
-  // At x' with the velocities V'; `loads` have the drag on these.
+  // Adds the sums at x' with the velocities V'. `loads` include the drag at these velocities.
   void predict(const System& system, const PairSums& sums, const Loads& loads, const Physics& physics);
-  // Once the velocities are found and before the particles move on from x'.
+  // Adds the change from V' to V and returns all sums. Requires the particles at x' with the velocities V.
   PairSums end(System& system, ForceField& field, const LinkWeights& weights, double timestep);
 
-  // The stress of each pair, after the functions above: slow, for what is looked at seldom.
+  // Do the work of the functions above for each pair. Each is called after its counterpart. They are slow.
   void begin_pairs(const System& system, ForceField& field);
   void predict_pairs(const System& system, ForceField& field);
   void end_pairs(System& system, ForceField& field, const LinkWeights& weights, double timestep);
   void show_pairs(const System& system, PairWatcher& watcher) const;
 
-  // Force of the pairs on a particle at x_n.
+  // Returns the force of the pairs on a particle at x_n.
   Vector3 force_at_beginning(std::size_t particle) const { return force_at_beginning_[particle]; }
 
  private:
@@ -62,7 +63,7 @@ class ActedStress {
   PairSums sums_;
   VectorField force_at_beginning_, force_ahead_, force_of_change_, torque_of_change_;
   ForceField::Motion predicted_, change_;
-  std::vector<OfPair> pairs_;  // of the list
+  std::vector<OfPair> pairs_;  // have the order of the list
 };
 
 }  // namespace peclet::engine

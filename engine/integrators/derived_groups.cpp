@@ -1,4 +1,4 @@
-// Li 2023, equations 3.55 to 3.58 and 2.7.
+// The groups follow Li (2023), equations 2.7 and 3.55 to 3.58.
 #include "engine/integrators/derived_groups.h"
 
 #include <algorithm>
@@ -13,8 +13,8 @@ namespace peclet::engine {
 
 namespace {
 
-// Inertia over shear and over Brownian motion above which it is no longer small; the second is what the
-// published flow curves accept at low Pe.
+// Bounds of tau_I / tau_S and tau_I / tau_B from which on inertia is not small. Published flow curves reach
+// the second at low Pe.
 constexpr double largest_inertia_over_shear = 0.1;
 constexpr double largest_inertia_over_brownian = 0.17;
 
@@ -43,7 +43,7 @@ std::optional<double> flow_over_rest(const Scene& scene, double peclet) {
   return std::pow(6 * std::numbers::pi / peclet, 2) * fraction * size / (300 * viscosity * of_pairs);
 }
 
-// A ratio that was chosen to be the bound, in decimals, counts as having reached it.
+// Returns true if the ratio reaches the bound, up to rounding.
 bool reaches(double ratio, double bound) { return ratio >= bound * (1 - 1e-9); }
 
 double brownian_time(const Physics& physics, double a) {
@@ -54,7 +54,7 @@ double peclet_number(const Physics& physics, double a) {
   return 6 * std::numbers::pi * brownian_time(physics, a) * physics.flow.rate();
 }
 
-// The largest of f(density, radius) over all sizes; nothing without sizes.
+// Returns the largest f(density, radius) over all sizes; empty without sizes.
 template <typename Function>
 std::optional<double> largest_of_sizes(const Particles& particles, const Function& f) {
   std::optional<double> largest;
@@ -102,7 +102,7 @@ void add_size_moments(const Particles& particles, DerivedGroups& groups) {
   groups.relative_width = std::sqrt(variance) / mean;
 }
 
-// The groups in the order in which people look for them. Those `only_with` another one are absent without it.
+// The groups in the order of the tables that show them. Without its `only_with` a group is left out.
 struct NamedGroup {
   using Value = std::optional<double> DerivedGroups::*;
   const char *name, *words, *symbol, *unit;
@@ -132,7 +132,7 @@ bool has(const std::vector<Warning>& warnings, const std::string& code) {
   return std::ranges::any_of(warnings, [&](const Warning& warning) { return warning.code == code; });
 }
 
-// Where inertia is small for the radius of reference, but not for all sizes.
+// Warns if inertia is small for the radius of reference, but not for all sizes.
 void warn_of_other_sizes(const Scene& scene, const DerivedGroups& groups, std::vector<Warning>& warnings) {
   const auto compare = [&](const char* code, const char* beside, const char* symbol,
                            const std::optional<double>& largest, double bound) {
@@ -148,7 +148,7 @@ void warn_of_other_sizes(const Scene& scene, const DerivedGroups& groups, std::v
           largest_inertia_over_brownian);
 }
 
-// Spheres follow a flow that comes and goes within their inertial time, however small its amplitude.
+// Warns if w tau_I is not small. In an oscillation this matters at any amplitude.
 void warn_of_oscillation(const Scene& scene, std::vector<Warning>& warnings) {
   const std::optional<double> period = scene.physics.flow.period();
   if (!period || has(warnings, "inertia-shear")) return;
@@ -163,7 +163,7 @@ void warn_of_oscillation(const Scene& scene, std::vector<Warning>& warnings) {
        *largest, largest_inertia_over_shear);
 }
 
-// Whole numbers of few grains miss their shares.
+// Warns if whole numbers of spheres miss the share of a species by more than a tenth of it.
 void warn_of_composition(const Scene& scene, const DerivedGroups& groups, std::vector<Warning>& warnings) {
   constexpr double largest_error = 0.1;
   if (!groups.alpha || *groups.largest_share_error <= largest_error) return;
@@ -194,8 +194,8 @@ void warn_of_patience(const Scene& scene, std::vector<Warning>& warnings) {
        time_of(scene.production, scene) / flow->stress_time(), flow->patience() / flow->stress_time());
 }
 
-// Volume fraction that random packings reach: phi = 0.634 + 0.0658 d + 0.0857 S d^2, d the standard deviation
-// of the radius over its mean and S its skewness (Desmond & Weeks, Phys. Rev. E 90, 022204, 2014).
+// Returns the volume fraction of random packings, phi = 0.634 + 0.0658 d + 0.0857 S d^2: d is the standard
+// deviation of the radius over its mean, S its skewness (Desmond & Weeks, Phys. Rev. E 90, 022204, 2014).
 double densest_random_packing(const Particles& particles) {
   const std::vector<std::size_t> number = species_numbers(particles);
   const auto moment = [&](double centre, int power) {
@@ -225,7 +225,7 @@ DerivedGroups derived_groups(const Scene& scene) {
   if (physics.flow.rate() > 0) groups.shear_time = 1 / physics.flow.rate();
   if (physics.thermal_energy > 0) {
     groups.brownian_time = brownian_time(physics, a);
-    // At a given stress the rate is what comes out.
+    // At a given stress the rate is a result.
     if (physics.flow.deformation().at_stress() == nullptr) {
       groups.peclet = peclet_number(physics, a);
       groups.flow_over_rest = flow_over_rest(scene, *groups.peclet);
@@ -301,14 +301,14 @@ std::vector<Warning> scene_warnings(const Scene& scene) {
   warn_of_other_sizes(scene, groups, warnings);
   warn_of_composition(scene, groups, warnings);
   warn_of_patience(scene, warnings);
-  // Of smooth motion in uniform shear half steps tell the error.
+  // Without noise, friction and waves a comparison with half steps shows the error of a step.
   const bool noise = scene.physics.thermal_energy > 0;
   const bool friction = scene.physics.contact && scene.physics.contact->friction > 0;
   if (scene.method == Method::implicit_steps && scene.timestep &&
       (noise || friction || scene.physics.flow.varies())) {
     if (const double excess = *scene.timestep / automatic_timestep(scene); excess > 1) {
       warn(warnings, "timestep",
-           "the step is {:.3g} times the automatic one; with {} nothing else tells its "
+           "the step is {:.3g} times the automatic one; with {} no other test shows its "
            "error: see results/speed-accuracy and results/stability",
            excess,
            noise      ? "noise"
@@ -320,8 +320,8 @@ std::vector<Warning> scene_warnings(const Scene& scene) {
 }
 
 std::vector<Warning> warnings_before_run(const Scene& scene) {
-  // At phi = 0.40 contacts overlap by 0.6, 0.4 and 0.2 % of a radius in the mean at 10^3, 5 10^3 and 2 10^4;
-  // in dense suspensions some come to overlap by the 5 % at which a realisation ends.
+  // At phi = 0.40 the mean overlap is 0.6, 0.4 and 0.2 % of a radius at k_hat = 10^3, 5 10^3 and 2 10^4. In
+  // dense suspensions some overlaps reach the 5 % that ends a realisation.
   constexpr double stiff = 1e4;
   std::vector<Warning> warnings;
   if (const double densest = densest_random_packing(scene.particles);

@@ -18,7 +18,7 @@ Physics without_noise(Physics physics) {
   return physics;
 }
 
-// Of the velocities of a block relative to the flow; NaN if one is not finite.
+// Returns the largest |v|^2 in a block, v relative to the flow; NaN if one is not finite.
 template <bool is_simple_shear>
 double largest_square(const Matrix3& gradient, const VectorField& position, const VectorField& velocity,
                       const ParticleBlock& block) {
@@ -37,12 +37,12 @@ double largest_square(const Matrix3& gradient, const VectorField& position, cons
   return std::isfinite(sum) ? largest : std::numeric_limits<double>::quiet_NaN();
 }
 
-// A residual that leaves so much of the motion open is none that a step may have.
+// Steps with a larger relative residual are divided.
 constexpr double unsolved = 0.1;
-// Where forces jump, as at the edge of a repulsion that is cut off, smaller steps have no solution either.
+// Few divisions are made for this: where forces jump, as at a cut-off, smaller steps have no solution.
 constexpr int divisions_of_unsolved = 3;
 
-// Of two halves: means over the time.
+// Returns the report of two half steps: means over the time, sums and maxima.
 StepReport joined(const StepReport& first, const StepReport& second) {
   StepReport both = second;
   for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
@@ -78,7 +78,7 @@ void Implicit::divide_steps(double longest_way) {
   divisions_left_ = deepest_division;
 }
 
-// A comparison with half steps costs as much as three steps or a little more.
+// A comparison with half steps costs a little more than three steps.
 Integrator::Intervals Implicit::intervals() const {
   return {.sampling = 4, .energy = 500, .stability = 5000, .comparison = 100, .compared_steps = 1};
 }
@@ -89,7 +89,7 @@ StepReport Implicit::advance_open(System& system) {
   return report;
 }
 
-// All of a step but the step counter, which belongs to whole ones.
+// Makes a step or a part of one; the caller counts whole steps.
 StepReport Implicit::advance_part(System& system) {
   if (meets_a_jump(system)) return advance_halves(system);
   const Deformation& deformation = physics_.flow.deformation();
@@ -100,7 +100,7 @@ StepReport Implicit::advance_part(System& system) {
                            system.list.listed().displacement_gradient == system.box.displacement_gradient();
   std::optional<StepReport> found = find_velocities(system);
   if (!found && !list_is_new) {
-    // Once more from the origin, with a new list.
+    // Tries again from the origin, with a new list.
     return_to_origin(system);
     rebuild_list(system);
     origin_.mark(system, field_.threads());
@@ -115,7 +115,7 @@ StepReport Implicit::advance_part(System& system) {
     return advance_halves(system);
   }
   if (!found) {
-    // Not even a new list holds. Whoever asked for the step sees why.
+    // Even a new list does not hold. The reported displacement tells the caller why.
     report.largest_displacement = std::max(report.largest_displacement, system.list.ranges().largest());
     ++system.clock.steps;
     return report;
@@ -129,10 +129,11 @@ StepReport Implicit::advance_part(System& system) {
   return report;
 }
 
-// Down to that part of a step: after it the parts double.
+// Returns true if the flow jumps in this part of a step and the part may still be divided: down to 2^-5 of
+// the step. After the jump the parts double in size.
 bool Implicit::meets_a_jump(const System& system) const {
   constexpr int divisions = 5;
-  constexpr double rounding = 1e-3;  // of a part, by which the jump may seem to lie beside it
+  constexpr double rounding = 1e-3;  // share of a part by which rounding may move the jump
   const double from = system.clock.time() - rounding * timestep_;
   return divisions_left_ > deepest_division - divisions &&
          physics_.flow.deformation().jumps_between(from, from + timestep_);
@@ -147,7 +148,7 @@ void Implicit::show_step(const System& system) {
   field_.show_pairs(system, origin_.springs(), false, weight(), *watcher());
 }
 
-// From the origin.
+// Makes the step again from its origin, as two halves.
 StepReport Implicit::advance_halves(System& system) {
   if (!half_) {
     half_ = with_timestep(0.5 * timestep_, system.particles);
@@ -174,11 +175,11 @@ StepReport Implicit::advance_halves(System& system) {
   return report;
 }
 
-// The particles have moved that far.
+// Rebuilds the list if it does not hold for the next step, now that particles have moved by up to `way`.
 void Implicit::follow_list(System& system, double way) {
   displacement_bound_ += way + timestep_ * norm(system.box.velocity_gradient()) * displacement_bound_;
   const double allowed = system.list.allowed_displacement(system.box);
-  // With room for half of the next step, should it be as large as this one.
+  // The list must leave room for half of a next step as large as this one.
   const double next = 0.5 * way;
   if (displacement_bound_ + next >= allowed) {
     displacement_bound_ = system.list.largest_displacement(system.particles, system.box, field_.threads());
@@ -203,7 +204,7 @@ bool Implicit::move_half_a_step(System& system) {
          system.list.largest_displacement(system.particles, system.box, field_.threads()) < allowed;
 }
 
-// To where the present velocities lead from the origin in that time.
+// Moves particles and cell to where the present velocities lead from the origin in this time.
 void Implicit::move(System& system, double time) {
   ParticleState& particles = system.particles;
   for_each_index(particles.count(), field_.threads(), [&](std::size_t i) {
@@ -212,8 +213,8 @@ void Implicit::move(System& system, double time) {
   system.box.deform(physics_.flow.deformation().displacement_gradient(system.clock.time() + time));
 }
 
-// The largest one of a step at the present velocities, relative to the uniform flow; NaN if one is not
-// finite.
+// Returns the largest displacement of a step at the present velocities, relative to the uniform flow; NaN if
+// one is not finite.
 double Implicit::displacement(const System& system) const {
   const Matrix3& gradient = system.box.velocity_gradient();
   const auto largest =
@@ -223,13 +224,13 @@ double Implicit::displacement(const System& system) const {
   for_each_index(blocks.size(), field_.threads(), [&](std::size_t b) {
     squared[b] = largest(gradient, origin_.position(), system.particles.velocity, blocks[b]);
   });
-  // NaN is larger than any.
+  // NaN counts as the largest value.
   const auto is_less = [](double a, double b) { return !std::isnan(a) && !(a >= b); };
   return timestep_ * std::sqrt(*std::ranges::max_element(squared, is_less));
 }
 
 Integrator::HalfSteps Implicit::compare_half_steps(const System& system, int steps) const {
-  // `every` steps of timestep / every for one that counts.
+  // Returns the sum of the stress over the time of `steps` steps, in steps of timestep / every.
   const auto stress = [&](int every) {
     System copy = system;
     const std::unique_ptr<Implicit> integrator = with_timestep(timestep_ / every, copy.particles);
@@ -247,7 +248,7 @@ Integrator::HalfSteps Implicit::compare_half_steps(const System& system, int ste
   return {stress(1), stress(2)};
 }
 
-// Another one for steps of this size, which divides them alike.
+// Returns an integrator for steps of this size that divides them in the same way.
 std::unique_ptr<Implicit> Implicit::with_timestep(double timestep, const ParticleState& particles) const {
   std::unique_ptr<Implicit> other =
       implicit_steps(physics_, particles, timestep, solver_.tolerance(), seed_, field_.threads(), set_);

@@ -1,12 +1,13 @@
-// Steps that are not bound by the rate of lubrication: their velocities V solve an equation, and
+// Implicit is the base of methods whose steps are not limited by the rate of lubrication: the velocities V of
+// a step solve an equation, and
 //   x_n+1 = x_n + dt V.
-// What such methods share: the way from the origin of a step and back to it, and the list of neighbours,
-// which must hold half a step ahead. How V is found is in midpoint.h and, with noise, in noisy_midpoint.h.
+// It moves the particles from the origin of a step and back, and keeps the list of neighbours, which must
+// hold half a step ahead. midpoint.h and, with noise, noisy_midpoint.h find V.
 //
-// A step in which spheres would leap, or whose velocities are not found, is made again as two of half the
-// size, and these likewise, once divide_steps() has allowed it; so is a step in which the rate of the flow
-// jumps, after which springs let go at once. What divides a step lies in it alone: a run
-// that is resumed between steps divides the same ones. Halves share the noise of their step (normal_block.h).
+// After divide_steps() a step, or a half of one, is made again as two halves in three cases: spheres would
+// move too far, V is not found, or the rate of the flow jumps. After a jump springs relax at once. The
+// division depends on the step alone: a resumed run divides the same steps. Halves share the noise of their
+// step (normal_block.h).
 #pragma once
 
 #include <memory>
@@ -25,32 +26,33 @@ class Implicit : public Integrator {
   std::optional<double> spurious_energy(const System& /*system*/) const final { return std::nullopt; }
   HalfSteps compare_half_steps(const System& system, int steps) const final;
 
-  // From now on steps are divided, into parts of 2^-deepest_division of them at the least, in which a
-  // particle would move farther than this relative to the flow. Before, none is.
+  // Allows steps to be divided from now on, into parts of at least 2^-deepest_division: a particle may move
+  // no farther than `longest_way` relative to the flow [length] in a part.
   void divide_steps(double longest_way);
   static constexpr int deepest_division = 10;
 
  protected:
-  // The forces are without noise, at the distances as they are, with that part of the resistance.
+  // The forces have no noise. `part` is the part of the resistance that they have. `drag_share` is the share
+  // of the drag in the equations for V.
   Implicit(const Physics& physics, const ParticleState& particles, double timestep, double tolerance,
            std::uint64_t seed, int threads, InstructionSet set, double drag_share = 1,
            StepResistance::Part part = StepResistance::Part::whole);
 
-  // Finds the velocities; nothing where the list of pairs does not hold half a step ahead.
+  // Finds the velocities. Returns nothing if the list of pairs does not hold half a step ahead.
   virtual std::optional<StepReport> find_velocities(System& system) = 0;
-  // Shows the watcher the pairs of the step, in its middle.
+  // Shows the pairs of the step to the watcher, with the system in the middle of the step.
   virtual void show_step(const System& system);
-  // Before the particles move with the velocities that have been found.
+  // Stores the change of the velocities in this step, as a guess for the next one.
   virtual void keep_change(const System& /*system*/) {}
-  // What was kept says nothing of the next step.
+  // Discards the stored change.
   virtual void forget_change() {}
 
   void restore_springs(System& system) const;
-  // To where the present velocities lead. Returns whether the list holds there.
+  // Moves particles half a step from the origin at the present velocities. Returns true if the list holds.
   bool move_half_a_step(System& system);
 
   VelocitySolver solver_;
-  StepOrigin origin_;  // once velocities have gained what the flow gains in half a step
+  StepOrigin origin_;  // after the velocities have gained what the flow gains in half a step
   Loads loads_;
 
  private:
@@ -69,11 +71,11 @@ class Implicit : public Integrator {
   InstructionSet set_;
   double longest_way_ = 0;
   int divisions_left_ = 0;
-  std::unique_ptr<Implicit> half_;  // makes the halves of a step; nothing in it outlives a step
+  std::unique_ptr<Implicit> half_;  // makes the halves of a step; has no state between steps
 };
 
-// Implicit steps, with noise where there is a temperature. `tolerance`: residual of the equations, relative
-// to the motion relative to the flow, in the energy norm.
+// Returns the implicit method of these physics, with noise if the temperature is above 0. `tolerance` bounds
+// the residual of the equations over the motion relative to the flow, in the energy norm.
 std::unique_ptr<Implicit> implicit_steps(const Physics& physics, const ParticleState& particles,
                                          double timestep, double tolerance, std::uint64_t seed, int threads,
                                          InstructionSet set = chosen_instruction_set());

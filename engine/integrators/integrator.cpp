@@ -24,7 +24,6 @@ void follow_flow(System& system, const Matrix3& gradient, double time, int threa
 
 namespace {
 
-// Springs, cell and clock, and the rows of places and motion.
 void copy_state(const System& from, System& to, int threads) {
   for_each_index(from.particles.position.size(), threads, [&](std::size_t i) {
     to.particles.position.row(i) = from.particles.position.row(i);
@@ -57,7 +56,7 @@ void StepOrigin::mark_with_list(const System& system, int threads) {
   mark(system, threads);
 }
 
-// A rebuild arranges the particles anew.
+// Restores particles and list as well if a rebuild has reordered them.
 void StepOrigin::return_to(System& system, int threads) const {
   const bool has_list = marked_.list.builds() > 0;
   if (has_list && marked_.list.builds() != system.list.builds()) {

@@ -1,4 +1,4 @@
-// One step in time, whatever the method.
+// Integrator advances a system by steps in time, whatever the method.
 #pragma once
 
 #include <optional>
@@ -7,30 +7,29 @@
 
 namespace peclet::engine {
 
-// What a step says about itself.
+// StepReport holds what a step reports.
 struct StepReport {
-  PairSums sums;  // of the forces that acted, those of the noise included (kernels/pair_pass.h)
-  // The stress of the motion, times the volume: -sum m sym(V V') relative to the flow. With noise it belongs
-  // to the stress; without noise it is computed where it is asked for.
+  PairSums sums;  // sums of the forces that acted, including noise (kernels/pair_pass.h)
+  // Stress of the motion times the volume: -sum m sym(V V') relative to the flow. With noise it is a part of
+  // the stress. Without noise it is computed only after watch_motion().
   SymmetricTensor motion;
-  double largest_displacement =
-      0;  // of a particle relative to the streaming flow, in this step; NaN if one is not finite
-  int solver_iterations = 0;   // of a method that solves for the velocities
-  double solver_residual = 0;  // what its equations are left with, relative to the motion
-  int division = 0;        // of a method that divides steps: the smallest part was 2^-division of the step
-  bool broke_off = false;  // the step was not made: not even its smallest part has velocities
+  // Largest displacement of a particle in this step, relative to the flow; NaN if one is not finite.
+  double largest_displacement = 0;
+  int solver_iterations = 0;   // 0 if the method solves no equations
+  double solver_residual = 0;  // residual of the equations, relative to the motion
+  int division = 0;            // the smallest part of the step was 2^-division of it
+  bool broke_off = false;      // the step was not made: its smallest part has no solution
 };
 
-// The state that a step starts from, and the way back to it.
+// StepOrigin stores the state at the start of a step and restores it.
 class StepOrigin {
  public:
-  // Copies what every step changes: places, motion, springs, cell and clock. The way back leads to them as
-  // long as the list of neighbours is the same.
+  // Stores what every step changes: positions, velocities, springs, cell and clock. They can be restored
+  // until the list of neighbours is rebuilt.
   void mark(const System& system, int threads);
-  // Copies the list as well, if it has been rebuilt since it was last copied. The way back then leads across
-  // rebuilds.
+  // Stores the list as well, so that the state can be restored after rebuilds.
   void mark_with_list(const System& system, int threads);
-  // Makes the system what it was at the mark, bit by bit. Requires a mark.
+  // Restores the stored state bit by bit. Requires a mark.
   void return_to(System& system, int threads) const;
 
   const VectorField& position() const { return marked_.particles.position; }
@@ -42,64 +41,64 @@ class StepOrigin {
   System marked_;
 };
 
-// Owns the forces between steps; the system belongs to the caller. After start() or load(), each advance()
-// takes the system from one step to the next: positions, velocities, springs, box, list and step counter.
+// Integrator owns the forces between steps; the caller owns the system. After start() or load(), each
+// advance() makes one step: positions, velocities, springs, box, list and step counter change.
 class Integrator {
  public:
   virtual ~Integrator() = default;
 
   double timestep() const { return timestep_; }
 
-  // Steps between looks at what is not accumulated at every step: seldom enough to cost little of a run.
+  // Steps between samples of what is not accumulated at every step. They cost little of a run.
   struct Intervals {
     std::uint64_t sampling, energy, stability, comparison;
-    int compared_steps;  // in one comparison with half steps
+    int compared_steps;  // number in one comparison with half steps
   };
   virtual Intervals intervals() const = 0;
 
-  // From now on steps report the stress of the motion.
+  // Makes steps report the stress of the motion from now on.
   void watch_motion() { watches_motion_ = true; }
 
-  // Until this is said again, steps show the pairs of their report, with this weight. Null: nobody looks.
+  // Makes steps show the pairs of their report to the watcher, with this weight; null shows them no more.
   void show_pairs_to(PairWatcher* watcher, double weight = 1) {
     watcher_ = watcher;
     weight_ = weight;
   }
 
-  // Begins with this system: its springs, its clock and a new list.
+  // Prepares the springs, the clock and a new list of the system.
   virtual void start(System& system);
   StepReport advance(System& system) {
     const StepReport report = advance_open(system);
     complete(system);
     return report;
   }
-  // The same, but velocities, forces and torques are those of the full step only after complete(). A method
-  // may leave a part of the work to the next step, which saves a walk through all particles.
+  // Makes a step whose velocities, forces and torques are those of the full step only after complete(). A
+  // method may leave work to the next step, which saves a pass over all particles.
   virtual StepReport advance_open(System& system) = 0;
-  virtual void complete(System& system) = 0;  // nothing happens when the step is complete
+  // Completes the last step; has no effect if it is complete.
+  virtual void complete(System& system) = 0;
 
-  // The part of the method's stable range that the step uses at the present configuration: from 1 on
-  // disturbances grow. 0 for a method that is stable at any step.
+  // Returns the part of the method's stable range that the step uses at the present configuration. From 1 on
+  // disturbances grow; it is 0 for a method that is stable at any step.
   virtual double stability_share(const System& system) const = 0;
 
-  // The energy that the last step has made (or lost, below 0) because it is finite: dissipated and stored
-  // energy less the work of the flow. Means nothing with noise; nothing of a method that does not count it.
+  // Returns the energy that the last step has made because it is finite: dissipated and stored energy less
+  // the work of the flow. It has no meaning with noise, and is empty for a method that does not count it.
   virtual std::optional<double> spurious_energy(const System& system) const = 0;
 
-  // The shear stress (ImposedFlow::shear_part) of pairs, times the volume, summed over the next `steps` steps
-  // of a copy of the (complete) system; and over the same time with steps of half the size, of which two
-  // count as one. Means nothing with noise, which another step draws anew.
+  // Returns the shear stress (ImposedFlow::shear_part) of pairs, times the volume, summed over the next
+  // `steps` steps of a copy of the system; `halved` is the same in half steps, of which two count as one.
+  // Requires a complete step. It has no meaning with noise, which half steps draw anew.
   struct HalfSteps {
     double whole = 0, halved = 0;
   };
   virtual HalfSteps compare_half_steps(const System& system, int steps) const = 0;
 
-  // Marks the state before a step, to which return_to_mark() leads back any number of times. Requires a
-  // complete step.
+  // Stores the state before a step; return_to_mark() restores it repeatedly. Requires a complete step.
   virtual void mark(const System& system);
   virtual void return_to_mark(System& system);
 
-  // What the integrator keeps between steps besides the system.
+  // Save and load what the integrator keeps between steps besides the system.
   virtual void save(ArchiveWriter& archive) const { archive.put(displacement_bound_); }
   virtual void load(ArchiveReader& archive) { archive.get_all(displacement_bound_); }
 
@@ -113,8 +112,8 @@ class Integrator {
 
   ForceField field_;
   double timestep_;
-  // An upper bound of the displacements since the list was built. A step raises it by its largest one; the
-  // true value replaces it when it comes near what the list allows.
+  // An upper bound of the displacements since the list was built. Each step adds its largest one; the true
+  // value replaces the bound when it comes near what the list allows.
   double displacement_bound_ = 0;
 
  private:
@@ -125,19 +124,17 @@ class Integrator {
   double weight_ = 1;
 };
 
-// Spheres in a flow whose gradient changes, or stretches them with the fluid.
-//
-// The solvent at x has the acceleration (dL/dt + L L) x, and what accelerates it accelerates spheres of its
-// density as well: its pressure. A force m (dL/dt + L L) x and a torque of the changing spin stand for that.
-// Without them spheres would lag behind the flow by their inertial time, by more the farther they are from
-// the origin, which is no place of a periodic suspension; with them velocities relative to the flow follow
-// dv/dt = F / m - L v, whatever the origin. In steady shear both terms are zero.
-//
-// Whether the flow gains nothing by having this gradient, for a while, in the place of the cell's.
+// Returns true if the flow does not accelerate with this gradient: it is that of the cell, and L L = 0.
 bool keeps_flow(const System& system, const Matrix3& gradient);
 
-// Gives the cell this velocity gradient, and to velocities and spins what the flow has gained: by the change
-// of the gradient, and by `time` in it.
+// Gives the cell this velocity gradient L, and adds to velocities and spins what the flow gains: by the
+// change of L, and by `time` in it.
+//
+// The solvent at x has the acceleration (dL/dt + L L) x. Its pressure accelerates spheres of its density as
+// well, by a force m (dL/dt + L L) x and a torque of the changing spin. By drag alone spheres would lag
+// behind the flow by their inertial time, and by more the farther they are from the (arbitrary) origin. With
+// these terms velocities relative to the flow obey dv/dt = F / m - L v, whatever the origin. In steady shear
+// both are zero.
 void follow_flow(System& system, const Matrix3& gradient, double time, int threads);
 
 }  // namespace peclet::engine

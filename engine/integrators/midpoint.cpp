@@ -11,11 +11,11 @@
 namespace peclet::engine {
 namespace {
 
-// Newton's iterations, and the part of a residual that the first one and later ones may leave of the linear
-// system at the default tolerance, in proportion less at a tighter one: it need not be solved better than the
-// next residual will be. In the first one contacts open and close. Springs that slide enter the system with
-// their secant stiffness; with them iterations converge slowly, and more than the usual ones are made only
-// where the residual is larger than seven tolerances.
+// Numbers of Newton iterations, and the part of a residual that the solution of a linear system may leave in
+// the first and in later ones. The parts are for the default tolerance and shrink in proportion to a tighter
+// one: a solution need not be better than the next residual. Contacts open and close in the first iteration.
+// Springs that slide enter with their secant stiffness, which converges slowly: iterations beyond the usual
+// ones are made only if the residual is above `far` tolerances.
 struct Iterations {
   int usual, most;
   double first_forcing, forcing;
@@ -23,12 +23,12 @@ struct Iterations {
 constexpr Iterations with_springs = {3, 8, 0.3, 0.2}, without_springs = {6, 6, 0.2, 0.05};
 constexpr double far = 7;
 
-// Squares that the solver's numbers cannot hold: spheres that follow the flow leave rounding errors alone.
+// Squared residuals below it are rounding errors, as of spheres that follow the flow.
 constexpr double no_motion = std::numeric_limits<float>::min();
 
-// Springs that push after half of their advance are of second order. A little more than half damps those that
-// stick and are stiff: with z = dt k / R a step multiplies them by (1 - (1 - s) z) / (1 + s z), which tends
-// to -(1 - s) / s; what remains of first order is a fifth of what whole advances have.
+// The share s of a step's advance after which springs push. Half is of second order. A little more damps
+// stiff springs that stick: with z = dt k / R a step multiplies them by (1 - (1 - s) z) / (1 + s z), which
+// tends to -(1 - s) / s. The error of first order is a fifth of that of s = 1.
 constexpr double felt_share = 0.6;
 
 }  // namespace
@@ -55,8 +55,7 @@ std::optional<StepReport> Midpoint::find_velocities(System& system) {
     if (iteration == 0) solver_.assemble(system, field_);
     report.sums = field_.evaluate(system, loads_.force, loads_.torque);
     const VelocitySolver::Residual residual = solver_.set_residual(system, origin_, loads_, nullptr);
-    // A packing that starts with the streaming flow's velocities has no motion yet but what it is about to
-    // do.
+    // A packing that starts with the velocities of the flow has no motion yet except for its residual.
     const double motion = residual.squared_motion + (iteration == 0 ? residual.squared : 0);
     const double target = std::max(solver_.tolerance() * solver_.tolerance() * motion, no_motion);
     report.solver_residual = motion > 0 ? std::sqrt(residual.squared / motion) : 0;
@@ -77,7 +76,7 @@ std::optional<StepReport> Midpoint::find_velocities(System& system) {
   }
 }
 
-// -sum m sym(V V'), V' = (V_n + V) / 2.
+// Returns -sum m sym(V V') with V' = (V_n + V) / 2, both relative to the flow.
 SymmetricTensor Midpoint::stress_of_motion(const System& system) const {
   const ParticleState& particles = system.particles;
   return sum_over_particles(system, field_.threads(), [&](std::size_t i) {

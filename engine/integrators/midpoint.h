@@ -1,13 +1,12 @@
-// The implicit midpoint rule, without noise:
-//   x' = x_n + dt/2 V,   M (V - V_n) = dt F(x', V),   x_n+1 = x_n + dt V,
-// with the resistance of a pair averaged over the gaps between x_n and x_n+1 (terms/step_resistance.h).
-// Springs of friction push after 0.6 of the way that V stretches them in the step, and Coulomb's law cuts
-// them there and at its end. Newton's iterations start from the velocities that the last change would lead
-// to. They go on until the residual, relative to the motion relative to the streaming flow and in the energy
-// norm of the system, is below the tolerance, or for six iterations; with friction for three, and for eight
-// where the residual is large.
+// Midpoint is the implicit midpoint rule, without noise:
+//   x' = x_n + dt/2 V,   M (V - V_n) = dt F(x', V),   x_n+1 = x_n + dt V.
+// The resistance of a pair is averaged over the gaps between x_n and x_n+1 (terms/step_resistance.h). Springs
+// of friction push after 0.6 of their advance in the step; Coulomb's law cuts them there and at the end.
 //
-// The stress is that of V at x_n + dt/2 V, with the averaged resistance.
+// Newton's iterations start from V_n plus the last change. They end when the residual, over the motion
+// relative to the flow and in the energy norm, is below the tolerance, or after six; with friction after
+// three, or eight if the residual is large. The stress is that of V at x_n + dt/2 V, with the averaged
+// resistance.
 #pragma once
 
 #include "engine/integrators/implicit.h"
@@ -30,7 +29,7 @@ class Midpoint final : public Implicit {
   void keep_change(const System& system) override;
   void forget_change() override;
 
-  VectorField velocity_change_, spin_change_;  // of the last step, for each id
+  VectorField velocity_change_, spin_change_;  // changes in the last step, by particle id
   VectorField marked_velocity_change_, marked_spin_change_;
 };
 

@@ -7,17 +7,17 @@
 namespace peclet::engine {
 namespace {
 
-// The predicted velocities need not be better than half of their way changes the resistance: their tolerance
-// is that many times the one of the velocities.
+// Factor of the tolerance of the predicted velocities. They matter only by the place x' to which they lead.
 constexpr double of_prediction = 5;
 
-// Noise, and the resistance beside it, are of lubrication alone.
+// Returns the physics that noise and the resistance beside it come from.
 Physics lubrication_alone(Physics physics) {
   physics.contact.reset();
   for_each_conservative_law([](StressTerm /*part*/, auto& law) { law.reset(); }, physics);
   return physics;
 }
 
+// Returns true if inertia carries all spheres across the outer gap in such a step.
 bool carried_by_inertia(const Physics& physics, const ParticleState& particles, double timestep) {
   if (!physics.lubrication || particles.count() == 0) return false;
   for (std::size_t i = 0; i < particles.count(); ++i) {
@@ -98,10 +98,11 @@ PairSums NoisyMidpoint::assemble(System& system, ForceField& field, Loads& loads
   return sums;
 }
 
-// What a particle carries: m V (V_n + V) / 2, and what its drag and the noise of its drag do in a step. These
-// act on single particles and have no stress, but where they act counts: the noise at x_n, the drag on V and,
-// if it acts on both, the drag on V_n each in the middle of the way that they resist. So neither has a mean
-// at any place, and a free particle carries kT whatever the step.
+// Returns the stress of the motion of a particle, times the volume: -m V (V_n + V) / 2 and the part of its
+// drag and of the noise of its drag. These act on single particles and have no stress by themselves, but the
+// places where they act count. The noise acts at x_n. The drag on V, and that on V_n if there is one, act in
+// the middle of the way that they resist. Their mean is then zero at any place, and a free particle carries
+// kT at any step.
 SymmetricTensor NoisyMidpoint::motion(const System& system, std::size_t i) const {
   const ParticleState& particles = system.particles;
   const Vector3 flow =
@@ -114,7 +115,7 @@ SymmetricTensor NoisyMidpoint::motion(const System& system, std::size_t i) const
          0.5 * timestep_ * dragged * symmetric_dyad(before, mean);
 }
 
-// The drag on V becomes that on (V_n + V) / 2.
+// Turns the drag on V into that on (V_n + V) / 2.
 void NoisyMidpoint::leave_half_of_the_drag(const System& system) {
   const ParticleState& particles = system.particles;
   const double viscosity = field_.physics().viscosity;

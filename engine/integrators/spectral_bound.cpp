@@ -16,6 +16,7 @@
 namespace peclet::engine {
 namespace {
 
+// Returns c_R R + c_K K of a pair.
 PairResistance coupling_of(const Physics& physics, const Terms& terms, const PairKind& kind,
                            const PairGeometry& shape, const MatrixWeights& weights) {
   PairResistance coupling{};
@@ -26,7 +27,7 @@ PairResistance coupling_of(const Physics& physics, const Terms& terms, const Pai
                 {weights.resistance, weights.stiffness, weights.stiffness}, [] {
                   return OfEachSpring<double>{1, 1};
                 });
-  // Spheres that pull turn back with n: V' / r across it.
+  // Attraction turns with n, which adds the stiffness V' / r across n.
   const double slope = potential(kind.conservative, shape.distance, shape.sum_of_radii).slope;
   coupling.shear += weights.stiffness * std::max(slope, 0.0) / shape.distance;
   return coupling;
@@ -59,7 +60,7 @@ PackingMatrix::PackingMatrix(const System& system, const std::vector<PairKind>& 
 }
 
 Eigen::VectorXd PackingMatrix::operator*(const Eigen::VectorXd& vector) const {
-  // A column for each velocity and spin.
+  // Each column is the velocity or the spin of a particle.
   const Eigen::Map<const Eigen::Matrix3Xd> scaled(vector.data(), 3, drag_rate_.size());
   const Eigen::Matrix3Xd motion = scaled * per_root_inertia_.asDiagonal();
   Eigen::Matrix3Xd load = Eigen::Matrix3Xd::Zero(3, motion.cols());
@@ -81,7 +82,7 @@ Eigen::VectorXd PackingMatrix::operator*(const Eigen::VectorXd& vector) const {
 
 namespace {
 
-// Far more than any packing has needed.
+// A limit far above what any packing has needed.
 constexpr int most_lanczos_iterations = 200;
 constexpr int iterations_between_looks = 4;
 
@@ -101,7 +102,7 @@ struct Largest {
 };
 
 Largest largest_of(const Eigen::VectorXd& diagonal, const Eigen::VectorXd& beside) {
-  // Entries are small to the solver when they are so beside 1. The matrix may be zero.
+  // The solver takes entries that are small beside 1 as zero. The matrix may be zero.
   const double unit = std::max(diagonal.maxCoeff(), std::numeric_limits<double>::min());
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
   solver.computeFromTridiagonal(diagonal / unit, beside / unit);
@@ -123,7 +124,7 @@ SpectralBound largest_eigenvalue(const PackingMatrix& matrix, double tolerance) 
     diagonal(k) = vector.dot(product);
     product -= diagonal(k) * vector + length * before;
     length = beside(k) = product.norm();
-    // The vectors span everything that the start vector reaches: nothing is left but rounding.
+    // True if the vectors span all that the start vector reaches: only rounding is left.
     const bool exhausted = !(length > 1e-12 * diagonal(k));
     if (exhausted || bound.iterations % iterations_between_looks == 0) {
       const Largest found = largest_of(diagonal.head(k + 1), beside.head(k));

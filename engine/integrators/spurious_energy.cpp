@@ -6,7 +6,7 @@
 namespace peclet::engine {
 namespace {
 
-// The motion that the forces were evaluated with.
+// HalfStepMotion gives the velocities that the forces were evaluated with.
 class HalfStepMotion {
  public:
   HalfStepMotion(const ParticleState& particles, const VectorField& force, const VectorField& torque,
@@ -31,7 +31,7 @@ class HalfStepMotion {
   double half_step_;
 };
 
-// Of contact and conservative laws.
+// Returns the potential of contact and conservative laws.
 Potential potential(const Physics& physics, const PairKind& kind, double distance) {
   Potential sum = engine::potential(kind.conservative, distance, kind.sum_of_radii);
   if (const double overlap = kind.sum_of_radii - distance; physics.contact && overlap > 0) {
@@ -41,7 +41,7 @@ Potential potential(const Physics& physics, const PairKind& kind, double distanc
   return sum;
 }
 
-// A spring that is shorter than Coulomb's limit has grown by `stretch`; at the limit it slides.
+// Returns the bracket of C for a spring that has grown by `stretch`: 0 at Coulomb's limit, where it slides.
 double energy_of_stretch(double stiffness, const Vector3& spring, const Vector3& stretch, double limit) {
   return sticks(stiffness, spring, limit) ? -spring_energy(stiffness, stretch) : 0;
 }
@@ -83,7 +83,7 @@ double spurious_energy(const System& system, const std::vector<PairKind>& kinds,
   for (std::size_t p = 0; p < pairs.size(); ++p) {
     const ImageFrame& frame = frames[pairs[p].image];
     const PairKind& kind = kinds[pairs[p].kind];
-    // Pairs that have just parted count too.
+    // Pairs that have just separated count, too.
     elastic += energy_of_pair(physics, kind, geometry(separation(particles, pairs[p], frame), kind),
                               half_step.of(pairs[p], frame), system.springs[p], timestep);
   }

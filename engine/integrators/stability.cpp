@@ -22,7 +22,7 @@ struct SpherePair {
   double mobility;  // 1/m_i + 1/m_j
 };
 
-// Largest rate at which a pair's translations are damped: one-body drag and squeezing.
+// Returns the largest damping rate of a pair's translations [1/time]: drag, squeezing and dashpot.
 double translational_damping(const Physics& physics, const PairResistance& resistance, double damping,
                              const SpherePair& pair) {
   return std::max(translational_drag(physics.viscosity, pair.first) / pair.mass_first,
@@ -30,8 +30,9 @@ double translational_damping(const Physics& physics, const PairResistance& resis
          (resistance.squeeze + damping) * pair.mobility;
 }
 
-// Bound of the rate at which its spins are: their drag (10/3 of the translational rate), the trace of the
-// shearing and twisting modes, and dashpots. It decides only where lubrication is weak or absent.
+// Returns an upper bound of the damping rate of a pair's spins [1/time]: their drag (10/3 of the
+// translational rate), the trace of the shear and twist modes, and dashpots. It decides only where
+// lubrication is weak or absent.
 double rotational_damping(const Physics& physics, const PairResistance& resistance, double damping,
                           const SpherePair& pair) {
   const double inertia_first = 0.4 * pair.mass_first * pair.first * pair.first;
@@ -72,8 +73,8 @@ double stable_step(const PairRates& rates) {
   return 4 / (l + std::sqrt(l * l + 4 * w2));
 }
 
-// drag / stiffness of the conservative laws where lubrication ends and the drag of single spheres alone
-// resists them; infinite where they do not reach that far.
+// Returns drag / stiffness of the conservative laws beyond the range of lubrication, where only the drag of
+// single spheres resists them [time]; infinite if they end before.
 double time_beyond_lubrication(const Physics& physics, double first, double second) {
   const double sum = first + second;
   const PairKind kind = make_pair_kind(physics, first, second);
@@ -83,10 +84,9 @@ double time_beyond_lubrication(const Physics& physics, double first, double seco
   return drag_first * drag_second / (drag_first + drag_second) / stiffness;
 }
 
-// The shortest time in which attraction shortens its own distance: resistance / -V'' where V'' is negative,
-// the resistance being lubrication and the drag of both spheres. Infinite without attraction. Gaps from 1e-8
-// of the sum of radii, below any width that a law may have, to the range of all laws, at a twelfth of a
-// decade.
+// Returns the shortest time in which the approach of an attracted pair grows e-fold: resistance / -V'' where
+// V'' < 0. The resistance is that of lubrication and of the drag of both spheres. It is infinite without
+// attraction. Twelve gaps per decade are tried, from 1e-8 of the sum of radii to the range of all laws.
 double time_of_pulling(const Physics& physics, double first, double second) {
   const PairKind kind = make_pair_kind(physics, first, second);
   const double drag_first = translational_drag(physics.viscosity, first);
@@ -107,7 +107,7 @@ double time_of_pulling(const Physics& physics, double first, double second) {
   return shortest;
 }
 
-// X_A at the outer gap of a sphere, with the partner that has most of it.
+// Returns X_A of a sphere at the outer gap, with the partner for which it is largest.
 double largest_resistance_at_the_outer_gap(const Scene& scene, double radius) {
   const Physics& physics = scene.physics;
   double largest = 0;
@@ -120,10 +120,10 @@ double largest_resistance_at_the_outer_gap(const Scene& scene, double radius) {
   return largest;
 }
 
-// What a sphere and a third one do to the distance between them in the step in which a pair of the first one
-// leaves the range of lubrication: twice the outer gap over the standard deviation of that way. The pair
-// keeps the noise F_B^2 = 2 kT X_A / dt of a resistance that is gone, which moves the sphere by
-// dt F_B / (m / dt + zeta); free spheres move by dt^2 kT / (m + zeta dt / 2) squared.
+// Returns twice the outer gap over the standard deviation of a leap: the way of a sphere relative to a third
+// one in the step in which a pair of the sphere leaves the range of lubrication. The pair keeps the noise
+// F_B^2 = 2 kT X_A / dt of a resistance that is gone; it moves the sphere by dt F_B / (m / dt + zeta). The
+// squared way of a free sphere is dt^2 kT / (m + zeta dt / 2).
 double room_over_leap(const Scene& scene, const Species& species, double resistance, double timestep) {
   const double mass = mass_of(scene.particles, species), energy = scene.physics.thermal_energy;
   const double drag = translational_drag(scene.physics.viscosity, species.radius);
@@ -134,7 +134,7 @@ double room_over_leap(const Scene& scene, const Species& species, double resista
          (timestep * std::sqrt(parting + 2 * free));
 }
 
-// `longest`, or the step at which so many standard deviations of a leap are that room.
+// Returns `longest`, or the shorter step in which `deviations` standard deviations of a leap fit.
 double step_of_leaps(const Scene& scene, const Species& species, double deviations, double longest) {
   const double resistance = largest_resistance_at_the_outer_gap(scene, species.radius);
   const auto fits = [&](double step) {
@@ -144,7 +144,7 @@ double step_of_leaps(const Scene& scene, const Species& species, double deviatio
   double low = longest;
   do {
     low /= 2;
-    // With energies near the largest numbers no step fits that is one: the run itself then says so.
+    // No normal step fits if energies are near the largest numbers; the run then reports the fault.
     if (!std::isnormal(low)) return longest;
   } while (!fits(low));
   double high = 2 * low;
@@ -156,8 +156,8 @@ double step_of_leaps(const Scene& scene, const Species& species, double deviatio
   return low;
 }
 
-// The species whose inertia may bound the step: of one density the smallest one, because small spheres leap
-// farthest and have the least room, whatever the other sizes; else any.
+// Returns the species whose inertia may bound the step. If all have one density it is the smallest one: small
+// spheres leap farthest and have the least room.
 std::vector<Species> leaping_species(const Particles& particles) {
   const auto has_own = [](const Species& species) { return species.density.has_value(); };
   if (std::ranges::any_of(particles.species, has_own)) return particles.species;
@@ -165,7 +165,7 @@ std::vector<Species> leaping_species(const Particles& particles) {
   return {*std::ranges::min_element(particles.species, by_radius)};
 }
 
-// Shortened where inertia and leaps of a species ask for it.
+// Returns the longer of `step`, bounded by inertia, and `without_inertia`, bounded by leaps of the species.
 double step_with_noise_and_lubrication(const Scene& scene, double step, double without_inertia) {
   constexpr double leaps = 5;
   const Physics& physics = scene.physics;
@@ -198,7 +198,7 @@ PairRates stiffest_pair(const Scene& scene) {
 
 double largest_timestep(const Scene& scene) { return stable_step(stiffest_pair(scene)); }
 
-// As large as the scene's, but for the whole numbers of spheres.
+// Returns a cell of the scene's volume before numbers of spheres are rounded.
 PeriodicCell cell_of(const Scene& scene) {
   double shares = 0, volumes = 0;  // number and volume of the spheres, both in the same units
   for (const Species& species : scene.particles.species) {
@@ -211,18 +211,18 @@ PeriodicCell cell_of(const Scene& scene) {
   return {box_lengths(scene, std::cbrt(volume / scene.volume_fraction)), Matrix3{}};
 }
 
-// In strains, and in times X_A / k of a contact, whose errors have been measured.
+// ImplicitStep is the longest step, as a strain and in times X_A / k, whose error has been measured.
 struct ImplicitStep {
   double strain, contact_times;
 };
 
-// Towards jamming spheres move farther in a strain, and many steps would be divided.
+// Returns a strain that shrinks towards jamming, where spheres move farther and many steps would be divided.
 double strain_without_noise(const Scene& scene) {
   return std::clamp(0.2 * (0.65 - scene.volume_fraction), 0.002, 0.01);
 }
 
-// At the Peclet number Pe of the rate noise widens the layer through which the flow presses a pair to 1 / Pe
-// of a radius. Where that is ten inner gaps xi, Pe xi = 0.1, steps may be as long as without noise.
+// Returns the strain of a step with noise. Noise widens the layer through which the flow presses a pair to 1
+// / Pe of a radius. If that is ten inner gaps xi or more, noise does not shorten steps.
 double strain_with_noise(const Scene& scene, double rate, double radius) {
   const Physics& physics = scene.physics;
   constexpr double shortest = 0.005;
@@ -237,7 +237,7 @@ ImplicitStep longest_implicit_step(const Scene& scene, double rate, double small
   const Physics& physics = scene.physics;
   const bool conservative = required_terms(physics).conservative, noise = physics.thermal_energy > 0;
   if (physics.contact && physics.contact->friction > 0) {
-    // Where springs at the middle of the step are not enough, or are not taken there.
+    // True where springs near the middle of the step are too inaccurate, or (with noise) are not taken there.
     const bool demanding = noise || physics.contact->friction > 1 || physics.contact->rolling_stiffness > 0 ||
                            remembers_sliding(*physics.contact);
     return {demanding ? 0.0025 : 0.005, demanding || conservative ? 2.0 : 4.0};
@@ -264,7 +264,7 @@ double automatic_implicit_timestep(const Scene& scene) {
     const double stokes = largest_inertia * rate / physics.viscosity;
     step = strain / ((1 + 2 * stokes) * rate);
   }
-  Scene undamped = scene;  // a dashpot lengthens no time of the contact's other motions
+  Scene undamped = scene;  // a dashpot does not lengthen the times of the contact's other motions
   if (undamped.physics.contact) undamped.physics.contact->tangential_damping = 0;
   if (const PairRates rates = stiffest_pair(undamped); rates.frequency_squared > 0) {
     step = std::min(step, contact_times * rates.damping / rates.frequency_squared);

@@ -9,7 +9,7 @@
 namespace peclet::engine {
 namespace {
 
-// Far more than any packing has needed.
+// A limit far above what any packing has needed.
 constexpr int most_iterations = 1000;
 
 }  // namespace
@@ -104,8 +104,8 @@ VelocitySolver::Residual VelocitySolver::set_residual(const System& system, cons
       motion = squared_motion;
     }
   });
-  // What a step changes is the smaller a part of the motion the more inertia outlives the step, and errors of
-  // that part add up for as long.
+  // If inertia outlives many steps, each changes a small part of the motion, and its errors add up over them.
+  // So residuals are relative to that part.
   const double changed = std::max(motion.whole - motion.inertial, 0.0);
   return {.squared = *begun_, .squared_motion = motion.whole > 0 ? changed * changed / motion.whole : 0};
 }

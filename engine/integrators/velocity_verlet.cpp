@@ -15,9 +15,10 @@
 namespace peclet::engine {
 namespace {
 
+// Returns the speeds of two groups of particles together.
 Speeds either(const Speeds& a, const Speeds& b) { return {std::max(a.largest, b.largest), a.sum + b.sum}; }
 
-// NaN if one is not finite.
+// Returns the largest speed; NaN if one is not finite.
 double largest(const Speeds& speeds) {
   return std::isfinite(speeds.sum) ? std::sqrt(speeds.largest) : std::numeric_limits<double>::quiet_NaN();
 }
@@ -35,7 +36,7 @@ VelocityVerlet::VelocityVerlet(ForceField field, const ParticleState& particles,
   }
 }
 
-// Steps and half steps are compared over some twenty times of the fastest modes.
+// A comparison with half steps lasts some twenty times of the fastest modes.
 Integrator::Intervals VelocityVerlet::intervals() const {
   return {.sampling = 50, .energy = 500, .stability = 5000, .comparison = 10000, .compared_steps = 20};
 }
@@ -56,8 +57,8 @@ StepReport VelocityVerlet::advance_open(System& system) {
     follow_flow(system, gradient, timestep_, field_.threads());
   }
   system.box.deform(deformation.displacement_gradient(system.clock));
-  // One walk instead of two, with the same numbers. Whether the list still holds is known only after it;
-  // where it does not, the pairs are computed again with another one. Springs would then have advanced twice.
+  // Moving and evaluating in one pass gives the same numbers. Only after it is known whether the list still
+  // holds; if not, pairs are computed again with a new list. Springs would then advance twice.
   const bool in_one_walk = field_.threads() <= 1 && system.springs.kinds() == SpringKinds::none;
   double speed = 0;
   PairSums sums;
@@ -68,8 +69,7 @@ StepReport VelocityVerlet::advance_open(System& system) {
   }
   StepReport report;
   report.largest_displacement = speed * timestep_;
-  // Displacements beyond the range of the list: no neighbours are looked for, and the caller reports the
-  // cause.
+  // Displacements beyond the range of the list: the step ends here, and the caller reports the cause.
   if (!(speed * timestep_ < system.list.ranges().largest())) return report;
   if (keep_list(system, speed) || !in_one_walk) sums = field_.evaluate_blocks(system, force_, torque_);
   open_ = true;
@@ -88,8 +88,9 @@ StepReport VelocityVerlet::advance_open(System& system) {
   return report;
 }
 
-// What a particle carries, with the velocity of the half step: m v v less half a step of its drag, which acts
-// where the way that it resists ends; in the middle of the way it has no mean. So a free particle carries kT.
+// Returns the stress of the motion of a particle, times the volume: -m v v with the velocity v of the half
+// step, plus half a step of drag. The drag acts at the end of the way that it resists; moved to the middle it
+// has no mean. Then a free particle carries kT.
 SymmetricTensor VelocityVerlet::motion(const System& system, std::size_t i) const {
   const ParticleState& particles = system.particles;
   const Vector3 v = particles.velocity[i] -
@@ -98,8 +99,8 @@ SymmetricTensor VelocityVerlet::motion(const System& system, std::size_t i) cons
   return (0.5 * timestep_ * drag - particles.mass[i]) * symmetric_dyad(v, v);
 }
 
-// A mode z of z^2 - (2 - l - k) z + (1 - l) = 0, with l and k the means of dt M^-1 R and dt^2 M^-1 K over its
-// shape, decays if and only if 2 l + k < 4.
+// A mode z of z^2 - (2 - l - k) z + (1 - l) = 0 decays if and only if 2 l + k < 4, with the means l and k of
+// dt M^-1 R and dt^2 M^-1 K over its shape.
 double VelocityVerlet::stability_share(const System& system) const {
   const MatrixWeights quarters = {0.5 * timestep_, 0.25 * timestep_ * timestep_};
   return largest_eigenvalue(PackingMatrix(system, field_.kinds(), field_.physics(), quarters)).upper();
@@ -110,7 +111,7 @@ std::optional<double> VelocityVerlet::spurious_energy(const System& system) cons
 }
 
 Integrator::HalfSteps VelocityVerlet::compare_half_steps(const System& system, int steps) const {
-  // `every` steps of timestep / every for one that counts.
+  // Returns the sum of the stress at the ends of `steps` whole steps, made in steps of timestep / every.
   const auto stress = [&](int every) {
     System copy = system;
     const double timestep = timestep_ / every;
@@ -136,7 +137,7 @@ OneBodyInput VelocityVerlet::kick_input(System& system) {
   return field_.one_body_input(system, force_, torque_, kicks_.data());
 }
 
-// Forces of the last step that wait for it.
+// Adds the forces that the last step has left for this block.
 void VelocityVerlet::add_due(const System& system, const ParticleBlock& block) {
   if (open_) field_.add_incoming(system, block, force_, torque_);
 }
@@ -152,8 +153,8 @@ void VelocityVerlet::complete(System& system) {
   open_ = false;
 }
 
-// The first kick, after the last step's second one where it is due, and the drift, in one walk through the
-// particles. Returns the largest speed relative to the streaming flow, NaN if one is not finite.
+// Makes the second kick of the last step if it is due, the first kick and the drift, in one pass over the
+// particles. Returns the largest speed relative to the flow; NaN if one is not finite.
 double VelocityVerlet::move(System& system) {
   const OneBodyInput input = kick_input(system);
   const std::vector<ParticleBlock>& blocks = system.list.blocks();
@@ -176,8 +177,8 @@ double VelocityVerlet::move(System& system) {
   return largest(all);
 }
 
-// Each block is moved when its forces are due, while it is in the cache. The particles of later blocks, which
-// have not moved yet, are in no pair of this one.
+// Moves each block just before its pairs are evaluated, while it is in the cache. Particles of later blocks,
+// which have not moved yet, are in no pair of this block.
 std::pair<double, PairSums> VelocityVerlet::move_and_evaluate(System& system) {
   const OneBodyInput input = kick_input(system);
   Speeds speeds;
@@ -190,7 +191,7 @@ std::pair<double, PairSums> VelocityVerlet::move_and_evaluate(System& system) {
   return {largest(speeds), sums};
 }
 
-// Whether the list is another one.
+// Rebuilds the list if it does not hold. Returns true if it was rebuilt.
 bool VelocityVerlet::keep_list(System& system, double speed) {
   // A displacement d grows by dt (u - L x_reference) = dt (peculiar velocity + L d).
   displacement_bound_ += timestep_ * (speed + norm(system.box.velocity_gradient()) * displacement_bound_);

@@ -1,10 +1,9 @@
-// Velocity Verlet with half-step velocities: the published method and the reference of every other.
-//
+// VelocityVerlet makes explicit steps with half-step velocities, as published. It is the reference method.
 //   U' = U + dt/2 a;  x += dt U';  springs advance with U';  a = F(x, U', fresh noise) / m;  U = U' + dt/2 a
-// and likewise for angular velocities with the moment of inertia. The forces see the half-step velocities;
-// noise is drawn once a step and serves both halves. For x'' = -w^2 x - l x' the scheme is stable if and only
-// if w^2 dt^2 + 2 l dt < 4, and the variance of full-step velocities is exactly kT/m at any stable step (that
-// of half-step velocities is larger).
+// Angular velocities follow with the moment of inertia. The forces are those of the half-step
+// velocities. Noise is drawn once a step and serves both halves. For x'' = -w^2 x - l x' the scheme is stable
+// if and only if w^2 dt^2 + 2 l dt < 4. The variance of full-step velocities is kT/m at any stable step; that
+// of half-step velocities is larger.
 #pragma once
 
 #include <utility>
@@ -38,9 +37,9 @@ class VelocityVerlet final : public Integrator {
   OneBodyInput kick_input(System& system);
   bool keep_list(System& system, double speed);
 
-  std::vector<OneBodyFactors> kicks_;  // half a step over mass and moment of inertia of each size class
+  std::vector<OneBodyFactors> kicks_;  // half a step over mass and moment of inertia, by size class
   VectorField force_, torque_;
-  bool open_ = false;  // the second kick of the last step is due, and so are its incoming forces
+  bool open_ = false;  // the second kick of the last step and its incoming forces are due
   VectorField marked_force_, marked_torque_;
 };
 

@@ -15,7 +15,7 @@
 namespace peclet::engine {
 namespace {
 
-// In proportion to the number of spheres.
+// Returns weights in proportion to the number of spheres of each species.
 std::vector<double> number_weights(const Particles& particles) {
   std::vector<double> weights;
   for (const Species& species : particles.species) {
@@ -36,8 +36,7 @@ std::vector<double> over_their_sum(std::vector<double> values) {
   return values;
 }
 
-// Whole numbers in proportion to the weights, `count` together; those with the largest remainders are rounded
-// up.
+// Returns whole numbers in proportion to the weights, `count` in all. The largest remainders are rounded up.
 std::vector<std::size_t> by_largest_remainders(const std::vector<double>& weights, std::size_t count) {
   const double total = sum_of(weights);
   std::vector<std::size_t> number;
@@ -64,7 +63,7 @@ std::vector<std::size_t> numbers_of_mixture(const Particles& particles) {
                    [&](std::size_t a, std::size_t b) { return species[a].radius > species[b].radius; });
   std::vector<std::size_t> number(species.size());
   std::size_t left = particles.count;
-  double volume = 0;  // that is still owed, over 4 pi / 3
+  double volume = 0;  // volume of grains that rounding has left over, in units of 4 pi / 3
   for (const std::size_t s : grains) {
     const double cube = std::pow(species[s].radius, 3);
     volume += exact[s] * cube;
@@ -78,15 +77,15 @@ std::vector<std::size_t> numbers_of_mixture(const Particles& particles) {
   return number;
 }
 
-// Spheres of one size fill 0.74 of space at most; small ones in the holes of large ones the same of the rest:
-// 1 - 0.26^2.
+// Spheres of one size fill at most 0.74 of space. Small spheres fill at most 0.74 of the holes between large
+// ones: 1 - 0.26^2.
 constexpr double densest_of_one_size = 0.74, densest_of_two_groups = 0.93;
 
 constexpr const char* colloids_at = "/particles/mixture/colloids";
 constexpr const char* grains_at = "/particles/mixture/grains";
 constexpr const char* alpha_at = "/particles/mixture/alpha";
 
-// Volume, mass and moment of inertia must be numbers, and one can divide by them.
+// Throws InputError unless volume, mass and moment of inertia and their inverses are normal numbers.
 void check_sizes(const SceneDocument& scene, const Particles& particles,
                  const std::vector<std::string>& pointers) {
   const auto is_usable = [](double value) { return std::isnormal(value) && std::isnormal(1 / value); };
@@ -96,18 +95,19 @@ void check_sizes(const SceneDocument& scene, const Particles& particles,
     const double all = static_cast<double>(particles.count) * volume;
     if (!is_usable(volume) || !is_usable(mass) || !is_usable(mass * a * a) || !is_usable(all)) {
       const std::string own = pointers[i] + "/radius";
-      scene.refuse(scene.has(own) ? own : pointers[i],
-                   "must leave mass and moment of inertia that can be computed with, at the density {}; "
-                   "choose other units",
-                   density_of(particles, species));
+      scene.refuse(
+          scene.has(own) ? own : pointers[i],
+          "must give a mass and a moment of inertia that are neither too large nor too small to compute "
+          "with, at the density {}; choose other units",
+          density_of(particles, species));
     }
     if (!is_usable(species.share)) {
-      scene.refuse(pointers[i], "must have a share that is a part of the sum of all shares");
+      scene.refuse(pointers[i], "must have a share that is not negligible in the sum of all shares");
     }
   }
 }
 
-// Kernels know a sphere's mass by its size.
+// Throws InputError if one radius has two densities: kernels find the mass by the radius.
 void check_densities(const SceneDocument& scene, const Particles& particles,
                      const std::vector<std::string>& pointers) {
   std::map<double, double> density_at;
@@ -122,7 +122,7 @@ void check_densities(const SceneDocument& scene, const Particles& particles,
   }
 }
 
-// Turns the shares of a group into its parts of all volume, and adds them.
+// Adds a group that has the share `of_volume` of all volume, with shares of its species by volume.
 void add_group(const SpeciesList& group, double of_volume, SpeciesList& all) {
   const auto weight = [&](const Species& one) { return volume_weight(group.shares, one.share, one.radius); };
   double sum = 0;
@@ -151,7 +151,7 @@ SpeciesList read_mixture(const SceneDocument& scene, Mixture& mixture) {
   return all;
 }
 
-// The a of Pe: as given, that of a mixture, or the first radius.
+// Returns the radius of reference: the given one, that of a mixture, or the first radius.
 double radius_of_reference(const SceneDocument& scene, const Particles& particles) {
   constexpr const char *given = "/particles/reference_radius", *named = "/particles/mixture/reference";
   if (!particles.mixture) return scene.number_or(given, particles.species.front().radius);
@@ -163,7 +163,7 @@ double radius_of_reference(const SceneDocument& scene, const Particles& particle
   return name == "grains" ? mixture.grain_radius : mixture.mean_radius();
 }
 
-// rho_i = rho (a / a_i)^2, of which tau_I = rho_i a_i^2 / eta is the same for all.
+// Sets rho_i = rho (a / a_i)^2, so that tau_I = rho_i a_i^2 / eta is the same for all sizes.
 void set_equal_inertia(const SceneDocument& scene, Particles& particles,
                        const std::vector<std::string>& pointers) {
   for (std::size_t i = 0; i < particles.species.size(); ++i) {
@@ -176,15 +176,15 @@ void set_equal_inertia(const SceneDocument& scene, Particles& particles,
   }
 }
 
-// {species}: rows of one size; {most}: of sizes; {one_size} and {two_groups}: the densest packings.
+// {species}: rows of one size; {most}: number of sizes; {one_size} and {two_groups}: the densest packings.
 constexpr const char* particle_rows = R"(
 /particles | object | The spheres.
 /particles/count | integer >= 1 and <= {particles}; named number of particles, N | Number of particles.
 /particles/density | number > 0; in mass / length^3; named density of the particles, ρ | Mass density of the
     particles.
 /particles/density_rule? | one of equal-inertia | equal-inertia: spheres of radius a_i have the density times
-    (a / a_i)^2, a the radius of reference, so that tau_I is the same for all; absent: density is that of all
-    that have none of their own.
+    (a / a_i)^2, a the radius of reference, so that tau_I is the same for all; absent: all have the density,
+    unless their species has its own.
 /particles/species | array of 1 to {most} | The sizes; all have volume_share or all have number_share. A
     single species needs neither.
 {species}
@@ -193,22 +193,23 @@ constexpr const char* particle_rows = R"(
 /particles/mixture/colloids | array of 1 to {most} | Sizes of the colloids, as in species; shares are within
     the group.
 /particles/mixture/colloids/* | object; as /particles/species/* | One size, or one distribution of sizes.
-/particles/mixture/grains | array of 1 to {most} | Sizes of the grains, likewise.
+/particles/mixture/grains | array of 1 to {most} | Sizes of the grains, as in species; shares are within the
+    group.
 /particles/mixture/grains/* | object; as /particles/species/* | One size, or one distribution of sizes.
 /particles/mixture/alpha | number >= 0 and <= 1; named share of grains in the solid volume, α | Volume of the
     grains over that of all spheres: 0 leaves colloids only, 1 grains only.
-/particles/mixture/reference? | one of colloids, grains, mean | The a of Pe in place of reference_radius, by
-    the first radius a_c of the colloids and a_g of the grains: a_c, a_g, or mean: (1 - alpha) a_c + alpha
-    a_g. colloids unless given.
-/particles/reference_radius? | number > 0; in length | The a of Pe, St, Brownian times and derived groups; the
-    radius of the first species, or of the first colloids, unless given.
+/particles/mixture/reference? | one of colloids, grains, mean | Radius of reference, in place of
+    reference_radius: the first radius a_c of the colloids (unless given), the first radius a_g of the grains,
+    or the mean (1 - alpha) a_c + alpha a_g.
+/particles/reference_radius? | number > 0; in length | Radius of reference: the a of Pe, St, Brownian times
+    and derived groups; the radius of the first species, or of the first colloids, unless given.
 /volume_fraction | number > 0 and < {two_groups}; named volume fraction, φ | Volume of the particles over that
     of the box; below 0.74 without a mixture.
-/addition | object; instead of volume_fraction | The volume fraction of a mixture to which one group was
-    added, while the volumes of the liquid and of the other group stayed: it follows from alpha.
+/addition | object; instead of volume_fraction | Addition of one group of a mixture while the volumes of the
+    liquid and of the other group stay the same; the volume fraction follows from alpha.
 /addition/added | one of colloids, grains | Which group is added.
 /addition/base_volume_fraction | number > 0 and < {one_size}; named volume fraction before the addition, φ_0 |
-    Volume fraction before, of the other group alone.
+    Volume fraction of the other group alone, before the addition.
 /box? | object | The periodic box; absent: a cube.
 /box/height | number > 0; in length | Edge along y, the direction of the velocity gradient. The other two are
     equal; the volume follows from spheres and volume fraction.
@@ -268,7 +269,7 @@ std::size_t smallest_count(Particles particles) {
   for (std::size_t s = 0; s < exact.size(); ++s) share[particles.species[s].radius] += exact[s];
   double least = 1;
   for (const auto& [radius, part] : share) least = std::min(least, part);
-  // Grains of a mixture are rounded one after the other, and may want a few more.
+  // Grains of a mixture are rounded one after the other, and may need a few more spheres.
   for (double count = std::ceil(1 / least - 1e-9); count <= most_particles;
        count += 1 + std::floor(count / 50)) {
     particles.count = static_cast<std::size_t>(count);

@@ -1,4 +1,4 @@
-// The blocks of a scene that are laws of pairs, in the order of the manual: their keys and what these mean.
+// law_blocks has keys and readers of the blocks of a scene that are laws of pairs, in the manual's order.
 #pragma once
 
 #include <fmt/format.h>
@@ -15,16 +15,16 @@ inline constexpr const char* contact_keys = R"(
     (or 0): frictionless.
 /contact/kinetic_friction? | number >= 0; if friction; named coefficient of kinetic friction, μ_k |
     Coefficient of kinetic friction, while a contact slides; at most that of friction, and with it only;
-    absent: the same.
-/contact/critical_load? | number >= 0; in force; if friction | Normal force F_CL below which a contact has no
-    friction, which goes by what exceeds it; with friction only; absent (or 0): none.
-/contact/largest_load? | number > 0; in force; if friction | Load of friction beyond which it grows no more,
-    with friction only; absent: none.
+    absent: equal to friction.
+/contact/critical_load? | number >= 0; in force; if friction | Critical load F_CL: the load of friction is the
+    part of the normal force above it; with friction only; absent: 0.
+/contact/largest_load? | number > 0; in force; if friction | Largest load of friction, with friction only;
+    absent: unlimited.
 /contact/tangential_stiffness? | number > 0; in force / length; if friction | Tangential stiffness, with
     friction only; 2/7 of the normal one unless given.
 /contact/tangential_damping? | number >= 0; in force time / length; if friction | Tangential damping gamma_t,
-    with friction only: gamma_t v_t pushes beside the tangential spring, and Coulomb's law limits both together;
-    absent (or 0): none.
+    with friction only: gamma_t v_t adds to the force of the tangential spring, and Coulomb's law limits their
+    sum; absent (or 0): none.
 /contact/rolling_stiffness? | number >= 0; in force / length | Stiffness against rolling; absent (or 0): free
     rolling. Above 0 it needs friction above 0.
 /contact/rolling_friction? | number >= 0; if rolling_stiffness; named coefficient of rolling friction, μ_r |
@@ -43,7 +43,7 @@ inline void read_contact(const SceneDocument& scene, Physics& physics) {
   }
   contact.critical_load = scene.number_or("/contact/critical_load", contact.critical_load);
   contact.largest_load = scene.number_or("/contact/largest_load", contact.largest_load);
-  // 2/7: a homogeneous sphere's normal and tangential contact then oscillate with the same period.
+  // The ratio 2/7 gives normal and tangential contacts of homogeneous spheres the same period.
   contact.tangential_stiffness =
       scene.number_or("/contact/tangential_stiffness", 2.0 / 7.0 * contact.normal_stiffness);
   contact.tangential_damping = scene.number_or("/contact/tangential_damping", 0);
@@ -56,17 +56,17 @@ inline void read_contact(const SceneDocument& scene, Physics& physics) {
 
 inline constexpr const char* lubrication_keys = R"(
 /lubrication? | object | Squeeze, shear and pump modes between near spheres; absent: none.
-/lubrication/form | one of kim-karrila, mari; named form of the lubrication | kim-karrila: resistances of the
-    gap xi = 2 (r - a_i - a_j) / (a_i + a_j), of the velocities. mari: of max(xi, 0) + regularisation, of the
-    velocities relative to the flow and of its rate of strain.
+/lubrication/form | one of kim-karrila, mari; named form of the lubrication | kim-karrila: resistance at the
+    gap xi = 2 (r - a_i - a_j) / (a_i + a_j) to the velocities. mari: resistance at the gap max(xi, 0) +
+    regularisation to the velocities relative to the flow and to its rate of strain.
 /lubrication/inner_gap | number > 0 and < 1; default 0.001; if form kim-karrila; named inner gap of the
-    lubrication | Of the form kim-karrila: gap below which the resistance stays constant.
+    lubrication | Form kim-karrila: gap below which the resistance is constant.
 /lubrication/outer_gap | number > 0 and < 1; default 0.05; if form kim-karrila; named outer gap of the
-    lubrication | Of the form kim-karrila: gap beyond which there is none; must be larger than inner_gap.
-/lubrication/regularisation | number > 0 and < 1; default 0.001; if form mari | Of the form mari: what is
+    lubrication | Form kim-karrila: gap beyond which lubrication ends; must be larger than inner_gap.
+/lubrication/regularisation | number > 0 and < 1; default 0.001; if form mari | Form mari: number that is
     added to the gap.
-/lubrication/outer_distance | number > 0; in length; if form mari | Of the form mari, which needs it: distance
-    of the surfaces beyond which there is none; must be smaller than 1 - regularisation times the smallest
+/lubrication/outer_distance | number > 0; in length; if form mari | Form mari, required: distance of the
+    surfaces beyond which lubrication ends; must be smaller than (1 - regularisation) times the smallest
     radius.
 )";
 
@@ -86,36 +86,36 @@ inline void read_lubrication(const SceneDocument& scene, Physics& physics) {
   }
 }
 
-// What is wrong with an outer distance beside these radii: where the logarithm of a gap is negative, so are
-// resistances.
+// Returns the fault of an outer distance for this smallest radius; empty if it has no fault. Resistances
+// would be negative where the logarithm of the gap is.
 inline std::optional<std::string> fault_of_outer_distance(const LubricationParameters& lubrication,
                                                           double smallest_radius) {
   if (lubricated_gap(lubrication, 2 * smallest_radius).outer < 1) return std::nullopt;
   return fmt::format(
-      "must be a number > 0 and < {:.6g}, which is 1 - /lubrication/regularisation times the smallest radius",
+      "must be a number > 0 and < {:.6g}, which is (1 - /lubrication/regularisation) times the smallest "
+      "radius",
       (1 - lubrication.inner_gap) * smallest_radius);
 }
 
 inline constexpr const char* repulsion_keys = R"(
 /repulsion? | object | Repulsion of the surfaces, at distance h; absent: none.
 /repulsion/form | one of exponential, screened; named form of the repulsion | exponential: energy strength *
-    exp(-h / kappa). screened: force F a / a_0 * exp(-h / debye_length), in overlap as at h = 0, with a = 2
+    exp(-h / kappa). screened: force F a / a_0 * exp(-h / debye_length), constant in overlap, with a = 2
     a_i a_j / (a_i + a_j).
-/repulsion/strength | number >= 0; in energy; if form exponential; named strength of the repulsion | Of the
-    exponential form: energy of a pair that touches.
-/repulsion/relative_length? | number > 0; if form exponential | Of the exponential form: kappa / (a_i + a_j);
-    0.01 unless given.
-/repulsion/force | number >= 0; in force; if form screened; named largest force of the repulsion | F, of the
-    screened form: that of a touching pair with a = a_0.
-/repulsion/debye_length | number > 0; in length; if form screened; named Debye length, κ^{-1} | Of the
-    screened form, which needs it: the screening length.
-/repulsion/reference_radius | number > 0; in length; if form screened | Of the screened form, which needs it:
-    a_0.
-/repulsion/cutoff_lengths | number > 0; default 20 | Distance h / kappa, or h / debye_length, beyond which
-    there is none.
+/repulsion/strength | number >= 0; in energy; if form exponential; named strength of the repulsion | Form
+    exponential: energy of a touching pair.
+/repulsion/relative_length? | number > 0; if form exponential | Form exponential: kappa / (a_i + a_j); 0.01
+    unless given.
+/repulsion/force | number >= 0; in force; if form screened; named largest force of the repulsion | Form
+    screened: the force F of a touching pair with a = a_0.
+/repulsion/debye_length | number > 0; in length; if form screened; named Debye length, κ^{-1} | Form screened,
+    required: the screening length.
+/repulsion/reference_radius | number > 0; in length; if form screened | Form screened, required: a_0.
+/repulsion/cutoff_lengths | number > 0; default 20 | Distance h / kappa, or h / debye_length, beyond which the
+    repulsion ends.
 )";
 
-// Reads no repulsion with a strength or force of 0.
+// Reads the repulsion; one with a strength or force of 0 is left out.
 inline void read_repulsion(const SceneDocument& scene, Physics& physics) {
   RepulsionParameters repulsion;
   repulsion.cutoff_lengths = scene.number("/repulsion/cutoff_lengths");
@@ -133,13 +133,13 @@ inline void read_repulsion(const SceneDocument& scene, Physics& physics) {
 
 inline constexpr const char* attraction_keys = R"(
 /attraction? | object | Van der Waals attraction of the surfaces, at distance h: force A_H a / (12 (h^2 +
-    eps^2)), in overlap as at h = 0, with a = 2 a_i a_j / (a_i + a_j); absent: none.
+    eps^2)), constant in overlap, with a = 2 a_i a_j / (a_i + a_j); absent: none.
 /attraction/hamaker | number >= 0; in energy; named Hamaker constant, A_H | Hamaker constant A_H.
 /attraction/regularisation | number > 0; default 0.01 | eps / a.
-/attraction/cutoff | number > 0; in length | Distance h beyond which there is none.
+/attraction/cutoff | number > 0; in length | Distance h beyond which the attraction ends.
 )";
 
-// Reads no attraction with a constant of 0.
+// Reads the attraction; one with a constant of 0 is left out.
 inline void read_attraction(const SceneDocument& scene, Physics& physics) {
   if (!(scene.number("/attraction/hamaker") > 0)) return;
   physics.attraction = {scene.number("/attraction/hamaker"), scene.number("/attraction/regularisation"),
@@ -149,7 +149,7 @@ inline void read_attraction(const SceneDocument& scene, Physics& physics) {
 struct LawBlock {
   const char* name;
   const char* keys;
-  void (*read)(const SceneDocument& scene, Physics& physics);  // of a scene that has the block
+  void (*read)(const SceneDocument& scene, Physics& physics);  // requires the block
 };
 
 inline constexpr LawBlock law_blocks[] = {

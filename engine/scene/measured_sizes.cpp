@@ -15,11 +15,11 @@
 namespace peclet::engine {
 namespace {
 
-// Instruments have a hundred.
+// A limit far above the hundred sizes of instruments.
 constexpr std::size_t most_sizes = 1024;
 
 struct Line {
-  std::size_t number;  // from 1
+  std::size_t number;  // starts at 1
   std::string_view text;
 };
 
@@ -53,7 +53,7 @@ std::vector<std::string_view> fields_of(std::string_view line, char separator) {
     if (end == std::string_view::npos) break;
     line.remove_prefix(end + 1);
   }
-  if (fields.back().empty()) fields.pop_back();  // some end each line with a separator
+  if (fields.back().empty()) fields.pop_back();  // a separator at the end of the line
   return fields;
 }
 
@@ -72,7 +72,8 @@ class Table {
 
   std::vector<MeasuredSize> read() {
     skip_header();
-    if (lines_.size() > most_sizes) refuse(lines_[most_sizes], "must be one of at most {}", most_sizes);
+    if (lines_.size() > most_sizes)
+      refuse(lines_[most_sizes], "must be left out: a table has at most {} sizes", most_sizes);
     std::vector<MeasuredSize> sizes;
     for (const Line& line : lines_) sizes.push_back(size_in(line));
     refuse_cumulative(sizes);
@@ -80,7 +81,7 @@ class Table {
     const auto twice = std::ranges::adjacent_find(sizes, {}, &MeasuredSize::size);
     if (twice != sizes.end()) refuse(fmt::format("size {}", twice->size), "must be there once");
     std::erase_if(sizes, [](const MeasuredSize& one) { return one.share == 0; });
-    if (sizes.empty()) refuse("", "must have a line of a size and its share, and has none");
+    if (sizes.empty()) refuse("", "must have a line of a size and its share");
     return sizes;
   }
 
@@ -103,7 +104,7 @@ class Table {
     return !line.empty() && ((line[0] >= '0' && line[0] <= '9') || line[0] == '.' || line[0] == '-');
   }
 
-  // Leaves the lines from the first number on, and finds what parts their fields.
+  // Removes the lines before the first number, and finds the separator of fields.
   void skip_header() {
     const auto first = std::ranges::find_if(lines_, [](const Line& l) { return begins_with_number(l.text); });
     lines_.erase(lines_.begin(), first);
@@ -111,7 +112,7 @@ class Table {
       separator_ = candidate;
       const auto is_parted = [&](const Line& line) {
         const std::vector<std::string_view> fields = fields_of(line.text, candidate);
-        // "1.0, 10" is parted by commas.
+        // In "1.0, 10" the comma is the separator, not the blank.
         return fields.size() > 1 && (candidate != ' ' || !fields[0].ends_with(','));
       };
       if (std::ranges::any_of(lines_, is_parted)) return;
@@ -124,8 +125,7 @@ class Table {
     if (!is_named && fields.size() < 2) refuse(line, "must be a size and its share");
     if (!is_named && fields.size() > 2) {
       refuse(line, "has {} columns: --columns must name those of size and share, such as 1,2{}",
-             fields.size(),
-             separator_ == ',' ? ", and commas must not be those of decimal fractions, too" : "");
+             fields.size(), separator_ == ',' ? "; decimal fractions must not have commas as well" : "");
     }
     const auto [of_size, of_share] = is_named ? columns_ : std::pair<std::size_t, std::size_t>{1, 2};
     if (std::max(of_size, of_share) > fields.size()) {
@@ -133,7 +133,7 @@ class Table {
     }
     const auto size = number_of(fields[of_size - 1], separator_),
                share = number_of(fields[of_share - 1], separator_);
-    constexpr double least = 1e-30, most = 1e30;  // of which cubes are numbers, too
+    constexpr double least = 1e-30, most = 1e30;  // their cubes are normal numbers, too
     if (!size || !(*size > 0)) refuse(line, "must have a size > 0 in column {}", of_size);
     if (*size < least || *size > most)
       refuse(line, "must have sizes from {:g} to {:g} in column {}", least, most, of_size);
@@ -142,7 +142,7 @@ class Table {
     return {*size, *share};
   }
 
-  // Shares of classes that rise to 100 would add up to more.
+  // Throws InputError if the shares rise to 1 or 100, as those of a cumulative curve do.
   void refuse_cumulative(std::vector<MeasuredSize> sizes) const {
     std::ranges::sort(sizes, {}, &MeasuredSize::size);
     const auto rises = [](const auto& all) {
@@ -155,8 +155,8 @@ class Table {
     is_cumulative = is_cumulative || (!sizes.empty() && rises(sizes));
     if (is_cumulative) {
       refuse("",
-             "has shares that rise to the whole, as those of a cumulative curve: must be the share of each "
-             "size");
+             "must have the share of each size; these shares rise to the whole, as those of a cumulative "
+             "curve");
     }
   }
 
@@ -166,7 +166,7 @@ class Table {
   char separator_ = ' ';
 };
 
-constexpr std::size_t most_choices = 12;  // that are shown
+constexpr std::size_t most_choices = 12;  // number of lines that are shown
 
 double cube(double x) { return x * x * x; }
 
@@ -196,7 +196,7 @@ std::vector<SizeClass> classes_of(const std::vector<MeasuredSize>& sizes, const 
   return classes;
 }
 
-// Sizes with the digits with which a scene gets them: radii, and shares of 100.
+// Written holds radii and shares (in percent) with the six digits that a scene gets.
 struct Written {
   std::vector<double> radii, shares;
 
@@ -259,7 +259,7 @@ SizesAnswer choose_sizes(const SizesOptions& options) {
   std::vector<SizeClass> classes =
       classes_of(measured_sizes(read_input(options.file), options.file, columns), options);
   SizesAnswer answer;
-  answer.remarks = fmt::format("{} sizes in {}. So many sizes take so many spheres for one of each:\n",
+  answer.remarks = fmt::format("{} sizes in {}. Number of sizes, and of spheres that give one of each:\n",
                                classes.size(), options.file);
   for (std::size_t shown = 0;; classes = with_one_size_less(std::move(classes))) {
     const Written written(classes, options.shares == "volume");

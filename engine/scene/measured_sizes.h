@@ -1,4 +1,4 @@
-// Measured sizes: a table as instruments save it, and the sizes that stand for it in a scene.
+// measured_sizes() reads a table as instruments save it; choose_sizes() turns it into species of a scene.
 #pragma once
 
 #include <cstddef>
@@ -11,40 +11,37 @@
 
 namespace peclet::engine {
 
-// A table of sizes and shares, as instruments and spreadsheets save it.
 struct MeasuredSize {
-  double size, share;
+  double size, share;  // radius or diameter, and the share of it
 };
 
-// Reads lines of a size and its share; returns the sizes with a share > 0, ascending. Fields are parted by
-// semicolons, tabs, blanks or commas, whichever comes first in this order in the lines of numbers; beside
-// another separator a comma is that of a decimal fraction. Lines above the first number are a header.
-// `columns` names those of size and share, from 1. Throws InputError naming `file` and the line if a line of
-// numbers has other columns than two and these are {0, 0}, a size is not > 0 or there twice, a share is
-// negative, or shares are those of a cumulative curve.
+// Reads lines of a size and its share. Returns the sizes with a share > 0, ascending. Lines above the first
+// number are a header. `columns` are those of size and share, from 1; {0, 0} if the table has two.
+//
+// The separator is the first of semicolon, tab, blank and comma that separates numbers in some line. A comma
+// beside another separator is a decimal comma. Throws InputError naming `file` and the line: columns are
+// missing or not named, a size is not > 0 or occurs twice, a share is negative, or shares are cumulative.
 std::vector<MeasuredSize> measured_sizes(std::string_view text, const std::string& file,
                                          std::pair<std::size_t, std::size_t> columns = {0, 0});
 
-// Which sizes stand for a measured distribution, and how many spheres they take: the verb `peclet-engine
-// sizes`.
+// SizesOptions are those of the verb `peclet-engine sizes`.
 struct SizesOptions {
   std::string file;
   std::string sizes;      // "radius" or "diameter"
   std::string shares;     // "volume" or "number"
-  std::string columns;    // "1,2": those of size and share; empty: the file has two
-  std::size_t count = 0;  // spheres that are to do; 0: all sizes of the file are kept
+  std::string columns;    // "1,2": columns of size and share; empty: the file has two
+  std::size_t count = 0;  // largest number of spheres; 0: all sizes of the file are kept
 };
 
-// Text for standard output and for a person.
 struct SizesAnswer {
-  std::string block, remarks;
+  std::string block, remarks;  // text for standard output, and for a person
 };
 
-// Merges the size with the fewest spheres and the neighbour that has fewer: both together keep their number
-// and volume, as the classes of a distribution do. Requires two sizes at least, ascending.
+// Merges the size with the fewest spheres and that neighbour which has fewer. The new size has the number and
+// the volume of both. Requires at least two sizes, ascending.
 std::vector<SizeClass> with_one_size_less(std::vector<SizeClass> classes);
 
-// Reads the file, merges thin sizes until each has one of `count` spheres, and writes the species of a scene.
+// Reads the file, merges sizes until each has one of `count` spheres, and writes the species of a scene.
 // Throws InputError.
 SizesAnswer choose_sizes(const SizesOptions& options);
 

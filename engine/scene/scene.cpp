@@ -1,4 +1,3 @@
-// What a scene means: the rules that bind several keys, and the values that follow from others.
 #include "engine/scene/scene.h"
 
 #include <fmt/format.h>
@@ -23,11 +22,11 @@ constexpr const char* start_keys = R"(
 /start? | object | Where the spheres begin: at a frame of a file with the same spheres and the same cell,
     which may be sheared; absent: in a random packing. Strain and time count from there.
 /start/file | string | Absolute path of a trajectory (GSD) or a final configuration (extended XYZ), at which
-    every seed begins. In a campaign only with noise, which alone tells these seeds apart.
+    every seed begins. A campaign needs noise with it, because seeds do not differ otherwise.
 /start/list | string; instead of file | Absolute path of a list of such files, as sha256sum writes it: seed k
-    begins at the file of line k + 1. Seeds beyond it fail.
-/start/sha256 | hash | SHA-256 of the file or the list, as sha256sum prints it: the point is that of this
-    content, and another one is refused.
+    begins at the file of line k + 1. Seeds beyond the list fail.
+/start/sha256 | hash | SHA-256 of the file or the list, as sha256sum prints it. It belongs to the point; a
+    file with other content is refused.
 /start/frame | integer >= -1000000000 and <= 1000000000; default -1 | Frame of the file, from 0; -1 is the
     last one, -2 the one before it.
 )";
@@ -65,7 +64,7 @@ void check_lubrication(const SceneDocument& scene, const Particles& particles, c
   }
 }
 
-// Reads a phase of a realisation: of whole cycles where moduli are measured.
+// Reads a phase of a realisation. It lasts whole cycles if the flow or the observable oscillation needs them.
 Duration read_phase(const SceneDocument& scene, const std::string& pointer, const Physics& physics) {
   Duration duration = read_duration(scene, pointer, physics);
   const Json &list = scene.at("/observables"), &limits = scene.at(pointer);
@@ -80,7 +79,7 @@ Duration read_phase(const SceneDocument& scene, const std::string& pointer, cons
   return duration;
 }
 
-// Throws InputError unless the production window, which begins then, ends, and in time.
+// Throws InputError if the production window, from `begin` on, never ends or strains the cell too far.
 void check_window(const SceneDocument& document, const Scene& scene, double begin) {
   const double end = begin + time_of(scene.production, scene, begin);
   const FlowKind& flow = flow_kind_of(document);
@@ -94,8 +93,8 @@ void check_window(const SceneDocument& document, const Scene& scene, double begi
   }
 }
 
-// The method, and the default of the guard that follows from it. Without lubrication explicit steps are bound
-// by contacts and drag alone, and cheaper.
+// Sets the defaults of the method and of the guard. Without lubrication explicit steps are cheaper, because
+// only contacts and drag limit them.
 void fill_method_and_guard(Json& document) {
   Json& integrator = document["integrator"];
   if (!integrator.contains("method")) {
@@ -107,7 +106,7 @@ void fill_method_and_guard(Json& document) {
   }
 }
 
-// Keys, from `begin` of their pointers on, of the flows that a scene has in the place of a shear rate.
+// Returns the keys of the flows that replace a shear rate, without the first `begin` characters.
 std::vector<std::string> flows_without_rate(std::size_t begin) {
   std::vector<std::string> keys;
   for (const FlowKind& kind : flow_kinds()) {
@@ -116,8 +115,8 @@ std::vector<std::string> flows_without_rate(std::size_t begin) {
   return keys;
 }
 
-// Sets the temperature and returns the shear rate: of all pairs with rate / kT = Pe / (6 pi eta a^3) within
-// the limits the one with the larger values.
+// Sets the temperature and returns the shear rate: the largest within the limits that have rate / kT = Pe /
+// (6 pi eta a^3).
 double rate_from_peclet(const SceneDocument& scene, double radius, Physics& physics) {
   for (const char* pointer : {"/flow/shear_rate", "/fluid/thermal_energy"}) {
     if (scene.has(pointer)) scene.refuse(pointer, "must be left out together with /peclet, which sets it");
@@ -140,15 +139,15 @@ double rate_from_peclet(const SceneDocument& scene, double radius, Physics& phys
   return rate;
 }
 
-// {0}, {1}: rows of the durations, {2}: of the observables.
+// {0}, {1}: rows of the durations; {2}: rows of the observables.
 constexpr const char* run_rows = R"(
 /integrator | object; default {{}} | How the equations of motion are solved.
 /integrator/method? | one of explicit, implicit | explicit: velocity Verlet; implicit: steps that solve for
     the velocities. Unless given, implicit with lubrication and explicit without.
 /integrator/timestep | number > 0 or one of auto; in time; default "auto" | Time step; auto: half of the
     largest stable explicit one, or the implicit one whose error has been measured, and not more than a 32nd
-    of the production window. An oscillation has a whole number of steps, 128 at least: the step is shortened
-    to that.
+    of the production window. A cycle of an oscillation has a whole number of steps, at least 128: the step is
+    shortened to fit.
 /integrator/tolerance? | number > 0 and <= 0.005 | Residual of the equations of an implicit step, relative to
     the motion, in the energy norm; unless given 0.002, with noise 0.004.
 /duration | object | How long a realisation runs.
@@ -158,15 +157,15 @@ constexpr const char* run_rows = R"(
 /files? | object | Files that a realisation leaves beside its result; absent: none.
 /files/final_configuration | true or false; default false | final.xyz: cell, centres, radii, velocities and
     spins at the end of a completed realisation, as extended XYZ.
-/files/final_checkpoint? | true or false | final.checkpoint: all that a completed realisation needs to go on,
-    with `peclet-engine run --extend`.
+/files/final_checkpoint? | true or false | final.checkpoint: the state from which `peclet-engine run --extend`
+    continues a completed realisation.
 /guard | object; default {{}} | Limits that end a realisation as failed, or flag its result.
 /guard/largest_overlap | number > 0; default 0.05 | Overlap over the smaller radius of the pair.
 /guard/largest_displacement? | number > 0 | Displacement in one step, or in the smallest part of a divided
-    implicit one, relative to rate y, over the smallest radius; 0.05 with explicit and 0.3 with implicit steps
-    unless given.
-/guard/energy_imbalance | number > 0; default 0.3 | Energy that the finite step makes over the work of the
-    flow; beyond it the result has the warning timestep.
+    implicit one, relative to the flow, over the smallest radius; 0.05 with explicit and 0.3 with implicit
+    steps unless given.
+/guard/energy_imbalance | number > 0; default 0.3 | Energy that steps make because they are finite, over the
+    work of the flow; beyond it the result has the warning timestep.
 /guard/half_step_difference | number > 0; default 0.03 | Relative difference of the stress between steps and
     half steps, on samples; beyond it the result has the warning timestep.
 )";
@@ -178,7 +177,7 @@ std::string lacking_equilibrium(const Physics& physics) {
     return "/contact/friction > 0: friction leads to no equilibrium of known probabilities";
   }
   if (physics.contact && physics.contact->normal_damping > 0) {
-    return "/contact/normal_damping > 0: what it dissipates no noise gives back";
+    return "/contact/normal_damping > 0: no noise balances its dissipation";
   }
   if (physics.lubrication && physics.lubrication->form == LubricationParameters::Form::mari) {
     return "/lubrication/form mari: its stress is not that of the forces alone";
@@ -194,7 +193,7 @@ double time_of(const Duration& duration, const Scene& scene, double from) {
     time = std::min(time, duration.brownian_times * physics.viscosity * a * a * a / physics.thermal_energy);
   }
   time = std::max(time, duration.least_time);
-  // What is a whole number of cycles must not gain one by rounding.
+  // Rounding must not add a cycle to a whole number of cycles.
   return duration.period > 0 ? std::ceil(time / duration.period * (1 - 1e-12)) * duration.period : time;
 }
 
@@ -218,7 +217,7 @@ Duration read_duration(const SceneDocument& document, const std::string& pointer
     duration.time = std::min(duration.time, limits.at("stress_times").get<double>() * unit);
   }
   for (const auto& [name, limit] : limits.items()) {
-    // Over before it starts, whatever the flow.
+    // A limit of 0 ends the duration before it starts, whatever the flow.
     if (limit == 0 && name != "cycles") duration = {unlimited, unlimited, 0};
   }
   const auto is_unlimited = [&] {
@@ -309,7 +308,7 @@ Physics read_physics(const Json& document, const std::string& file, const std::s
                               .viscosity = physics.viscosity});
     if (physics.flow.deformation().at_stress() != nullptr) {
       reading.refuse(flow_kind_of(reading).key,
-                     "must be left out: spheres that stand still have a shear rate at most");
+                     "must be left out: a single configuration has a rate, not a stress");
     }
     return physics;
   } catch (const InputError& error) {

@@ -1,6 +1,5 @@
-// A scene: what is simulated, checked for form (the table of keys) and then for meaning.
-//
-// A block that is absent is physics that is not computed; std::optional says so here.
+// Scene holds what is simulated, checked for form (the table of keys) and then for meaning. Physics whose
+// block is absent is not computed: its std::optional is empty.
 #pragma once
 
 #include <cstdint>
@@ -23,8 +22,7 @@
 
 namespace peclet::engine {
 
-// The physics of a scene without its particles: all that forces depend on. Of each conservative law it has an
-// optional.
+// Physics holds all that forces depend on, except for particles; each conservative law is optional.
 struct Physics : EachConservativeLaw<std::optional> {
   double viscosity = 0;
   double thermal_energy = 0;  // k_B T
@@ -33,7 +31,7 @@ struct Physics : EachConservativeLaw<std::optional> {
   std::optional<LubricationParameters> lubrication;
 };
 
-// Stresses are in units of viscosity times rate where one rate is steady, else in the scene's.
+// Return the unit of stresses: viscosity times rate if the flow has a steady part, else the scene's.
 inline double unit_of_stress(const Physics& physics) {
   return physics.flow.steady_rate() > 0 ? physics.viscosity * physics.flow.steady_rate() : 1;
 }
@@ -41,31 +39,31 @@ inline const char* name_of_stress_unit(const Physics& physics) {
   return physics.flow.steady_rate() > 0 ? "η γ̇" : "stress";
 }
 
-// Why there is no equilibrium whose probabilities are known to be exp(-H / kT); empty where there is one.
+// Returns why the equilibrium at rest does not have the probabilities exp(-H / kT); empty if it has.
 std::string lacking_equilibrium(const Physics& physics);
 inline bool has_known_equilibrium(const Physics& physics) { return lacking_equilibrium(physics).empty(); }
 
-// Of the residual of implicit steps, where the document gives none. With noise errors average out.
+// Default tolerances of the residual of implicit steps. With noise errors average out.
 inline constexpr double usual_tolerance = 2e-3, usual_tolerance_with_noise = 4e-3;
 
-// Ends with the first of its limits that is reached; infinity where there is none or where the scene cannot
-// reach it (strain without shear, Brownian times without temperature). One at least is finite. A limit of 0
-// in the document makes time 0 and the others infinite. Cycles are a least time.
+// Duration ends at the first of its limits. A limit is infinite if it is not given or cannot be reached
+// (strain without shear, Brownian times without temperature); at least one is finite. A limit of 0 in the
+// document makes time 0 and the others infinite. Cycles become least_time.
 struct Duration {
   double strain = std::numeric_limits<double>::infinity();
-  double brownian_times = std::numeric_limits<double>::infinity();  // units of eta a^3 / kT
+  double brownian_times = std::numeric_limits<double>::infinity();  // [eta a^3 / kT]
   double time = std::numeric_limits<double>::infinity();
   double least_time = 0;
-  double period = 0;  // of which it lasts a whole number; 0: of none
+  double period = 0;  // the duration is a whole number of these; 0: it has any length
 };
 
-// Limits that end a realisation with a named cause, and one beyond which its result is flagged.
+// Guard holds limits that end a realisation with a named cause, or give its result a warning.
 struct Guard {
-  double largest_overlap = 0.05;       // of the smaller radius of the pair
-  double largest_displacement = 0.05;  // per step, of the smallest radius of all
-  // Beyond these there is only a warning.
-  double energy_imbalance = 0.3;       // of the flow's work
-  double half_step_difference = 0.03;  // of the stress
+  double largest_overlap = 0.05;       // over the smaller radius of the pair
+  double largest_displacement = 0.05;  // per step, over the smallest radius of all
+  // Warnings only:
+  double energy_imbalance = 0.3;       // over the work of the flow
+  double half_step_difference = 0.03;  // relative difference of the stress
 };
 
 struct Warning {
@@ -80,7 +78,7 @@ struct Warning {
 // How the equations of motion are solved.
 enum class Method { explicit_steps, implicit_steps };
 
-// Where spheres begin, if not in a packing: at a frame of one file, or of one from a list for each seed.
+// Start is a frame of a file where spheres begin, of one file for all seeds or of a list with one for each.
 struct Start {
   bool is_list = false;
   std::string path, sha256;
@@ -92,55 +90,55 @@ struct Start {
 class Observable;
 struct Scene;
 struct Window;
-// Makes an observable that a scene lists, with its settings. `file` names the scene in messages. Throws
-// InputError where box or window are too small.
+// Makes an observable with its settings. `file` names the scene in messages. Throws InputError if box or
+// window is too small.
 using MakeObservable = std::function<std::unique_ptr<Observable>(const Scene& scene, const Window& window,
                                                                  const std::string& file)>;
 
 struct Scene {
   Particles particles;
   double volume_fraction = 0;
-  std::optional<double> height;  // of the box along y; absent: a cube
+  std::optional<double> height;  // edge of the box along y; empty: a cube
   Physics physics;
   Method method = Method::explicit_steps;
-  std::optional<double> timestep;             // absent: "auto"
-  double solver_tolerance = usual_tolerance;  // of implicit steps
+  std::optional<double> timestep;             // empty: "auto"
+  double solver_tolerance = usual_tolerance;  // residual of implicit steps
   Duration equilibration, production;
   std::map<std::string, MakeObservable> observables;  // besides the stress
   Guard guard;
   std::optional<Start> start;
-  bool final_configuration = false, final_checkpoint = false;  // are left beside the result
-  Json document;                                               // as given, defaults filled
+  bool final_configuration = false, final_checkpoint = false;  // true: the file is left beside the result
+  Json document;                                               // the scene with its defaults
 };
 
-// Edges of the box that is as large as a cube of this edge.
+// Returns the edges of the scene's box, whose volume is that of a cube of this edge.
 Vector3 box_lengths(const Scene& scene, double cube_edge);
 
-// The time, from then on, after which the first of the limits is reached.
+// Returns the length of a duration that begins at the time `from` [time].
 double time_of(const Duration& duration, const Scene& scene, double from = 0);
 
-// Returns every key of a scene, the one list behind validation, schema/scene.schema.json and the manual's
-// page. The rows of its observables are given.
+// Returns every key of a scene: the one list behind validation, schema/scene.schema.json and the manual. The
+// argument has the rows of the observables.
 KeyTable scene_keys_with(const std::string& keys_of_observables);
 
-// Reads a document whose keys are valid, all but its observables. `file` names it in messages. Throws
-// InputError.
+// Reads a document whose keys are valid, except for its observables. `file` names it in messages. Throws
+// InputError if values contradict each other.
 Scene read_without_observables(const Json& document, const std::string& file);
 
 // Reads a duration at this pointer. Throws InputError if it would never end.
 Duration read_duration(const SceneDocument& document, const std::string& pointer, const Physics& physics);
 
-// The blocks that read_physics() reads: fluid, flow and those of the laws.
+// Returns the names of the blocks that read_physics() reads: fluid, flow and those of the laws.
 std::vector<std::string> blocks_of_physics();
 
-// Reads these blocks alone (a configuration's "scene").
+// Reads these blocks of a document. `file` and `pointer` name its place in messages. Throws InputError.
 Physics read_physics(const Json& document, const std::string& file, const std::string& pointer);
 
-// The blocks fluid, flow and limits of a scene, and its Peclet number: how the solvent moves.
+// Returns the rows of /fluid, /flow, /peclet and /limits.
 std::string flow_keys();
 
-// Sets the flow of a scene whose fluid and laws have been read; rate and temperature where they follow from a
-// Peclet number within limits. Throws InputError where no flow is given.
+// Sets the flow of a scene whose fluid and laws have been read, and rate and temperature if a Peclet number
+// gives them. Throws InputError if the scene has no flow, or keys that contradict it.
 void set_flow(const SceneDocument& scene, const Particles& particles, double volume_fraction,
               Physics& physics);
 

@@ -12,17 +12,18 @@ namespace {
 
 constexpr int grid_cells = 1 << 14;
 
-// Of a Gaussian that is cut off at three standard deviations, in units of these:
-// sqrt(1 - 6 exp(-9/2) / sqrt(2 pi) / erf(3 / sqrt(2))).
+// The standard deviation of a Gaussian that is cut off at three standard deviations, in units of the uncut
+// one: sqrt(1 - 6 exp(-9/2) / sqrt(2 pi) / erf(3 / sqrt(2))).
 constexpr double width_of_cut_gaussian = 0.98657845;
 
-// A density over radii, up to a factor, and where it is not 0.
+// A density over radii, up to a factor, and the range in which it is not 0.
 struct Density {
   double lowest, highest;
   std::function<double(double)> at;
 };
 
-// Of number as of volume all but 1e-9 lie within six standard deviations of ln a; they are apart by 3 s^2.
+// The range has all but 1e-9 of the number and of the volume: six standard deviations s of ln a about both
+// means, which differ by 3 s^2.
 Density lognormal_density(const SizeDistribution& of) {
   const double variance = std::log1p(of.relative_width * of.relative_width), s = std::sqrt(variance);
   const double middle = std::log(of.mean_radius) - variance / 2;
@@ -51,7 +52,7 @@ Density density_of_radii(const SizeDistribution& of) {
   return of.form == SizeDistribution::Form::uniform ? uniform_density(of) : gaussian_density(of);
 }
 
-// Number and volume (over 4 pi / 3) of spheres.
+// Number and volume (in units of 4 pi / 3) of spheres.
 struct Amount {
   double number = 0, volume = 0;
 
@@ -61,7 +62,7 @@ struct Amount {
   }
 };
 
-// In cells that are equally wide in ln a, by the rule of midpoints.
+// Returns the amounts in cells of equal width in ln a, by the midpoint rule.
 std::vector<Amount> amounts_of(const SizeDistribution& distribution) {
   const Density density = density_of_radii(distribution);
   const double step = std::log(density.highest / density.lowest) / grid_cells;
@@ -86,7 +87,7 @@ SizeDistribution::Form form_of(const std::string& name) {
   return name == "uniform" ? SizeDistribution::Form::uniform : SizeDistribution::Form::gaussian;
 }
 
-// The sizes of one distribution or histogram.
+// DistributionReading reads the sizes of one distribution or histogram.
 class DistributionReading {
  public:
   DistributionReading(const SceneDocument& scene, std::string pointer)
@@ -130,7 +131,7 @@ class DistributionReading {
   std::string pointer_, form_;
 };
 
-// Adds an element with a distribution: its share is that of all its classes together.
+// Adds an element with a distribution. Its classes together have its share.
 void add_classes(const SceneDocument& scene, const std::string& pointer, const Species& whole,
                  SpeciesList& list) {
   const std::vector<SizeClass> classes = DistributionReading(scene, pointer + "/distribution").classes();
@@ -146,7 +147,7 @@ void add_classes(const SceneDocument& scene, const std::string& pointer, const S
   list.distributed = true;
 }
 
-// {0}: most sizes.
+// {0}: largest number of sizes.
 constexpr const char* species_rows = R"(
 /particles/species/* | object | One size, or one distribution of sizes.
 /particles/species/*/radius | number > 0; in length | Radius.
@@ -154,15 +155,15 @@ constexpr const char* species_rows = R"(
     species (the shares need not add up to 1).
 /particles/species/*/number_share? | number > 0 | Share of the number of particles, relative to the other
     species (need not add up to 1).
-/particles/species/*/density? | number > 0; in mass / length^3 | Mass density of these spheres; that of all
-    unless given.
-/particles/species/*/distribution | object; instead of radius | A distribution of radii, by a few sizes that
-    are the same for all seeds.
+/particles/species/*/density? | number > 0; in mass / length^3 | Mass density of these spheres; the density of
+    all particles unless given.
+/particles/species/*/distribution | object; instead of radius | A distribution of radii, represented by a few
+    sizes that are the same for all seeds.
 /particles/species/*/distribution/form | one of lognormal, uniform, gaussian, histogram | lognormal, uniform,
     gaussian (cut off at three standard deviations): by mean radius and relative width. histogram: by radii
     and shares.
-/particles/species/*/distribution/by | one of number, volume | What mean, width or shares are of: the number
-    of the spheres, or their volume.
+/particles/species/*/distribution/by | one of number, volume | Weight of mean, width and shares: the number of
+    the spheres, or their volume.
 /particles/species/*/distribution/mean_radius | number > 0; in length; if form lognormal, uniform, gaussian |
     Mean radius; not of a histogram.
 /particles/species/*/distribution/relative_width | number > 0 and <= 1; if form lognormal, uniform, gaussian |
@@ -190,7 +191,7 @@ std::vector<SizeClass> size_classes(const SizeDistribution& distribution) {
   for (const Amount& amount : amounts) whole.add(amount, 1);
   std::vector<Amount> classes(distribution.classes);
   const auto count = static_cast<double>(classes.size());
-  double below = 0;  // the mean share of number and volume, in classes
+  double below = 0;  // mean share of number and volume below this radius, in units of classes
   for (const Amount& amount : amounts) {
     const double width = count * (amount.number / whole.number + amount.volume / whole.volume) / 2;
     double from = below;
@@ -213,7 +214,6 @@ std::vector<SizeClass> size_classes(const SizeDistribution& distribution) {
 
 std::string species_keys() { return fmt::format(species_rows, most_species); }
 
-// Shares are relative: they are divided by their sum.
 SpeciesList read_species(const SceneDocument& scene, const std::string& pointer) {
   const Json& given = scene.at(pointer);
   const bool of_number = given[0].contains("number_share");
@@ -243,7 +243,7 @@ SpeciesList read_species(const SceneDocument& scene, const std::string& pointer)
     list.pointers.push_back(own);
   }
   if (list.species.size() > most_species) {
-    scene.refuse(pointer, "must be at most {} sizes, those of distributions counted, not {}", most_species,
+    scene.refuse(pointer, "must be at most {} sizes, including those of distributions, not {}", most_species,
                  list.species.size());
   }
   for (Species& one : list.species) one.share /= sum;

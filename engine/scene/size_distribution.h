@@ -1,4 +1,4 @@
-// Distributions of radii, and the few sizes that stand for them.
+// SizeDistribution is a distribution of radii; size_classes() gives the few sizes that represent it.
 #pragma once
 
 #include <cstddef>
@@ -10,12 +10,11 @@
 
 namespace peclet::engine {
 
-// A distribution of radii a by its mean m and its relative width c, the standard deviation over the mean.
-// Both are those of the spheres' number, or by volume those of their volume, in which a sphere counts
-// a^3-fold:
-//   lognormal: ln a is Gaussian, of variance ln(1 + c^2);
-//   uniform: between m (1 - sqrt(3) c) and m (1 + sqrt(3) c);
-//   gaussian: cut off at three of its standard deviations; c is that of what is left.
+// A distribution of radii a has a mean m and a relative width c, the standard deviation over the mean. Both
+// are weighted by number, or `by_volume` by a^3.
+//   lognormal  ln a is Gaussian, with the variance ln(1 + c^2)
+//   uniform    between m (1 - sqrt(3) c) and m (1 + sqrt(3) c)
+//   gaussian   cut off at three standard deviations; c is the width after the cut
 struct SizeDistribution {
   enum class Form { lognormal, uniform, gaussian };
   Form form = Form::lognormal;
@@ -24,37 +23,37 @@ struct SizeDistribution {
   std::size_t classes = 0;
 };
 
-// Beyond this relative width a uniform or Gaussian distribution would have radii of 0 or less, or nearly;
-// that of a lognormal one is 1.
+// Returns the largest relative width: 1 for a lognormal distribution. Wider uniform or Gaussian ones would
+// have radii near 0.
 double largest_relative_width(SizeDistribution::Form form);
 
-// A size that stands for a part of the spheres.
+// SizeClass is a size that represents a part of the spheres.
 struct SizeClass {
   double radius;
-  double number;  // share of the number of all spheres
+  double number;  // share in the number of all spheres
 };
 
-// The sizes of a distribution, ascending, always the same ones: it is cut where the mean of its shares of
-// number and volume below a radius is k / classes, so that no class has more than twice that part of either.
-// A class has the number and the volume of the spheres in its part, hence the radius (volume / number)^(1/3),
-// rounded to six digits. The mean of a^3 of all spheres is therefore kept; those of a and a^2 are too large
-// by less than 0.5 % with 16 classes and widths up to 0.5. Requires a width in (0, largest_relative_width].
+// Returns the sizes that represent a distribution, ascending. Cuts are where the mean of the shares of number
+// and volume below a radius is k / classes. No class has more than 2 / classes of either. A class has the
+// number and the volume of the spheres in its part, hence the radius (volume / number)^(1/3), rounded to six
+// digits. This keeps the mean of a^3. The means of a and a^2 are too large by less than 0.5 % with 16 classes
+// and widths up to 0.5. Requires a width in (0, largest_relative_width].
 std::vector<SizeClass> size_classes(const SizeDistribution& distribution);
 
-// Each pair of sizes has constants of its own.
+// The largest number of sizes. Each pair of sizes has its own constants.
 inline constexpr std::size_t most_species = 256;
 
-// Rows of the elements of /particles/species, which those of a mixture's lists share.
+// Returns the rows of an element of /particles/species and of the lists of a mixture.
 std::string species_keys();
 
 struct SpeciesList {
   Particles::Shares shares = Particles::Shares::volume;
   std::vector<Species> species;       // shares add up to 1
-  std::vector<std::string> pointers;  // of each species, to the element that it comes from
-  bool distributed = false;           // some come from a distribution
+  std::vector<std::string> pointers;  // the element that each species comes from
+  bool distributed = false;           // true if some species come from a distribution
 };
 
-// Throws InputError where elements do not go together.
+// Reads species at this pointer and divides shares by their sum. Throws InputError if they disagree.
 SpeciesList read_species(const SceneDocument& scene, const std::string& pointer);
 
 }  // namespace peclet::engine

@@ -1,4 +1,4 @@
-// Van der Waals attraction of surfaces.
+// AttractionOfPair is the van der Waals attraction of two surfaces.
 #pragma once
 
 #include <cmath>
@@ -8,18 +8,18 @@
 namespace peclet::engine {
 
 struct AttractionParameters {
-  double hamaker = 0;            // A_H, an energy
+  double hamaker = 0;            // A_H [energy]
   double regularisation = 0.01;  // eps / a
-  double cutoff = 0;             // surface distance
+  double cutoff = 0;             // surface distance where it ends [length]
 };
 
-// By the surface distance h, with a = 2 a_i a_j / (a_i + a_j), c = A_H a / 12 and eps = regularisation a:
-//   F_i = V' n = c / (max(h, 0)^2 + eps^2) n,
-//   V = c / eps [atan(h / eps) - atan(cutoff / eps)], in overlap c h / eps^2 less the second part,
-// for h < cutoff. Monti et al. (2021) eq. 7. The force is constant in overlap, so that V'' is zero there; V''
-// is negative beyond, most so at h = eps / sqrt(3): -9 c / (8 sqrt(3) eps^3).
+// The law of two radii, as a function of the surface distance h < cutoff (Monti et al. 2021, eq. 7):
+//   F_i = V' n = c / (max(h, 0)^2 + eps^2) n,   c = A_H a / 12,  eps = regularisation a,
+//   V = c / eps [atan(h / eps) - atan(cutoff / eps)];  in overlap h / eps replaces atan(h / eps)
+// with a = 2 a_i a_j / (a_i + a_j). In overlap the force is constant and V'' is zero. Beyond, V'' is
+// negative, with the minimum -9 c / (8 sqrt(3) eps^3) at h = eps / sqrt(3).
 struct AttractionOfPair {
-  double range = 0;  // centre distance beyond which there is none
+  double range = 0;  // centre distance where it ends
   double cutoff = 0;
   double scale = 0;  // c
   double width = 0;  // eps
@@ -40,7 +40,7 @@ struct AttractionOfPair {
     const Real gap = larger(h, Real{0.0}), squares = gap * gap + width * width;
     return (-2 * scale) * gap / (squares * squares);
   }
-  // Of |V''| at surface distances from h >= 0 on.
+  // Returns the largest |V''| at surface distances from h >= 0 on.
   double largest_stiffness(double h) const { return -stiffness(larger(h, width / std::sqrt(3.0))); }
 };
 

@@ -1,13 +1,13 @@
-// Conservative radial laws: energies V of the surface distance h.
+// Conservative radial laws are energies V of the surface distance h.
 //
-// A law has parameters, which a scene gives, and of_pair() makes of them what is the same for all pairs of
-// two radii: numbers and, where the law has several forms, which one. So a form is chosen once for a run of
-// pairs, and kernels are compiled for any number of forms at once. What of_pair() returns has
-//   range                 the centre distance beyond which there is none
+// A scene gives the parameters of a law. of_pair() turns them into what all pairs of two radii share: numbers
+// and, if the law has several forms, its form. So the form is chosen once for a run of pairs, and a kernel
+// serves any number of forms. The result of of_pair() has
+//   range                 the centre distance beyond which there is no force
 //   energy(h)             V
 //   slope(h)              V', for one pair or several; F_i = V' n
-//   stiffness(h)          V'', likewise
-//   largest_stiffness(h)  of |V''| from h >= 0 on
+//   stiffness(h)          V'', for one pair or several
+//   largest_stiffness(h)  the largest |V''| from h >= 0 on
 #pragma once
 
 #include "engine/terms/laws.h"
@@ -17,10 +17,10 @@ namespace peclet::engine {
 template <class Parameters>
 using OfPair = decltype(of_pair(Parameters{}, 1.0, 1.0));
 
-// Of the pairs of two radii. A law that the scene lacks has the range 0.
+// ConservativeLaws holds every law of two radii. A law that the scene lacks has the range 0.
 using ConservativeLaws = EachConservativeLaw<OfPair>;
 
-// `laws` has an optional of each law's parameters.
+// Returns the laws of two radii. `laws` has an optional of the parameters of each law.
 template <class Optionals>
 ConservativeLaws of_pair(const Optionals& laws, double radius_first, double radius_second) {
   ConservativeLaws result;
@@ -32,14 +32,13 @@ ConservativeLaws of_pair(const Optionals& laws, double radius_first, double radi
   return result;
 }
 
-// F_i = V' n.
+// Returns F_i = V' n.
 template <class Law, class Real>
 PECLET_ALWAYS_INLINE Vector3Of<Real> conservative_force(const Law& law, const PairGeometryOf<Real>& pair) {
   return law.slope(pair.surface_distance()) * pair.normal;
 }
 
-// weight V'' of all laws together, or zero where that is negative: for what has to stay positive
-// semidefinite.
+// Returns weight V'' of all laws together, or zero if that is negative: matrices stay positive semidefinite.
 template <class Real>
 PECLET_ALWAYS_INLINE Real positive_stiffness(const ConservativeLaws& laws, const PairGeometryOf<Real>& pair,
                                              double weight) {
@@ -54,7 +53,7 @@ PECLET_ALWAYS_INLINE Real positive_stiffness(const ConservativeLaws& laws, const
   return larger(sum, Real{0.0});
 }
 
-// V, V' and V'' of all laws together.
+// Potential is V, V' and V'' of all laws together.
 struct Potential {
   double energy = 0, slope = 0, stiffness = 0;
 };
@@ -71,7 +70,7 @@ inline Potential potential(const ConservativeLaws& laws, double distance, double
   return sum;
 }
 
-// Of |V''| of all laws, at surface distances from `distance` - a_i - a_j >= 0 on.
+// Returns the sum of the largest |V''| of each law at surface distances from h >= 0 on.
 inline double largest_stiffness(const ConservativeLaws& laws, double h, double sum_of_radii) {
   double sum = 0;
   for_each_conservative_law(

@@ -1,7 +1,7 @@
-// The body of fill_normals(), compiled once for each instruction set inside a namespace of its own.
+// fill_block() is the body of fill_normals(), compiled once for each instruction set.
 //
-// Loops over eight identities that the compiler turns into vectors. Everything is static: nothing that is
-// compiled for one processor may be linked into a program that runs on another.
+// The compiler turns its loops over eight identities into vectors. Everything is static, because code that is
+// compiled for one processor must not be linked into a program for another.
 #pragma once
 
 #include <Random123/threefry.h>
@@ -26,13 +26,13 @@ inline void draw_words(const NoiseKey& key, const std::uint64_t* identity, const
   }
 }
 
-// ln(u) for u = (bits + 1/2) / 2^21, by ln u = e ln 2 + ln(1 + t) with |t| < 0.42 and
-// ln(1 + t) = t - t^2/2 + t^3 P(t). P is the polynomial of degree 6 with the smallest largest error on that
-// interval (3e-8 of the logarithm), found by least squares with weights until the errors were level.
+// Returns ln(u) for u = (bits + 1/2) / 2^21, by ln u = e ln 2 + ln(1 + t) with |t| < 0.42 and ln(1 + t) = t -
+// t^2/2 + t^3 P(t). P is the polynomial of degree 6 with the smallest maximum error on that interval (3e-8 of
+// the logarithm), fitted by weighted least squares.
 inline float logarithm_of_uniform(std::uint32_t bits) {
   const float u = (static_cast<float>(static_cast<std::int32_t>(bits)) + 0.5F) * 0x1p-21F;
   const std::int32_t image = __builtin_bit_cast(std::int32_t, u);
-  // Splits off the power of two such that the rest lies in [sqrt(1/2), sqrt(2)).
+  // Splits off a power of two; the rest lies in [sqrt(1/2), sqrt(2)).
   const std::int32_t power = (image - 0x3f3504f3) >> 23;
   const float t = __builtin_bit_cast(float, image - power * 0x800000) - 1.0F;
   float p = 0.08700361F;
@@ -46,8 +46,8 @@ inline float logarithm_of_uniform(std::uint32_t bits) {
   return static_cast<float>(power) * 0.6931472F + (t - 0.5F * square + square * t * p);
 }
 
-// Cosine and sine of 2 pi bits / 2^21. The angle is a whole number of quarter turns plus r turns, |r| <= 1/8;
-// polynomials in r^2 of degree 3 found like the one above (3e-9 and 3e-8).
+// Computes cosine and sine of 2 pi bits / 2^21. The angle is a whole number of quarter turns plus r turns,
+// |r| <= 1/8. The polynomials in r^2 are fitted like P (errors 3e-9 and 3e-8).
 inline void circle(std::uint32_t bits, float& cosine, float& sine) {
   const std::uint32_t angle = bits << 11;  // 2^32 is a turn
   const std::uint32_t quarters = (angle + 0x20000000U) >> 30;
@@ -63,7 +63,7 @@ inline void circle(std::uint32_t bits, float& cosine, float& sine) {
   c = c * z + 1.0F;
   const bool swap = (quarters & 1U) != 0;
   const float x = swap ? s : c, y = swap ? c : s;
-  // A sign for each half of the circle.
+  // Gives each half of the circle its sign.
   cosine = ((quarters + 1U) & 2U) != 0 ? -x : x;
   sine = (quarters & 2U) != 0 ? -y : y;
 }
@@ -79,8 +79,7 @@ inline void box_muller(const std::uint32_t (&radius_bits)[width], const std::uin
   }
 }
 
-// The six uniforms are bits 0-20, 21-41 and 42-62 of both words: radii from the low one, angles from the high
-// one. A loop for each width of number: only such loops become vectors.
+// Splits words into uniforms, bits 0-20, 21-41 and 42-62. Only loops over one width of number become vectors.
 inline void split_words(const std::uint64_t (&words)[width], std::uint32_t (&uniform)[3][width]) {
   for (int j = 0; j < 3; ++j) {
     std::uint64_t shifted[width];
@@ -102,7 +101,7 @@ inline void fill_whole(const NoiseKey& key, const std::uint64_t* identity, const
   }
 }
 
-// Turns the normals of a whole step into those of a part. Seldom needed: apart.
+// Turns the normals of a whole step into those of a part.
 [[gnu::noinline]] inline void refine(const NoiseKey& key, const std::uint64_t* identity,
                                      const std::uint64_t* image, NormalBlock& block) {
   int divisions = 0;
@@ -111,7 +110,7 @@ inline void fill_whole(const NoiseKey& key, const std::uint64_t* identity, const
     const std::uint64_t whole = key.part >> divisions;
     --divisions;
     const float sign = (key.part >> divisions & 1U) == 0 ? 1.0F : -1.0F;
-    // No run has 2^48 steps.
+    // The part fits above the step, because no run has 2^48 steps.
     const NoiseKey of_whole = {key.seed, key.purpose, key.step ^ whole << 48};
     NormalBlock other;
     fill_whole(of_whole, identity, image, other);

@@ -1,4 +1,4 @@
-// Sliding friction with history: a spring across the normal.
+// SlidingFriction is sliding friction with history: a spring across the normal.
 #pragma once
 
 #include "engine/terms/contact.h"
@@ -21,8 +21,8 @@ struct SlidingFriction {
   PECLET_ALWAYS_INLINE static double coefficient(const ContactParameters& of) { return of.friction; }
   PECLET_ALWAYS_INLINE static double damping(const ContactParameters& of) { return of.tangential_damping; }
 
-  // v_t = (1 - n n).(U_j - U_i) - (l_i Omega_i + l_j Omega_j) x n, of j's surface relative to i's.
-  // Li, Royer & Ness (2023) eq. 4; Monti et al. (2021) eq. 4b.
+  // Returns v_t = (1 - n n).(U_j - U_i) - (l_i Omega_i + l_j Omega_j) x n, the velocity of j's surface
+  // relative to i's. Li, Royer & Ness (2023) eq. 4; Monti et al. (2021) eq. 4b.
   template <class Real>
   PECLET_ALWAYS_INLINE static Vector3Of<Real> stretch_rate(const ContactOf<Real>& contact,
                                                            const PairMotionOf<Real>& motion) {
@@ -31,8 +31,8 @@ struct SlidingFriction {
     return across(motion.velocity, contact.pair.normal) - cross(spin, contact.pair.normal);
   }
 
-  // F_i = k_t s, T_i = l_i n x F_i, T_j = l_j n x F_i. The sign of s is that of the displacement of j
-  // relative to i. Monti et al. (2021) eqs. 4c-e.
+  // Returns F_i = k_t s, T_i = l_i n x F_i, T_j = l_j n x F_i. The spring s has the sign of the displacement
+  // of j relative to i. Monti et al. (2021) eqs. 4c-e.
   template <class Real>
   PECLET_ALWAYS_INLINE static PairLoadOf<Real> load(const ContactOf<Real>& contact,
                                                     const Vector3Of<Real>& spring) {
@@ -44,7 +44,7 @@ struct SlidingFriction {
   PECLET_ALWAYS_INLINE static double coupling(const ContactParameters& of, double /*reduced_diameter*/) {
     return stiffness(of);
   }
-  // The spring acts on centres and, through levers a, on spins with 2/5 m a^2: 1 + 5/2 times as stiff.
+  // Returns (1 + 5/2) k_t: the spring acts on centres and, by levers a, on spins with the moment 2/5 m a^2.
   static double largest_stiffness(const ContactParameters& of, double /*first*/, double /*second*/) {
     return of.friction > 0 ? 3.5 * of.tangential_stiffness : 0;
   }

@@ -1,7 +1,7 @@
-// Random numbers keyed by what they are for, never drawn from a stream.
+// KeyedRandom gives random numbers that are keyed by their use, never drawn from a stream.
 //
-// A number is a pure function of (seed, purpose, step, identity): see normal_block.h. So results depend on no
-// order of particles or pairs, on no number of threads and on no checkpoint, and two seeds share nothing.
+// A number is a pure function of (seed, purpose, step, identity), see normal_block.h. Results therefore do
+// not depend on the order of particles or pairs, on threads or on checkpoints, and seeds share no numbers.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ struct NormalPair {
   Vector3 first, second;
 };
 
-// Shifts between neighbours are a few lattice vectors; 20 bits hold each.
+// Returns a shift as a number, with 20 bits for each component. Shifts between neighbours are small.
 inline std::uint64_t image_identity(LatticeShift image) {
   constexpr std::uint64_t mask = (1U << 20) - 1;
   return (static_cast<std::uint64_t>(image.x) & mask) | (static_cast<std::uint64_t>(image.y) & mask) << 20 |
@@ -40,14 +40,14 @@ class KeyedRandom {
 
   NoiseKey key(std::uint64_t step, std::uint64_t part = 1) const { return {seed_, purpose_, step, part}; }
 
-  // Of a particle at a step. 21-bit uniforms: largest value 5.5, variance exact to 1e-6
-  // (tests/engine/kernels/keyed_random_test.cpp).
+  // Returns the normals of a particle at a step. They come from 21-bit uniforms: the largest value is 5.5,
+  // the variance exact to 1e-6 (tests/engine/kernels/keyed_random_test.cpp).
   NormalPair normals(std::uint64_t step, std::uint32_t particle) const;
 
-  // Of a pair at a step.
+  // Returns the normals of a pair at a step.
   NormalPair normals(std::uint64_t step, std::uint32_t first, std::uint32_t second, LatticeShift image) const;
 
-  // Three uniform numbers in (0, 1), multiples of 2^-43.
+  // Returns three uniform numbers in (0, 1), multiples of 2^-43.
   Vector3 uniforms(std::uint64_t step, std::uint32_t particle) const;
 
  private:

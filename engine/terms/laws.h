@@ -1,5 +1,4 @@
-// The laws of pairs: the one list behind the kernels that are compiled, the parts of the stress and their
-// names, and what is done for every conservative law.
+// This header is the one list of the laws of pairs, of the parts of the stress and of conservative laws.
 #pragma once
 
 #include <cstddef>
@@ -9,17 +8,16 @@
 
 namespace peclet::engine {
 
-// Which laws a scene needs, as a compile-time choice of every kernel: `template <Terms terms>` compiles
-// exactly these.
+// Terms says which laws a scene needs. Kernels take it as a template argument.
 struct Terms {
   bool lubrication = false;
-  bool noise = false;     // of lubricated pairs; needs lubrication
+  bool noise = false;     // noise of lubricated pairs; needs lubrication
   bool strained = false;  // lubrication relative to the flow; needs lubrication
   bool contact = false;
   bool damping = false;       // needs contact
   bool friction = false;      // needs contact
   bool rolling = false;       // needs friction
-  bool conservative = false;  // any of the conservative laws; which ones is known of every kind of pairs
+  bool conservative = false;  // any conservative law; each kind of pairs has its own
   bool kinetic = false;       // friction that is less while contacts slide; needs friction
 
   friend constexpr bool operator==(const Terms&, const Terms&) = default;
@@ -30,7 +28,7 @@ struct Terms {
   }
 };
 
-// The choices by name, in the order of their bits in the code of a kernel.
+// The terms by name, in the order of their bits in the code of a kernel.
 struct NamedTerm {
   const char* name;
   bool Terms::*chosen;
@@ -53,7 +51,7 @@ enum class StressTerm : std::size_t {
   brownian_lubrication
 };
 
-// Their names in every result, and the terms that a scene must have for them.
+// The names of these parts in every result, and the term that a scene must have for each.
 struct StressPart {
   const char* name;
   bool Terms::*of;
@@ -68,14 +66,14 @@ constexpr std::size_t count_of_stress_terms = sizeof(stress_parts) / sizeof(stre
 
 constexpr const char* name_of(StressTerm term) { return stress_parts[static_cast<std::size_t>(term)].name; }
 
-// Something of each conservative law.
+// EachConservativeLaw has a member for each conservative law.
 template <template <class Parameters> class Of>
 struct EachConservativeLaw {
   Of<RepulsionParameters> repulsion{};
   Of<AttractionParameters> attraction{};
 };
 
-// Calls body(part of the stress, what each of `each` has of the law) for every conservative law.
+// Calls body(part of the stress, the law's member of each argument) for every conservative law.
 template <class Body, class... Each>
 PECLET_ALWAYS_INLINE void for_each_conservative_law(Body&& body, Each&&... each) {
   body(StressTerm::repulsion, each.repulsion...);

@@ -1,4 +1,4 @@
-// Lubrication forces from the resistance of a pair.
+// lubrication_load() gives the lubrication forces of a pair from its resistance.
 #pragma once
 
 #include <algorithm>
@@ -9,11 +9,11 @@
 
 namespace peclet::engine {
 
-// With U = U_j - U_i, T = 1 - n n:
+// Returns the load on both spheres, with U = U_j - U_i and T = 1 - n n:
 //   F_i = (X_A n n + Y_A T).U + Y_B11 Omega_i x n + Y_B21 Omega_j x n
 //   T_i = Y_B11 U x n - T.(Y_C11 Omega_i + Y_C12 Omega_j)
 //   T_j = Y_B21 U x n - T.(Y_C12 Omega_i + Y_C22 Omega_j)
-// Li, Royer & Ness (2023) eqs. 8, 13, 14. Laboratory velocities: the rate of strain is in U already.
+// Li, Royer & Ness (2023) eqs. 8, 13, 14. Velocities are those of the laboratory: U has the rate of strain.
 template <class Real>
 PECLET_ALWAYS_INLINE PairLoadOf<Real> lubrication_load(const PairResistanceOf<Real>& R,
                                                        const PairGeometryOf<Real>& pair,
@@ -31,8 +31,8 @@ PECLET_ALWAYS_INLINE PairLoadOf<Real> lubrication_load(const PairResistanceOf<Re
           R.pump_second * turned - across(twisted_second, n)};
 }
 
-// What the motion of one sphere of a pair, at velocity U and spin Omega, does to the other one that rests:
-// lubrication_load() without all that is zero, and the other sphere's part of it.
+// SphereLoadOf is the load on a sphere at rest by the motion of the other sphere, at velocity U and spin
+// Omega: lubrication_load() without the terms that are zero.
 template <class Real>
 struct SphereLoadOf {
   Vector3Of<Real> force, torque;
@@ -56,13 +56,12 @@ PECLET_ALWAYS_INLINE SphereLoadOf<Real> load_on_second(const PairResistanceOf<Re
           R.pump_second * cross(n, U) - R.twist_cross * across(Omega, n)};
 }
 
-// The longest step in which inertia holds the spheres of a pair that leaves the range of lubrication.
-//
-// Of spheres with this radius and mass (of one density the smallest ones bound the step): the least of
-// - 2 h_o / (5 sqrt(2 kT / m)), h_o the outer distance of two of them, of kim-karrila xi_o a: thermal
-//   velocities close the distance of a sphere and a third one, in five standard deviations, by no more than
-//   twice the outer gap, so that none is overlapped unseen;
-// - 4 m / zeta: the velocity's sign changes from step to step by no more than a third.
+// Returns the longest step [time] in which inertia holds spheres of this radius and mass when a pair leaves
+// the range of lubrication: the smaller of
+// - 2 h_o / (5 sqrt(2 kT / m)) with the outer distance h_o of two such spheres, xi_o a of kim-karrila.
+//   Thermal velocities of five standard deviations then bring a third sphere nearer by at most twice the
+//   outer gap, so that it is not overlapped unseen;
+// - 4 m / zeta. Drag then multiplies a velocity by no less than -1/3 in a step.
 inline double longest_inertial_step(double viscosity, double thermal_energy,
                                     const LubricationParameters& lubrication, double radius, double mass) {
   constexpr double deviations = 5, decay_times = 4;

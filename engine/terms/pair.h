@@ -1,8 +1,8 @@
-// What every pair term is given and what it gives back.
+// PairGeometryOf and PairMotionOf are what a pair term takes, PairLoadOf is what it returns.
 //
 // n points from the first particle i to the second j. A term gives the force ON the first particle; the
-// second one gets its opposite, always. Torques are given for both. Everything is a template on the number
-// (state/real.h): one pair, or several pairs of the same two radii side by side.
+// second one always gets its opposite. Torques are given for both. The template argument is the number
+// (state/real.h): of one pair, or of several pairs of the same two radii.
 #pragma once
 
 #include "engine/state/vector3.h"
@@ -20,7 +20,7 @@ struct PairGeometryOf {
   Real overlap() const { return sum_of_radii - distance; }  // positive in contact
 };
 
-// Velocity of j (of its image) relative to i, and both angular velocities, in the laboratory frame.
+// The velocity of j (of its image) relative to i, and both angular velocities, in the laboratory frame.
 template <class Real>
 struct PairMotionOf {
   Vector3Of<Real> velocity;
@@ -29,7 +29,7 @@ struct PairMotionOf {
 
 template <class Real>
 struct PairLoadOf {
-  Vector3Of<Real> force;  // on the first particle
+  Vector3Of<Real> force;  // acts on the first particle
   Vector3Of<Real> torque_first, torque_second;
 
   PairLoadOf& operator+=(const PairLoadOf& b) {

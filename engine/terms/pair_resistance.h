@@ -1,19 +1,19 @@
-// The resistance of two near spheres: the one source of lubrication forces, pairwise noise and implicit
-// matrices.
+// pair_resistance() gives the resistance of two near spheres: the one source of lubrication forces, pairwise
+// noise and implicit matrices.
 //
-// Squeeze (X_A), shear (Y_A), pump (Y_B) and twist (Y_C) modes of Kim & Karrila as Li, Royer & Ness (2023)
-// use them, eqs. 9-12 and 15-18, with the viscosity inside the coefficients. With L = ln(1/xi), beta = a_j /
-// a_i:
+// Its modes are squeeze (X_A), shear (Y_A), pump (Y_B) and twist (Y_C). Li, Royer & Ness (2023), eqs. 9-12
+// and 15-18, take them from Kim & Karrila; the viscosity is inside the coefficients. With L = ln(1/xi) and
+// beta = a_j / a_i:
 //   X_A   = 6 pi eta a_i [2 beta^2/(1+beta)^3 / xi + beta (1 + 7 beta + beta^2)/(5 (1+beta)^3) L]
 //   Y_A   = 6 pi eta a_i 4 beta (2 + beta + 2 beta^2)/(15 (1+beta)^3) L
 //   Y_B11 = -4 pi eta a_i^2 beta (4 + beta)/(5 (1+beta)^2) L           Y_B21: i and j exchanged
 //   Y_C11 = 8 pi eta a_i^3 2 beta/(5 (1+beta)) L                        Y_C22: i and j exchanged
 //   Y_C12 = 8 pi eta a_i^3 beta^2/(10 (1+beta)) L
-// Corrected against the print: Y_B is multiplied by q = r/(a_i + a_j) and Y_C by q^2. Only then does a rigid
-// rotation of the pair feel nothing at any gap; the matrix stays symmetric, positive semidefinite, of rank
-// five. Below the inner gap, also in overlap, the coefficients keep their value there (q does not); beyond
-// the outer gap there is no lubrication, and no offset makes it vanish smoothly.
-// The form mari has the same modes, X_A without L, at another gap and with q = 1 (terms/pair_resistance.h).
+// Corrected against the print: Y_B is multiplied by q = r/(a_i + a_j) and Y_C by q^2. Only then is a rigid
+// rotation of the pair free at any gap; the matrix stays symmetric, positive semidefinite, of rank five.
+// Below the inner gap, also in overlap, the coefficients keep their value there (q does not). Beyond the
+// outer gap there is no lubrication: the coefficients jump to zero. The form mari has these modes, X_A
+// without L, at another gap and with q = 1.
 #pragma once
 
 #include <cmath>
@@ -23,47 +23,46 @@
 
 namespace peclet::engine {
 
-// Between which distances two spheres are lubricated, and the gap that their resistance is a function of.
-//
-// xi = 2 (r - a_i - a_j) / (a_i + a_j). The forms have the resistance of terms/pair_resistance.h at the gap
-// x, not below x_min:
-//   kim-karrila  x = xi, x_min = inner gap, up to xi = outer gap; Li, Royer & Ness (2023). With the lever
-//                q = r / (a_i + a_j), see pair_resistance.h.
-//   mari         x = xi + eps, x_min = eps, up to r = a_i + a_j + outer distance; Monti, Rathee, Shen & Rosti
-//                (2021), Phys. Fluids 33, 103314, eqs. A.6 and A.7, whose d = xi + eps is max(xi, 0) + eps
-//                here: as printed it vanishes in overlap. X_A has no logarithm, the lever is 1: velocities
-//                are relative to the flow (terms/strained_lubrication.h).
+// LubricationParameters say at which distances two spheres are lubricated, and at which gap x their
+// resistance is taken. With xi = 2 (r - a_i - a_j) / (a_i + a_j):
+//   form         x         at least x_min  up to                             lever q
+//   kim-karrila  xi        inner gap       xi = outer gap                    r / (a_i + a_j)
+//   mari         xi + eps  eps             r = a_i + a_j + outer distance    1
+// kim-karrila is the form of Li, Royer & Ness (2023). mari is that of Monti, Rathee, Shen & Rosti (2021),
+// Phys. Fluids 33, 103314, eqs. A.6 and A.7. Their d = xi + eps is max(xi, 0) + eps here, because it vanishes
+// in overlap as printed. Its X_A has no logarithm; its velocities are relative to the flow
+// (strained_lubrication.h).
 struct LubricationParameters {
   enum class Form { kim_karrila, mari };
 
-  double inner_gap = 1e-3;  // of mari: the regularisation eps
-  double outer_gap = 0.05;  // of kim-karrila
+  double inner_gap = 1e-3;  // mari: the regularisation eps
+  double outer_gap = 0.05;  // kim-karrila
   Form form = Form::kim_karrila;
-  double outer_distance = 0;  // of mari, between the surfaces
+  double outer_distance = 0;  // mari: surface distance [length]
 
   bool is_relative_to_flow() const { return form == Form::mari; }
 };
 
-// Between the surfaces, where lubrication ends.
+// Returns the surface distance at which lubrication ends [length].
 inline double outer_distance(const LubricationParameters& lubrication, double sum_of_radii) {
   return lubrication.form == LubricationParameters::Form::mari ? lubrication.outer_distance
                                                                : 0.5 * lubrication.outer_gap * sum_of_radii;
 }
 
-// The same as a distance of the centres.
+// Returns the centre distance at which lubrication ends [length].
 inline double lubrication_range(const LubricationParameters& lubrication, double sum_of_radii) {
   return lubrication.form == LubricationParameters::Form::mari
              ? sum_of_radii + lubrication.outer_distance
              : sum_of_radii * (1 + 0.5 * lubrication.outer_gap);
 }
 
-// Of all pairs of two radii.
+// LubricatedGap gives the gap x and the lever q of all pairs of two radii.
 struct LubricatedGap {
   double per_distance, shift;                      // x = per_distance (r - a_i - a_j) + shift
-  double inner, outer;                             // of x
-  double inner_logarithm, outer_logarithm;         // L = ln(1/x) there
-  double lever_per_distance, lever_at_distance_0;  // q as a function of r
-  double outer_distance;                           // between the surfaces
+  double inner, outer;                             // bounds of x
+  double inner_logarithm, outer_logarithm;         // L = ln(1/x) at these
+  double lever_per_distance, lever_at_distance_0;  // q = lever_per_distance r + lever_at_distance_0
+  double outer_distance;                           // surface distance at `outer`
 };
 
 inline LubricatedGap lubricated_gap(const LubricationParameters& lubrication, double sum_of_radii) {
@@ -81,7 +80,7 @@ inline LubricatedGap lubricated_gap(const LubricationParameters& lubrication, do
           .outer_distance = outer_distance(lubrication, sum_of_radii)};
 }
 
-// What depends on the two radii alone: the coefficients of 1/xi and of L.
+// ResistanceConstants are the coefficients of 1/x and of L, which depend on the two radii alone.
 struct ResistanceConstants {
   double squeeze_inverse, squeeze_logarithm;      // X_A
   double shear;                                   // Y_A
@@ -110,16 +109,15 @@ inline ResistanceConstants resistance_constants(
   };
 }
 
-// How far the modes of a pair are excited at its distance: what pair_resistance() and its roots share.
+// ResistanceModesOf are the functions of the distance that pair_resistance() and resistance_roots() share.
 template <class Real>
 struct ResistanceModesOf {
-  Real inverse;    // 1/x, of kim-karrila 1/xi
+  Real inverse;    // 1/x
   Real logarithm;  // L
   Real lever;      // q
 };
 
-// `shifted`: of any form; otherwise the caller knows that it is kim-karrila, which adds nothing to gap and
-// lever.
+// Returns the lever q. Requires the form kim-karrila, which has no shifts, if `shifted` is false.
 template <bool shifted = true, class Real>
 PECLET_ALWAYS_INLINE Real lever_of(const LubricatedGap& gap, const PairGeometryOf<Real>& pair) {
   const Real lever = gap.lever_per_distance * pair.distance;
@@ -127,7 +125,7 @@ PECLET_ALWAYS_INLINE Real lever_of(const LubricatedGap& gap, const PairGeometryO
   return lever;
 }
 
-// Before it is bound to x_min.
+// Returns the gap x, before it is bounded by x_min. `shifted` is as above.
 template <bool shifted = true, class Real>
 PECLET_ALWAYS_INLINE Real gap_of(const LubricatedGap& gap, const PairGeometryOf<Real>& pair) {
   const Real here = gap.per_distance * pair.surface_distance();
@@ -135,7 +133,7 @@ PECLET_ALWAYS_INLINE Real gap_of(const LubricatedGap& gap, const PairGeometryOf<
   return here;
 }
 
-// Within the range, a distance of the centres, and zero beyond, where there is no lubrication.
+// Returns the modes of a pair. 1/x and L are zero beyond `range`, a centre distance.
 template <bool shifted = true, class Real>
 PECLET_ALWAYS_INLINE ResistanceModesOf<Real> resistance_modes(const LubricatedGap& gap, double range,
                                                               const PairGeometryOf<Real>& pair) {
@@ -188,16 +186,16 @@ PECLET_ALWAYS_INLINE void add_scaled(PairResistanceOf<Real>& sum, const Real& we
   sum.twist_second += weight * part.twist_second;
 }
 
-// Of a pair of which the caller knows that it lies within the range.
+// Returns the resistance of a pair. Requires it to be within the range.
 inline PairResistanceOf<double> pair_resistance(const ResistanceConstants& k, const LubricatedGap& gap,
                                                 const PairGeometry& pair) {
   return pair_resistance(k, resistance_modes(gap, pair.distance, pair));
 }
 
-// A square root of the resistance, what the noise of a pair is made of:
-//   sqrt(X_A), sqrt(Y_A), Y_B11 / sqrt(Y_A), Y_B21 / sqrt(Y_A), sqrt(Y_C11 - Y_B11^2 / Y_A) and
-//   sqrt(Y_C22 - Y_B21^2 / Y_A).
-// All but the first are sqrt(L) times powers of q and constants, so two roots a pair suffice.
+// ResistanceRootsOf is a square root of the resistance, from which the noise of a pair is made:
+//   sqrt(X_A), sqrt(Y_A), Y_B11 / sqrt(Y_A), Y_B21 / sqrt(Y_A),
+//   sqrt(Y_C11 - Y_B11^2 / Y_A), sqrt(Y_C22 - Y_B21^2 / Y_A).
+// All but the first are sqrt(L) times powers of q and constants, so a pair needs two roots.
 template <class Real>
 struct ResistanceRootsOf {
   Real squeeze;
@@ -238,14 +236,13 @@ using ResistanceModes = ResistanceModesOf<double>;
 using PairResistance = PairResistanceOf<double>;
 using ResistanceRoots = ResistanceRootsOf<double>;
 
-// Brownian forces and torques of a lubricated pair.
-//
-// With theta, chi standard normal vectors and c = sqrt(2 kT / dt), T = 1 - n n:
+// Returns the Brownian force and torques of a lubricated pair. theta and chi are standard normal vectors, the
+// amplitude is c = sqrt(2 kT / dt), and T = 1 - n n:
 //   F_i = c (sqrt(X_A) n n + sqrt(Y_A) T).theta
 //   T_i = c [Y_B11 / sqrt(Y_A) theta x n + sqrt(Y_C11 - Y_B11^2 / Y_A) T.chi]
 //   T_j = c [Y_B21 / sqrt(Y_A) theta x n - sqrt(Y_C22 - Y_B21^2 / Y_A) T.chi]
-// Li, Royer & Ness (2023) eqs. 22-24 and 28. The minus in the last line, where eq. 24 prints a plus, is what
-// makes the covariance of the six components equal to 2 kT R / dt.
+// Li, Royer & Ness (2023) eqs. 22-24 and 28. Eq. 24 prints a plus in the last line; only the minus makes the
+// covariance of the six components equal to 2 kT R / dt.
 template <class Real>
 PECLET_ALWAYS_INLINE PairLoadOf<Real> pair_noise_load(double amplitude, const ResistanceRootsOf<Real>& root,
                                                       const PairGeometryOf<Real>& pair,

@@ -1,4 +1,4 @@
-// Repulsion of surfaces.
+// RepulsionOfPair is the repulsion of two surfaces.
 #pragma once
 
 #include "engine/terms/pair.h"
@@ -8,22 +8,21 @@ namespace peclet::engine {
 struct RepulsionParameters {
   enum class Form { exponential, screened };
 
-  // Of the exponential form: A, an energy, and kappa / (a_i + a_j).
-  double strength = 0, relative_length = 0.01;
+  double strength = 0, relative_length = 0.01;  // exponential: A [energy] and kappa / (a_i + a_j)
   double cutoff_lengths = 20;
   Form form = Form::exponential;
-  // Of the screened one: F_ER, lambda and a_0.
-  double force = 0, debye_length = 0, reference_radius = 0;
+  double force = 0, debye_length = 0, reference_radius = 0;  // screened: F_ER, lambda, a_0
 };
 
-// Of two radii, by the surface distance h, for h < cutoff_lengths kappa or lambda.
-//   exponential: V = A exp(-h / kappa),  F_i = V' n = -(A / kappa) exp(-h / kappa) n,  kappa =
-//   relative_length (a_i + a_j). Li, Royer & Ness (2023) eq. 34, which prints the force on j. It keeps
-//   growing in overlap. screened: F_i = V' n = -F exp(-max(h, 0) / lambda) n,  F = F_ER a / a_0,  a = 2 a_i
-//   a_j / (a_i + a_j), so V = F lambda exp(-h / lambda), in overlap F (lambda - h). Monti et al. (2021)
-//   eq. 6.
+// The law of two radii, as a function of the surface distance h, up to cutoff_lengths kappa or lambda:
+//   exponential  F_i = V' n = -(A / kappa) exp(-h / kappa) n,  kappa = relative_length (a_i + a_j)
+//                V = A exp(-h / kappa)
+//   screened     F_i = V' n = -F exp(-max(h, 0) / lambda) n,  F = F_ER a / a_0,  a = 2 a_i a_j / (a_i + a_j)
+//                V = F lambda exp(-h / lambda), in overlap F (lambda - h)
+// Li, Royer & Ness (2023) eq. 34 prints the exponential force on j; it keeps growing in overlap. The screened
+// form is eq. 6 of Monti et al. (2021).
 struct RepulsionOfPair {
-  double range = 0;  // centre distance beyond which there is none
+  double range = 0;  // centre distance where it ends
   double energy_at_contact = 0, slope_at_contact = 0, stiffness_at_contact = 0;
   double decay = 0;  // 1 / kappa or 1 / lambda
   RepulsionParameters::Form form = RepulsionParameters::Form::exponential;
@@ -43,7 +42,7 @@ struct RepulsionOfPair {
     const Real curved = stiffness_at_contact * exponential(-decay * h);
     return form == RepulsionParameters::Form::screened ? select(h < 0.0, Real{0.0}, curved) : curved;
   }
-  // Of |V''| at surface distances from h >= 0 on.
+  // Returns the largest |V''| at surface distances from h >= 0 on.
   double largest_stiffness(double h) const { return stiffness(h); }
 
  private:

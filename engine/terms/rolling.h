@@ -1,4 +1,4 @@
-// Resistance against rolling: a second spring that gives a couple and no force.
+// RollingFriction is resistance against rolling: a second spring that gives a couple and no force.
 #pragma once
 
 #include "engine/terms/contact.h"
@@ -19,7 +19,7 @@ struct RollingFriction {
   PECLET_ALWAYS_INLINE static double coefficient(const ContactParameters& of) { return of.rolling_friction; }
   PECLET_ALWAYS_INLINE static double damping(const ContactParameters& /*of*/) { return 0; }
 
-  // v_r = a n x (Omega_i - Omega_j), a = 2 a_i a_j / (a_i + a_j). Monti et al. (2021) eq. B.1.
+  // Returns v_r = a n x (Omega_i - Omega_j), a = 2 a_i a_j / (a_i + a_j). Monti et al. (2021) eq. B.1.
   template <class Real>
   PECLET_ALWAYS_INLINE static Vector3Of<Real> stretch_rate(const ContactOf<Real>& contact,
                                                            const PairMotionOf<Real>& motion) {
@@ -27,7 +27,7 @@ struct RollingFriction {
            cross(contact.pair.normal, motion.spin_first - motion.spin_second);
   }
 
-  // T_i = a n x (k_r s_r), T_j = -T_i; no force and no stress.
+  // Returns T_i = a n x (k_r s_r), T_j = -T_i; there is no force and no stress.
   template <class Real>
   PECLET_ALWAYS_INLINE static PairLoadOf<Real> load(const ContactOf<Real>& contact,
                                                     const Vector3Of<Real>& spring) {
@@ -36,12 +36,11 @@ struct RollingFriction {
     return {{}, couple, -couple};
   }
 
-  // The stiffness against Omega_i - Omega_j across n: a^2 k_r.
+  // Returns the stiffness against Omega_i - Omega_j across n, a^2 k_r.
   PECLET_ALWAYS_INLINE static double coupling(const ContactParameters& of, double reduced_diameter) {
     return of.rolling_stiffness * reduced_diameter * reduced_diameter;
   }
-  // The spring turns both spheres, with 2/5 m a^2, through the reduced diameter, at most the diameter of the
-  // smaller one.
+  // Returns 5/2 k_r (a / a_min)^2 with the smaller radius a_min: the lever a turns the moment 2/5 m a_min^2.
   static double largest_stiffness(const ContactParameters& of, double first, double second) {
     const double reduced = 2 * first * second / (first + second);
     const double smaller = first < second ? first : second;

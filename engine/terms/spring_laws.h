@@ -1,18 +1,18 @@
-// Laws of springs: the loads by which a contact answers how far its surfaces have moved since they touched.
+// Laws of springs give the loads of a contact whose surfaces have moved since they touched.
 //
 // A law is a struct of static members, listed in for_each_spring_law():
-//   chosen                       the choice of Terms that compiles it
+//   chosen                       the member of Terms that compiles it
 //   has_force                    whether it gives a force, which has a stress, or a couple alone
 //   may_slide                    whether kinetic friction cuts its spring
 //   component                    the first of the spring's three components in a SpringField
-//   of(each)                     the member of `each`, which has one for every law
+//   of(each)                     the law's member of `each`
 //   stretch_rate()               the velocity at which the spring grows, across n
 //   stiffness(), coefficient()   k and mu: the spring is cut to |k s| = mu frictional_load()
 //   damping()                    gamma of a dashpot beside the spring, or 0
 //   load()                       force and couples of a spring s
-//   coupling()                   the slope of the load, as tangential_coupling() takes it
-//   largest_stiffness()          the largest slope as if centres alone moved, which bounds the step
-// What all laws have in common is here and in tangential_spring.h.
+//   coupling()                   the slope of the load, an argument of tangential_coupling()
+//   largest_stiffness()          the largest slope as if only centres moved, which bounds the step
+// tangential_spring.h and this header have what all laws share.
 #pragma once
 
 #include "engine/terms/friction.h"
@@ -29,14 +29,14 @@ PECLET_ALWAYS_INLINE void for_each_spring_law(Body&& body) {
   body(SlidingFriction{});
   body(RollingFriction{});
 }
-// For those that the terms have.
+// Calls body(law) for the laws that the terms have.
 template <class Body>
 PECLET_ALWAYS_INLINE void for_each_spring_law(const Terms& terms, Body&& body) {
   for_each_spring_law([&](auto law) PECLET_INLINE_LAMBDA {
     if (terms.*decltype(law)::chosen) body(law);
   });
 }
-// Compiles nothing for the others.
+// Calls body(law) for the laws that the terms have, and compiles it for no others.
 template <Terms terms, class Body>
 PECLET_ALWAYS_INLINE void for_each_spring_law(Body&& body) {
   for_each_spring_law([&](auto law) PECLET_INLINE_LAMBDA {
@@ -44,7 +44,7 @@ PECLET_ALWAYS_INLINE void for_each_spring_law(Body&& body) {
   });
 }
 
-// Something of each spring.
+// OfEachSpring has a member for each spring.
 template <class Each>
 struct OfEachSpring {
   Each tangential{}, rolling{};
@@ -56,10 +56,10 @@ struct PairSpringsOf {
   Real slides{};  // 1 or 0
 };
 
-// Coulomb's law, |F| <= mu frictional_load(), as lengths of the spring. With kinetic friction a contact
-// slides beyond mu_s frictional_load(), and its spring is cut to mu_k frictional_load(); it sticks again when
-// its spring is not longer than that before it is cut. Luding, Granular Matter 10, 235 (2008), sect. 3.2.
-// `slides`: 1 if it did in the step before, or 0.
+// Returns Coulomb's law, |F| <= mu frictional_load(), as lengths of the spring. With kinetic friction a
+// contact slides beyond mu_s frictional_load(), and its spring is cut to mu_k frictional_load(). It sticks
+// again if its uncut spring is not longer than that (Luding, Granular Matter 10, 235 (2008), sect. 3.2).
+// `slides` is 1 if the contact slid in the last step, else 0.
 template <class Law, class Real>
 PECLET_ALWAYS_INLINE SpringLimitsOf<Real> spring_limits(const ContactOf<Real>& contact, bool kinetic,
                                                         const Real& slides) {
@@ -71,8 +71,8 @@ PECLET_ALWAYS_INLINE SpringLimitsOf<Real> spring_limits(const ContactOf<Real>& c
   return {select(slides > 0.5, left, longest), left};
 }
 
-// Whether a contact slides after a step in which its spring had this length before it was cut. One without
-// load has no friction and remembers nothing.
+// Returns 1 if a contact slides after a step in which its uncut spring had this length, else 0. A contact
+// without load has no friction and does not slide.
 template <class Real>
 PECLET_ALWAYS_INLINE Real slides_after(const ContactOf<Real>& contact, const Real& length,
                                        const SpringLimitsOf<Real>& limits) {
@@ -80,7 +80,7 @@ PECLET_ALWAYS_INLINE Real slides_after(const ContactOf<Real>& contact, const Rea
   return select((length > limits.longest) & (load > 0.0), Real{1.0}, Real{0.0});
 }
 
-// The time by which a dashpot pushes ahead of its spring: k s + gamma v = k (s + lead v).
+// Returns the time by which a dashpot pushes ahead of its spring, gamma / k: k s + gamma v = k (s + lead v).
 template <class Law>
 PECLET_ALWAYS_INLINE double lead_of(const ContactParameters& parameters) {
   const double damping = Law::damping(parameters);
@@ -93,9 +93,9 @@ PECLET_ALWAYS_INLINE Vector3Of<Real> cut_to(const Vector3Of<Real>& vector, const
   return select(length > longest, longest / length, Real{1.0}) * vector;
 }
 
-// What a spring that has been cut and its dashpot push with, as a length: Coulomb's law limits both together.
-// They dissipate whatever the motion: PHYSICS.md has the proof. `length` is that of the spring before it was
-// cut, and becomes that of both if they are longer: a contact slides by it, and its spring is cut.
+// Returns the force of a spring and its dashpot as a length of spring. Coulomb's law limits both together.
+// They dissipate energy in any motion (proof in PHYSICS.md). `length` is that of the uncut spring; if spring
+// and dashpot together are longer, it becomes their length, and the spring is cut.
 template <class Law, class Real>
 PECLET_ALWAYS_INLINE Vector3Of<Real> damped_spring(const ContactOf<Real>& contact,
                                                    const PairMotionOf<Real>& motion,
@@ -110,8 +110,8 @@ PECLET_ALWAYS_INLINE Vector3Of<Real> damped_spring(const ContactOf<Real>& contac
   return cut_to(spring + ahead, limit);
 }
 
-// Advances the spring by `time` where spheres touch, else forgets it. Returns the load of the spring after
-// `felt_share` of the advance, and of its dashpot.
+// Advances the spring by `time` if spheres touch, else sets it to zero. Returns the load of the dashpot and
+// of the spring after `felt_share` of the advance.
 template <class Law, bool kinetic, class Real>
 PECLET_ALWAYS_INLINE PairLoadOf<Real> advanced_load(const ContactOf<Real>& contact,
                                                     const PairMotionOf<Real>& motion, double time,
@@ -135,7 +135,7 @@ PECLET_ALWAYS_INLINE PairLoadOf<Real> advanced_load(const ContactOf<Real>& conta
   return Law::load(contact, felt);
 }
 
-// The shares of their stiffness that springs have left after `time`, when they have been cut.
+// Returns the shares of their stiffness that springs keep when they are cut after `time`.
 template <class Real>
 PECLET_ALWAYS_INLINE OfEachSpring<Real> held_shares(const Terms& terms, const ContactOf<Real>& contact,
                                                     const PairMotionOf<Real>& motion, double time,
@@ -151,8 +151,9 @@ PECLET_ALWAYS_INLINE OfEachSpring<Real> held_shares(const Terms& terms, const Co
   return shares;
 }
 
-// Springs of a contact, as they couple velocities and spins: for slips T.(U_j - U_i) - (l_i Omega_i + l_j
-// Omega_j) x n and couples a^2 T.(Omega_i - Omega_j).
+// Returns how springs of a contact couple velocities and spins. T = 1 - n n. The stiffness `sliding` acts on
+// slips T.(U_j - U_i) - (l_i Omega_i + l_j Omega_j) x n, and `rolling`, which contains a^2, on T.(Omega_i -
+// Omega_j).
 template <class Real>
 PECLET_ALWAYS_INLINE PairResistanceOf<Real> tangential_coupling(const ContactLeversOf<Real>& lever,
                                                                 const Real& sliding, const Real& rolling) {
@@ -165,8 +166,8 @@ PECLET_ALWAYS_INLINE PairResistanceOf<Real> tangential_coupling(const ContactLev
           .twist_second = sliding * lever.second * lever.second + rolling};
 }
 
-// Adds the stiffness of the springs of touching spheres and the resistance of their dashpots, each times its
-// weight and the share that is held.
+// Adds the stiffness of the springs of touching spheres and the resistance of their dashpots, times weight
+// and share `held`.
 template <class Real>
 PECLET_ALWAYS_INLINE void add_springs(PairResistanceOf<Real>& sum, const Terms& terms,
                                       const ContactOf<Real>& contact, const CouplingWeights& weights,
@@ -188,7 +189,7 @@ PECLET_ALWAYS_INLINE void add_springs(PairResistanceOf<Real>& sum, const Terms& 
   if (damped) add(weights.resistance, resistance);
 }
 
-// The largest stiffness of a contact, and the largest resistance of its dashpots, as if centres alone moved.
+// Return the largest stiffness and the resistance of the dashpots of a contact, as if only centres moved.
 inline double largest_contact_stiffness(const ContactParameters& contact, double radius_first,
                                         double radius_second) {
   double largest = contact.normal_stiffness;

@@ -1,25 +1,20 @@
-// The resistance of a pair as an implicit step counts it.
+// StepResistance gives the resistance R of a pair in an implicit step. xi is the gap x of pair_resistance.h.
 //
-// Without noise it is R averaged over the gaps of the step, from xi_0 to xi_1 (integrators/midpoint.h). The
-// squeezing force is then the difference of a potential over the way, whose derivative is X_A(xi_1): it
+// Without noise R is averaged over the gaps of the step, from xi_0 to xi_1 (integrators/midpoint.h). The
+// squeezing force is then the difference of a potential over the way, whose derivative is X_A(xi_1). It
 // changes continuously where pairs enter or leave the range, and Newton's iterations find its zeros.
 //
-// With noise, where inertia carries a pair across the outer gap (integrators/noisy_midpoint.h): with R_o the
-// resistance at the outer gap, within the range, and zero beyond, R = R_o + R_b: R_b is continuous, R_o
-// jumps. R_o is that of the gap at which the step begins and acts on (V_n + V) / 2; so the new velocities
-// feel R_b + R_o / 2. R_b is the mean of its average over the gaps from xi_0 to xi_1 and of its value at
-// sqrt(xi_0 xi_1),
-//   xi_1 = xi_0 + w [1 - s + s (1/xi_0 + e) / (1/sqrt(xi_0 xi_w) + e)],  xi_w = xi_0 + w,
-// with the way w of the predicted step and no gap below the inner one xi_min under the roots: to first order
-// in w it is R_b in the middle, as in Fixman's step. xi_1 is where the step ends with what a resistance
-// that changes on the way, beside another one that does not, leaves of w. e = 1 / (4 xi_min), s = 0.65 and
-// the mean of two rules are fitted: they keep the density of pairs flat across the inner gap
+// With noise, where inertia carries a pair across the outer gap (integrators/noisy_midpoint.h), R is split
+// into R_o + R_b. R_o is the resistance at the outer gap within the range, and zero beyond: it jumps. R_b is
+// continuous. R_o is taken where the step begins and acts on (V_n + V) / 2, so the new velocities feel R_b +
+// R_o / 2. R_b is the mean of its average over the gaps from xi_0 to xi_1 and of its value at sqrt(xi_0
+// xi_1),
+//   xi_1 = xi_0 + w [1 - s + s (1/xi_0 + e) / (1/sqrt(xi_0 xi_w) + e)],  xi_w = xi_0 + w.
+// w is the way of the predicted step. Gaps under the roots are at least the inner one, xi_min. To first order
+// in w this is R_b in the middle, as in Fixman's step. xi_1 estimates the end of the step: a resistance that
+// changes on the way, beside one that does not, leaves a part of w. e = 1 / (4 xi_min), s = 0.65 and the mean
+// of two rules are fitted: they keep the density of pairs flat across the inner gap
 // (tests/physics/README.md).
-//
-// xi is the shifted gap of terms/pair_resistance.h where the form has one.
-//
-// With R averaged over the way (on_the_way) the squeezing part of a pair's r F is the change of a function of
-// the gap.
 #pragma once
 
 #include "engine/terms/lubrication.h"
@@ -29,22 +24,22 @@ namespace peclet::engine {
 struct StepResistance {
   enum class Part {
     whole,         // R, as it is
-    at_beginning,  // R_o / 2 + R_b; the pairs stand where the step begins
-    ahead,         // the same; the pairs stand in the middle of the predicted step and move with its velocity
-    on_the_way,    // R, averaged over the gaps of a step in whose middle the pairs stand
+    at_beginning,  // R_o / 2 + R_b, with the pairs where the step begins
+    ahead,         // R_o / 2 + R_b, with the pairs in the middle of the predicted step, at its velocity
+    on_the_way,    // R averaged over the gaps of a step, with the pairs in its middle
     jump,          // R_o / 2, beside noise that belongs to R
     none,          // 0, beside noise that belongs to R
   };
   Part part = Part::whole;
   double timestep = 0;
 
-  // How much farther than its range a pair may stand and still have a resistance.
+  // Returns how far beyond the range a pair may be and still have a resistance [length].
   double reach(const LubricatedGap& gap) const {
     return part == Part::ahead || part == Part::on_the_way ? gap.outer_distance : 0;
   }
 };
 
-// A gap, the nearest one that is neither below the inner gap nor beyond the outer one, and its L.
+// A gap, the nearest gap between the inner and the outer one, and its L.
 template <class Real>
 struct BoundedGapOf {
   Real gap, bounded, logarithm;
@@ -66,12 +61,12 @@ struct WayOf {
 template <class Real>
 PECLET_ALWAYS_INLINE WayOf<Real> way_of(const LubricatedGap& range, const Real& begin,
                                         const Real& given_way) {
-  const Real shortest{1e-5 * range.inner};  // of which differences keep ten digits
+  const Real shortest{1e-5 * range.inner};  // differences over it keep ten digits
   const Real way = select(larger(given_way, -given_way) < shortest, shortest, given_way);
   return {bounded_gap(range, begin), bounded_gap(range, begin + way), 1.0 / way};
 }
 
-// Of a pair in the middle of a step, with this closing velocity.
+// Returns the way of a pair in the middle of a step. `closing` is the velocity dr/dt of the distance.
 template <class Real>
 PECLET_ALWAYS_INLINE WayOf<Real> way_of_step(const StepResistance& step, const LubricatedGap& range,
                                              const PairGeometryOf<Real>& pair, const Real& closing) {
@@ -79,7 +74,7 @@ PECLET_ALWAYS_INLINE WayOf<Real> way_of_step(const StepResistance& step, const L
   return way_of(range, (range.per_distance * pair.surface_distance() - 0.5 * way) + range.shift, way);
 }
 
-// Averages over a way. Beyond the outer gap there is nothing, or what is there.
+// Returns the modes averaged over a way. Beyond the outer gap they are zero, or keep their value there.
 enum class Beyond { nothing, as_at_the_gap };
 template <Beyond beyond, class Real>
 PECLET_ALWAYS_INLINE ResistanceModesOf<Real> mean_modes(const LubricatedGap& range, const WayOf<Real>& way,
@@ -142,7 +137,7 @@ PECLET_ALWAYS_INLINE ResistanceModesOf<Real> resistance_modes(const StepResistan
           lever};
 }
 
-// The resistance of noisy pairs to their present motion, where the noise belongs to `whole`.
+// Returns the resistance of pairs to their present motion, beside noise that belongs to `whole`.
 template <bool shifted = true, class Real>
 PECLET_ALWAYS_INLINE PairResistanceOf<Real> resistance_beside_noise(
     const ResistanceConstants& k, const StepResistance& step, const LubricatedGap& range,
@@ -157,9 +152,9 @@ PECLET_ALWAYS_INLINE PairResistanceOf<Real> resistance_beside_noise(
                                                     lever_of<shifted>(range, pair)});
 }
 
-// What a change of the motion changes of the load is the product of it with this. Averaged over the way, the
-// squeezing force at the closing velocity c is (1/t) times the integral of X_A from xi_0 to xi_0 + t c; its
-// derivative is X_A where the step ends.
+// Returns the derivative of the load by the motion. Averaged over the way, the squeezing force at the
+// velocity c of the gap is (1/t) times the integral of X_A from xi_0 to xi_0 + t c. Its derivative is X_A at
+// xi_1.
 template <class Real>
 PECLET_ALWAYS_INLINE PairResistanceOf<Real> tangent_resistance(
     const ResistanceConstants& k, const StepResistance& step, const LubricatedGap& range,

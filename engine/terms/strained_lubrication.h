@@ -1,44 +1,45 @@
-// Lubrication of the motion relative to the flow, and by the rates of strain at both spheres: the form mari.
+// strained_lubrication_load() gives the lubrication of the motion relative to the flow, and by the rates of
+// strain at both spheres: the form mari.
 //
-// Monti, Rathee, Shen & Rosti (2021), Phys. Fluids 33, 103314, eq. 3 and A.1 to A.7, with 6 pi eta in the
-// coefficients, Y_C across n and n_perp = 2 n x (E n). With u and w the velocities and spins relative to the
-// flow at the centres, E_i and E_j its rates of strain there and R of terms/pair_resistance.h, their X_G, Y_G
-// and Y_H are those of R times lengths (Y_G / Y_A and so on): the pair feels the load of R at the velocity
+// It follows Monti, Rathee, Shen & Rosti (2021), Phys. Fluids 33, 103314, eqs. 3 and A.1 to A.7, with 6 pi
+// eta in the coefficients, Y_C across n and n_perp = 2 n x (E n). u and w are velocities and spins relative
+// to the flow at the centres, E_i and E_j its rates of strain there (without trace). Their X_G, Y_G and Y_H
+// are the coefficients of the resistance R (pair_resistance.h) times lengths. So the load is that of R at the
+// spins w and the velocity
 //   u_j - u_i + l_i E_i n + l_j E_j n
-// and at the spins w, with the lengths, of j i and j exchanged, beta = a_j / a_i,
-//   squeezing         l_i = a_i
-//   sliding           l_i = a_i (4 - beta + 7 beta^2) / (2 (2 + beta + 2 beta^2))
-//   torque on i       l_i = 2 a_i (2 - beta) / (4 + beta)    l_j = a_j (7 + beta) / (4 + beta)
-//   torque on j       l_j = 2 a_j (2 - 1/beta) / (4 + 1/beta)    l_i = a_i (7 + 1/beta) / (4 + 1/beta)
-// In each line they add up to a_i + a_j. So in a uniform flow, E_i = E_j = E, the velocity is
+// with beta = a_j / a_i and the lengths
+//   squeezing     l_i = a_i                                                      l_j: i and j exchanged
+//   sliding       l_i = a_i (4 - beta + 7 beta^2) / (2 (2 + beta + 2 beta^2))    l_j: i and j exchanged
+//   torque on i   l_i = 2 a_i (2 - beta) / (4 + beta)           l_j = a_j (7 + beta) / (4 + beta)
+//   torque on j   l_i = a_i (7 + 1/beta) / (4 + 1/beta)         l_j = 2 a_j (2 - 1/beta) / (4 + 1/beta)
+// The lengths of a line add up to a_i + a_j. In a uniform flow, E_i = E_j = E, the velocity is therefore
 //   U_j - U_i - Omega_inf x r - (r - a_i - a_j) E n.
-// E has no trace.
 #pragma once
 
 #include "engine/terms/lubrication.h"
 
 namespace peclet::engine {
 
-// The uniform part of the flow; what varies within the cell comes with each pair.
+// FlowFrame is the uniform part of the flow. `varies` is true if pairs have a PairVariationOf.
 struct FlowFrame {
   bool varies = false;
   Vector3 spin;
   SymmetricTensor strain;
 };
 
-// What varies, at the centres of a pair.
+// PairVariationOf is the non-uniform part of the flow at the centres of a pair.
 template <class Real>
 struct PairVariationOf {
-  Vector3Of<Real> velocity;  // that at j less that at i
+  Vector3Of<Real> velocity;  // value at j less that at i
   Vector3Of<Real> spin_first, spin_second;
   SymmetricTensorOf<Real> strain_first, strain_second;
 };
 
-// By which E n is multiplied, of the first and of the second sphere.
+// The lengths l_i (first) and l_j (second) by which E n is multiplied.
 struct StrainLengths {
   double squeeze_first, squeeze_second;
   double shear_first, shear_second;
-  double turn_first[2], turn_second[2];  // in the torques on the first sphere and on the second one
+  double turn_first[2], turn_second[2];  // {l_i, l_j} of the torques on the first and the second sphere
 };
 
 inline StrainLengths strain_lengths(double radius_first, double radius_second) {
@@ -54,14 +55,15 @@ inline StrainLengths strain_lengths(double radius_first, double radius_second) {
           .turn_second = {other(i, c), own(j, c)}};
 }
 
+// Returns e n.
 template <class Number, class Real>
 PECLET_ALWAYS_INLINE Vector3Of<Real> strained(const SymmetricTensorOf<Number>& e, const Vector3Of<Real>& n) {
   return {e.xx * n.x + e.xy * n.y + e.xz * n.z, e.xy * n.x + e.yy * n.y + e.yz * n.z,
           e.xz * n.x + e.yz * n.y + e.zz * n.z};
 }
 
-// `motion` in the laboratory frame; `varying` counts where the flow varies. Not inlined: one copy serves all
-// recipes.
+// Returns the load. `motion` is in the laboratory frame; `varying` is read if the flow varies. It is not
+// inlined, so that one copy serves all recipes.
 template <class Real>
 [[gnu::noinline]] PairLoadOf<Real> strained_lubrication_load(const PairResistanceOf<Real>& R,
                                                              const FlowFrame& flow,

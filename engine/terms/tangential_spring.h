@@ -1,22 +1,21 @@
-// The memory of a contact: a spring in the tangent plane that is turned, stretched and cut.
+// advanced_spring() turns, stretches and cuts a spring in the tangent plane: the memory of a contact.
 #pragma once
 
 #include "engine/terms/pair.h"
 
 namespace peclet::engine {
 
-// How long a spring may be, and how long the one is that is left of a longer one.
+// The largest length of a spring, and the length to which a longer one is cut.
 template <class Real>
 struct SpringLimitsOf {
   Real longest, left;
 };
 
-// The spring after a step in which its ends moved by `stretch` relative to each other:
-//   1. turned into the present tangent plane, keeping its length (Luding 2008, eq. 18);
+// Returns the spring s after a step in which its ends moved by `stretch` relative to each other:
+//   1. it is turned into the present tangent plane and keeps its length (Luding 2008, eq. 18);
 //   2. s <- s + stretch;
-//   3. cut if it exceeds its limit: the stored spring itself, so that it never winds up (Monti et al. 2021
-//      eq. 5).
-// `stretch` must be tangential. A spring along n vanishes. `length` is that before the cut.
+//   3. it is cut if it exceeds its limit, so that it never winds up (Monti et al. 2021 eq. 5).
+// Requires a tangential `stretch`. A spring along n vanishes. Sets `length` to that before the cut.
 template <class Real>
 PECLET_ALWAYS_INLINE Vector3Of<Real> advanced_spring(const Vector3Of<Real>& spring,
                                                      const Vector3Of<Real>& normal,
@@ -38,8 +37,8 @@ PECLET_ALWAYS_INLINE Vector3Of<Real> advanced_spring(const Vector3Of<Real>& spri
   return advanced_spring(spring, normal, stretch, {longest, longest}, length);
 }
 
-// The part of a spring's stretch that is left when it has been cut: the secant stiffness of a spring that
-// slides is that part of its stiffness.
+// Returns the part of a spring that the cut leaves: the secant stiffness of a sliding spring over its
+// stiffness.
 template <class Real>
 PECLET_ALWAYS_INLINE Real held_share(const Vector3Of<Real>& spring, const Vector3Of<Real>& normal,
                                      const Vector3Of<Real>& stretch, const SpringLimitsOf<Real>& limits) {
@@ -48,12 +47,12 @@ PECLET_ALWAYS_INLINE Real held_share(const Vector3Of<Real>& spring, const Vector
   return select(length > limits.longest, limits.left / length, Real{1.0});
 }
 
-// Whether a spring is shorter than Coulomb's limit, the largest force that it can have.
+// Returns true if the force of a spring is below Coulomb's limit, up to rounding.
 inline bool sticks(double stiffness, const Vector3& spring, double limit) {
   return stiffness * norm(spring) < limit * (1 - 1e-9);
 }
 
-// k s^2 / 2.
+// Returns k s^2 / 2.
 inline double spring_energy(double stiffness, const Vector3& spring) {
   return 0.5 * stiffness * dot(spring, spring);
 }

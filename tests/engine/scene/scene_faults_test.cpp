@@ -114,7 +114,7 @@ const Fault faults[] = {
     {R"({"lubrication": {"form": "mari", "inner_gap": null, "outer_gap": null, "outer_distance": 0.99,
                          "regularisation": 0.01}})",
      "/lubrication/outer_distance", "0.99",
-     "< 0.99, which is 1 - /lubrication/regularisation times the smallest"},
+     "< 0.99, which is (1 - /lubrication/regularisation) times the smallest"},
     {R"({"lubrication": {"regularisation": 1e-3}})", "/lubrication/regularisation", "0.001",
      "must be left out unless form is mari"},
     {R"({"lubrication": {"outer_distance": 0.2}})", "/lubrication/outer_distance", "0.2",
