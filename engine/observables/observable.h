@@ -120,10 +120,4 @@ std::vector<double> radii_in(const Scene& scene);
 // Returns the pairs of these size classes.
 std::vector<PairKind> pair_kinds_in(const Scene& scene);
 
-// Returns all keys of a scene, with those of the observables.
-const KeyTable& scene_keys();
-
-// Reads and checks a scene. `file` names it in messages. Throws InputError.
-Scene read_scene(const Json& document, const std::string& file);
-
 }  // namespace peclet::engine

@@ -8,7 +8,7 @@
 
 #include "contract/durable_file.h"
 #include "contract/sha256.h"
-#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/job.h"
 #include "tests/engine/small_scene.h"
 #include "tests/engine/temporary_folder.h"
