@@ -87,7 +87,7 @@ TEST_F(EndingOfAJob, NonFinite) {
     expect_saved_state(result, patch);
     ADD_FAILURE() << "it was read";
   } catch (const CheckpointError& error) {
-    EXPECT_NE(std::string(error.what()).find("a sphere that is not near it"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("a sphere far outside its cell"), std::string::npos)
         << error.what();
   }
 }
