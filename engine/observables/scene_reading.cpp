@@ -12,20 +12,20 @@
 namespace peclet::engine {
 namespace {
 
-// Returns the rows of all blocks and of "/observables/*".
+// Returns the key rows of "/observables/*" and of the settings of all observables.
 std::string observable_keys() {
-  std::string meaning = "stress: the tensor, split by term, which is always there.", names = "stress", blocks;
+  std::string meaning = "stress: the stress tensor by term, always measured.", names = "stress", blocks;
   for (const ObservableKind& kind : observable_kinds()) {
     meaning += fmt::format(" {}: {}.", kind.name, kind.meaning);
     names += ", " + kind.name;
     if (!kind.has_settings()) continue;
-    blocks += fmt::format("/{}? | object | How the observable of that name is measured.\n", kind.name);
+    blocks += fmt::format("/{0}? | object | Settings of the observable {0}.\n", kind.name);
     const std::string interval = fmt::format("/{}/interval?", kind.name);
     const std::string unless_given =
         fmt::format("in whole steps; {} unless given.",
                     kind.sampling == Sampling::often ? "one step" : "a 256th of the production window");
     if (kind.interval_is_a_duration) {
-      blocks += duration_keys(interval, "> 0", "From one to the next, " + unless_given);
+      blocks += duration_keys(interval, "> 0", "Interval between samples, " + unless_given);
     } else if (kind.sampling != Sampling::of_every_step) {
       blocks += fmt::format("{} | number > 0; in time | Time between samples, {}\n", interval, unless_given);
     }
@@ -34,7 +34,7 @@ std::string observable_keys() {
   return fmt::format("/observables/* | one of {} | {}\n{}", names, meaning, blocks);
 }
 
-// Steps between samples, one at least. A time that is longer than any window is never again.
+// Returns the steps between samples, at least 1 and at most 1e18, which is longer than any window.
 std::uint64_t steps_between(Sampling sampling, const std::optional<double>& interval, const Window& window) {
   constexpr std::uint64_t seldom_samples = 256;
   if (interval) {
@@ -46,7 +46,7 @@ std::uint64_t steps_between(Sampling sampling, const std::optional<double>& inte
 void read_observable(const ObservableKind& kind, const SceneDocument& document, Scene& scene) {
   const FlowKind& flow = flow_kind_of(document);
   if (std::ranges::count(flow.refused_observables, kind.name) > 0) {
-    document.refuse("/observables", "must not list {} with {}, whose flow it does not know", kind.name,
+    document.refuse("/observables", "must not list {} with {}: it does not support this flow", kind.name,
                     flow.key);
   }
   const MakeFromPlan make = kind.read(document, scene);
@@ -61,8 +61,8 @@ void read_observable(const ObservableKind& kind, const SceneDocument& document, 
   };
 }
 
-// A block of settings is refused where its observable is not listed. The defaults of a block that is left out
-// are no part of the scene.
+// Reads the observables that the scene lists. Refuses settings of observables that are not listed. Defaults
+// of settings that are left out do not become part of the scene.
 void read_observables(const std::string& file, Scene& scene) {
   Json filled = scene.document;
   const SceneDocument document(filled, file);
