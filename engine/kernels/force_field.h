@@ -119,8 +119,8 @@ class ForceField {
   FillNormals fill_normals_;
   OneBodyKernels one_body_;
   LinkKernels link_;
-  std::vector<PairSums> linked_sums_;              // of each block
-  FlowAtCentres varying_;                          // of the last evaluation, if pairs feel it
+  std::vector<PairSums> linked_sums_;              // for each block
+  FlowAtCentres varying_;                          // flow at the last evaluation, if pairs feel it
   std::vector<OneBodyFactors> drag_, drag_noise_;  // coefficients and noise amplitudes of each size class
   int threads_;
 };

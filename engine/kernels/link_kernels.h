@@ -60,7 +60,7 @@ struct ChangeRows {
 // Consecutive rows of a block, and the groups of links that have these rows as first particles.
 struct LinkLevel {
   std::uint32_t rows_begin, rows_end;
-  std::uint32_t groups_begin;       // of links within the block; there is room for those of all listed pairs
+  std::uint32_t groups_begin;       // links within the block; there is room for those of all listed pairs
   std::uint32_t count_of_groups;    // in use
   std::uint32_t crossing_begin;     // groups of links to rows of other blocks
   std::uint32_t count_of_crossing;  // links to rows of other blocks
@@ -91,11 +91,11 @@ constexpr std::uint32_t links_side_by_side = groups_side_by_side * links_per_gro
 
 // The places where the links of pairs are written.
 struct LinkPlaces {
-  const std::uint32_t* row;    // of each particle
-  const std::uint32_t* level;  // of each row
+  const std::uint32_t* row;    // for each particle
+  const std::uint32_t* level;  // for each row
   LinkLevel* levels;
   std::uint32_t* next;           // number of the next link of each level
-  const CrossingLink* crossing;  // of each crossing pair of the list
+  const CrossingLink* crossing;  // for each crossing pair of the list
 };
 
 // P^-1 = (a b; b^T c) of one particle, with blocks of velocity and spin, and K where a motion has a 0:
@@ -109,9 +109,9 @@ struct Pivot {
 
 // Sums over the rows of a block, each apart: one is computed while others may still be read.
 struct alignas(64) LinkSums {
-  double begun;            // of begin()
-  double curvature, left;  // of solve()
-  double whole, inertial;  // of squared_motion()
+  double begun;            // for begin()
+  double curvature, left;  // for solve()
+  double whole, inertial;  // for squared_motion()
 };
 
 // The matrix A, its pivots and storage for a team that works on it. Blocks are shared out among the members.
@@ -119,19 +119,19 @@ struct alignas(64) LinkSums {
 // of other blocks are put aside for the members that work on these.
 struct LinkSystem {
   std::size_t particles;
-  const std::uint32_t* row;  // of each particle
+  const std::uint32_t* row;  // for each particle
   const std::uint16_t* size_class;
-  const MotionRow* diagonal;  // of D, for each size class
+  const MotionRow* diagonal;  // D for each size class
   const LinkBlock* blocks;
   std::size_t count_of_blocks;
   const LinkLevel* levels;
-  std::uint32_t boundary_levels;  // of every block
+  std::uint32_t boundary_levels;  // in every block
   const LinkGroup* groups;
   const IncomingLink* incoming;
-  const Pivot* pivots;           // of each row
+  const Pivot* pivots;           // for each row
   MotionRow* aside;              // rows_of_block rows for each crossing link
   std::uint32_t crossing_begin;  // the first group of crossing links
-  LinkSums* sums;                // of each block
+  LinkSums* sums;                // for each block
 };
 
 // The vectors that solve() works on. `solution` holds the right-hand side before.
@@ -150,7 +150,7 @@ struct StepRows {
   const double *position, *velocity, *spin;
   const double *force, *torque;
   const double *noise_force, *noise_torque;  // added to the forces, or null
-  const OneBodyFactors* inertia;             // of each size class
+  const OneBodyFactors* inertia;             // for each size class
   double timestep;
   UniformFlow flow;
   const double *varying_velocity, *varying_spin;  // added to the flow, or null

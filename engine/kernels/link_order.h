@@ -29,7 +29,7 @@ class LinkOrder {
   const std::vector<LinkLevel>& levels() const { return levels_; }
   std::uint32_t boundary_levels() const { return boundary_levels_; }
   const std::vector<IncomingLink>& incoming() const { return incoming_; }
-  const std::vector<std::uint32_t>& row() const { return row_; }      // of each particle
+  const std::vector<std::uint32_t>& row() const { return row_; }      // for each particle
   std::uint32_t inner_groups() const { return inner_groups_; }        // room for links within blocks
   std::uint32_t crossing_groups() const { return crossing_groups_; }  // room for crossing links, after those
 
@@ -43,7 +43,7 @@ class LinkOrder {
   void make_room(const NeighbourList& list, int threads);
   void place_crossing_links(const NeighbourList& list);
 
-  std::vector<std::uint8_t> in_boundary_;  // of each particle
+  std::vector<std::uint8_t> in_boundary_;  // for each particle
   std::vector<Colour> colour_;             // within interior or boundary
   std::vector<std::uint32_t> row_, level_, next_;
   std::vector<LinkBlock> blocks_;

@@ -45,12 +45,12 @@ struct PairKernelInput {
   const PairKind* kinds;
   PairParameters parameters;
   double* springs[6];  // components, see SpringField; advanced in place
-  double* slides;      // of each pair, with kinetic friction
+  double* slides;      // for each pair, with kinetic friction
 
   NoiseKey noise;
   FillNormals fill_normals;
-  const std::uint32_t* id;          // of each particle
-  const std::uint64_t* image_keys;  // of each image
+  const std::uint32_t* id;          // for each particle
+  const std::uint64_t* image_keys;  // for each image
   const double* given_normals;      // six of each pair, instead of drawn ones; or null
   FlowRows varying;                 // null unless parameters.flow varies
 };

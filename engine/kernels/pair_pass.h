@@ -144,8 +144,8 @@ struct PairPassInput {
   const PeriodicCell& box;
   const std::vector<PairKind>& kinds;
   PairParameters parameters;
-  NoiseKey noise;                                        // of pairs
-  const std::vector<NormalPair>* given_noise = nullptr;  // of each pair of the list, instead
+  NoiseKey noise;                                        // keys the noise of pairs
+  const std::vector<NormalPair>* given_noise = nullptr;  // for each pair of the list, instead of `noise`
   const FlowAtCentres* varying = nullptr;                // if lubrication is relative to a non-uniform flow
   int threads = 1;
 };

@@ -63,7 +63,7 @@ struct TermLoadsOf {
   PairLoadOf<Real> lubrication, noise;
   OfEachSpring<PairLoadOf<Real>> springs;
   Vector3Of<Real> contact_normal, contact_damping;
-  Vector3Of<Real> conservative;  // of all conservative laws
+  Vector3Of<Real> conservative;  // sum over all conservative laws
   Real overlap{};                // at which contact forces are taken
 };
 

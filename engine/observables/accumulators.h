@@ -61,7 +61,7 @@ class BlockedMean {
 
   std::vector<std::size_t> shape_;
   std::size_t kept_;
-  std::vector<double> sums_;    // of the window
+  std::vector<double> sums_;    // sums over the window
   std::vector<double> blocks_;  // a row of sums for each block
   double weight_ = 0;
   std::vector<double> block_weights_;

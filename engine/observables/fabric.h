@@ -21,7 +21,7 @@ namespace peclet::engine {
 
 struct FabricSums {
   struct Pairs {
-    SymmetricTensor sum;  // of n n
+    SymmetricTensor sum;  // sum of n n
     double count = 0;
 
     Pairs& operator+=(const Pairs& more) { return sum += more.sum, count += more.count, *this; }

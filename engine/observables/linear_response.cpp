@@ -257,10 +257,10 @@ class LinearResponse : public Observable {
   double viscosity_, factor_, background_;  // factor: 1 / (V eta kT); background: 1 + 2.5 phi
   bool velocities_are_found_;
   std::vector<SquaredSums> sums_;         // one for each component
-  std::vector<MultipleTau> correlators_;  // of a step and the partner of the step before, for each component
+  std::vector<MultipleTau> correlators_;  // for each component: of a step with the partner of the step before
   double squares_ = 0;                    // sum of (V J)^2 over components and steps
   std::uint64_t taken_ = 0;
-  Parts last_, before_;  // of the last step and the step before
+  Parts last_, before_;  // the last step and the step before
 };
 
 MakeFromPlan read_response(const SceneDocument& document, const Scene& scene) {

@@ -25,7 +25,7 @@
 namespace peclet::engine {
 namespace {
 
-constexpr std::size_t kept_places = 8;  // of each level
+constexpr std::size_t kept_places = 8;  // in each level
 constexpr const char* diffusion_name = "self_diffusion";
 
 Vector3 squares_of(const Vector3& v) { return {v.x * v.x, v.y * v.y, v.z * v.z}; }

@@ -16,7 +16,7 @@ struct BlockSums {
   std::uint64_t steps = 0;    // every step adds to the stress: thinning would destroy the Brownian part
   std::array<SymmetricTensor, count_of_stress_terms> stress{};  // sum over pairs of sym(r F)
   SymmetricTensor motion{};                                     // -sum m sym(v v), relative to the flow
-  double shear_rate = 0;                                        // of the cell, x along y
+  double shear_rate = 0;                                        // rate of the cell, x along y
   double contacts = 0;
   double overlaps = 0;        // sum over contacts of the overlap over the smaller radius
   std::uint64_t samples = 0;  // number of samples of the members below

@@ -39,7 +39,7 @@ struct TouchingPair {
   double tangential_force;   // |F_t| of spring and dashpot
   bool rough;                // true if it has friction: k_n delta is above the critical load
   double mobilised;          // |F_t| / (mu frictional_load()), 0 without friction
-  bool slides;               // as the contact remembers, or if mobilised > sliding_from
+  bool slides;               // remembered by the contact, or mobilised > sliding_from
 };
 
 // Calls visit(TouchingPair) for each contact, in the order of the list.

@@ -127,7 +127,7 @@ class Trajectory : public Observable, private PairWatcher {
     std::uint32_t columns = 0;
     const std::vector<std::int8_t> names =
         names_of_species(static_cast<std::uint32_t>(number.size()), columns);
-    std::vector<std::uint32_t> species;  // of each id
+    std::vector<std::uint32_t> species;  // for each id
     for (std::uint32_t s = 0; s < number.size(); ++s) species.insert(species.end(), number[s], s);
     std::vector<float> diameter, mass;
     for (const std::uint32_t i : places_of_ids(particles)) {

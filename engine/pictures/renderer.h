@@ -80,9 +80,9 @@ class Occlusion {
  private:
   struct Neighbour {
     Vector3 centre;
-    double square;  // of its radius
+    double square;  // square of its radius
   };
-  std::vector<std::uint32_t> begin_;  // of each ball's neighbours, and the end
+  std::vector<std::uint32_t> begin_;  // first neighbour of each ball, and the end
   std::vector<Neighbour> neighbours_;
 };
 

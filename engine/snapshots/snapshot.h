@@ -38,7 +38,7 @@ struct Snapshot {
   Vector3 corner;
   std::uint64_t step = 0;
   std::optional<double> time, strain;
-  std::optional<Matrix3> velocity_gradient;  // of the uniform part of the flow
+  std::optional<Matrix3> velocity_gradient;  // gradient of the uniform part of the flow
   bool single = false;
   bool has_sizes = true;  // false if the radii are the default of a file without diameters
 
@@ -102,7 +102,7 @@ class SnapshotFile {
  private:
   struct Text {
     std::string text;
-    std::vector<std::string_view> frames;  // of the text
+    std::vector<std::string_view> frames;  // parts of the text
   };
 
   std::filesystem::path path_;

@@ -252,7 +252,7 @@ class XyzReading {
 
   std::string_view rest_;
   std::string file_;
-  std::vector<std::pair<std::string_view, std::string_view>> keys_;  // of the second line
+  std::vector<std::pair<std::string_view, std::string_view>> keys_;  // keys and values of the second line
   std::vector<Column> columns_;
   std::vector<std::int64_t> id_;
 };

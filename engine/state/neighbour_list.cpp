@@ -95,7 +95,7 @@ class ListBuilder {
 
   // Returns the candidates that are closer than their reach at the positions of the list.
   std::vector<std::vector<FoundPair>> near_ones(const std::vector<std::vector<FoundPair>>& candidates) const {
-    std::vector<double> squared_reach;  // of each kind
+    std::vector<double> squared_reach;  // for each kind
     const std::size_t classes = list_.ranges_.classes();
     for (std::size_t kind = 0; kind < classes * classes; ++kind) {
       const double reach = list_.reach(list_.ranges_.at(kind / classes, kind % classes), list_.skin_);
@@ -316,11 +316,11 @@ class ListBuilder {
   int threads_;
   double skin_ = 0;
   LatticePlaces places_;
-  std::vector<std::size_t> band_of_;  // of each class
+  std::vector<std::size_t> band_of_;  // for each class
   std::vector<double> reach_,
-      widest_reach_;  // of each class with each larger one; the largest one with those of each band
-  std::vector<std::optional<CellGrid>> grids_;  // of each band; empty without members
-  std::vector<std::vector<Found>> found_;       // of each block
+      widest_reach_;  // for each class with each larger one; the largest one with those of each band
+  std::vector<std::optional<CellGrid>> grids_;  // for each band; empty without members
+  std::vector<std::vector<Found>> found_;       // for each block
   std::vector<std::vector<PairRun>> runs_;
   std::atomic<bool> meets_itself_ = false;  // exceptions must not leave a thread of the loop
 };

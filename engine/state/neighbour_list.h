@@ -123,7 +123,7 @@ class NeighbourList {
 
   RangeTable ranges_;
   double skin_ = 0, skin_of_candidates_ = 0;
-  std::vector<std::vector<FoundPair>> candidates_;  // of each block
+  std::vector<std::vector<FoundPair>> candidates_;  // for each block
   std::vector<Pair> pairs_;
   std::vector<LatticeShift> images_;
   std::vector<PairRun> runs_;

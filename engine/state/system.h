@@ -30,7 +30,7 @@ struct System {
   ParticleState particles;
   PeriodicCell box;
   NeighbourList list;
-  SpringField springs;     // of each pair of the list
+  SpringField springs;     // for each pair of the list
   std::uint64_t step = 0;  // number of the step, which keys the noise
   std::uint64_t part = 1;  // part of the step (NoiseKey); 1 between steps
   Clock clock;
