@@ -8,9 +8,9 @@
 // ends, and the other half is the reflection of this one through the origin. counts[row][column] has y in the
 // row and x in the column.
 //
-// The nearest image is unique up to half of the edge L of the box. In a cube at rest the range may be up to L
-// / sqrt(2): shells beyond L / 2 lie partly outside the cube of nearest images, and the ideal count has the
-// factor 3 L / (2 r) - 2, the share of the sphere's surface inside. Pairs in a small box need this.
+// The nearest image is unique up to half of the edge L of the box. In a cube at rest, for pairs in a small
+// box, the range may be up to L / sqrt(2). Shells beyond L / 2 lie partly outside the cube of nearest images.
+// Their ideal count has the factor 3 L / (2 r) - 2, the share of the sphere's surface inside.
 #include <fmt/format.h>
 
 #include <algorithm>

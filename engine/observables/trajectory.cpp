@@ -10,8 +10,8 @@
 // vectors in the axes of the flow. Stress is in the axes of the flow.
 //
 // Positions, motion and contacts are those at the end of a step. Stress is that of the step, which the means
-// of the result add up. log/particles/stress is V sigma_i, xx yy zz xy xz yz, tension positive: half of sym(r
-// F_i) of each pair of the sphere, its stresslet as if it were alone and, with noise, -m sym(v v). Hence
+// of the result add up. log/particles/stress is V sigma_i, xx yy zz xy xz yz, tension positive. It has half
+// of sym(r F_i) of each pair, the stresslet of the sphere as if alone and, with noise, -m sym(v v). Hence
 //   log/stress/total = solvent + (1/V) sum_i V sigma_i
 #include <fmt/format.h>
 

@@ -8,9 +8,9 @@
 namespace peclet::engine {
 namespace {
 
-// Throws ArchiveError unless the cell has a volume, few images of it lie within `range`, and the spheres are
-// near enough to count the cells between them, all of which neighbour lists require. A cell of a run is at
-// least about as wide as the range, as no sphere meets its own image.
+// Throws ArchiveError unless the cell has a volume, few images of it lie within `range`, and the cells
+// between spheres can be counted. Neighbour lists require all three. No sphere of a run meets its own image,
+// so its cell is at least about as wide as the range.
 void require_places(const VectorField& position, const PeriodicCell& box, double range) {
   constexpr double most_cells = 1e6, most_images = 8;
   const CellFrame cell = box.frame();
