@@ -9,7 +9,7 @@
 #include "contract/documents.h"
 #include "contract/durable_file.h"
 #include "engine/forces/configuration.h"
-#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "runner/batch/bundle_files.h"
 #include "runner/campaign/campaign.h"
 #include "runner/owner/event_stream.h"

@@ -129,8 +129,8 @@ PairSums ForceField::evaluate_pairs(System& system, VectorField& force, VectorFi
   return sums;
 }
 
-// Adds the loads of pairs to rows that `set_rows` has set. Pairs ask for the flow at particles of other
-// blocks: it is set for all of them first, but on one thread, where blocks may move in turn.
+// Adds the loads of pairs to rows that `set_rows` sets. Crossing pairs need the non-uniform flow in other
+// blocks: it is set for all particles first, or block by block on one thread, where blocks may move in turn.
 PairSums ForceField::add_pairs(System& system, VectorField& force, VectorField& torque,
                                const SetDrag& set_rows) {
   const bool feels_varying = feels_varying_flow(physics_), in_turn = threads_ <= 1;

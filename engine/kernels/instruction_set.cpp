@@ -29,7 +29,7 @@ const char* name_of(InstructionSet set) {
 
 bool is_available(InstructionSet set) {
 #ifdef PECLET_NEWER_SETS
-  // What engine/CMakeLists.txt allows the compiler to use.
+  // The instructions that engine/CMakeLists.txt allows the compiler to use.
   const bool has_fma = __builtin_cpu_supports("fma") != 0;
   switch (set) {
     case InstructionSet::baseline:

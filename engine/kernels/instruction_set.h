@@ -1,4 +1,4 @@
-// Which of the compiled kernels runs.
+// Chooses the instruction set of the kernels.
 #pragma once
 
 #include "engine/kernels/link_kernels.h"
@@ -9,14 +9,13 @@ namespace peclet::engine {
 
 enum class InstructionSet { baseline, avx2, avx512 };
 
-// "baseline", "avx2", "avx512"
 const char* name_of(InstructionSet set);
 
-// Whether this build has it and this processor can run it. The baseline always can.
+// True if this build contains the set and this processor can run it; always true for the baseline.
 bool is_available(InstructionSet set);
 
-// The widest one available; another one where PECLET_INSTRUCTION_SET names it, for tests and for comparison.
-// Throws InputError when that is unknown or not available.
+// Returns the widest set available, or the one that PECLET_INSTRUCTION_SET names, for tests and comparisons.
+// Throws InputError if that is unknown or not available.
 InstructionSet chosen_instruction_set();
 
 PairKernel pair_kernel(InstructionSet set, const Terms& terms);  // `terms` must be valid

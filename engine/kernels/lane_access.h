@@ -1,4 +1,4 @@
-// How the loop over pairs reads and writes lanes.
+// Reads and writes memory for the loop over pairs: one double, or the lanes of an instruction set.
 #pragma once
 
 #include <cstddef>
@@ -9,9 +9,7 @@
 
 namespace peclet::engine {
 
-// How the loop over pairs reads and writes a single pair; lane_access.h is the same for several.
-//
-// The row of the first index.
+// Functions of a double; those of lanes below have the same names.
 inline Vector3 gather_rows(const double* rows, const std::uint32_t* index, double /*number*/) {
   const double* row = rows + 4 * std::size_t{index[0]};
   return {row[0], row[1], row[2]};
@@ -33,7 +31,7 @@ inline double load_lanes(const double* values, int /*count*/, double /*number*/)
 inline void store_floats(float* values, double x) { *values = static_cast<float>(x); }
 inline void store_lanes(double* values, int /*count*/, double x) { *values = x; }
 
-// Lanes 4 q to 4 q + 3.
+// Returns lanes 4 q to 4 q + 3.
 template <class Set>
 PECLET_ALWAYS_INLINE __m256d four_lanes(const Lanes<Set>& lanes, [[maybe_unused]] int q) {
 #ifdef __AVX512F__
@@ -51,7 +49,7 @@ PECLET_ALWAYS_INLINE void set_four_lanes(Lanes<Set>& lanes, [[maybe_unused]] int
 #endif
 }
 
-// Four rows at a time, transposed in registers.
+// Gathers four rows at a time and transposes them in registers.
 template <class Set>
 PECLET_ALWAYS_INLINE Vector3Of<Lanes<Set>> gather_rows(const double* rows, const std::uint32_t* index,
                                                        const Lanes<Set>& /*number*/) {
@@ -129,7 +127,7 @@ PECLET_ALWAYS_INLINE Lanes<Set> load_lanes(const double* values, int count, cons
   return result;
 }
 
-// In single precision, all lanes.
+// Writes all lanes in single precision.
 template <class Set>
 PECLET_ALWAYS_INLINE void store_floats(float* values, const Lanes<Set>& x) {
 #ifdef __AVX512F__

@@ -1,8 +1,7 @@
-// Several doubles side by side, one for each of as many pairs: the number that the vectorised kernels compute
-// with.
+// Several doubles side by side, one for each pair: the number that vectorised kernels compute with.
 //
-// Set names an instruction set: its width, and in its type a mark that keeps code compiled for one set apart
-// from code for another. Arithmetic is the compiler's vector extension.
+// `Set` is an instruction set. It gives the width, and its type keeps code compiled for one set apart from
+// code for another. Arithmetic is the compiler's vector extension.
 #pragma once
 
 #include <immintrin.h>
@@ -14,7 +13,7 @@
 
 namespace peclet::engine {
 namespace {
-// The set that this file is compiled for. Its name is this file's alone, and so is all code made of it.
+// The set that this file is compiled for. It is local to the file, and so is all code instantiated with it.
 struct CompiledSet {
 #ifdef __AVX512F__
   static constexpr int width = 8;
@@ -62,10 +61,10 @@ class Mask {
   friend Mask operator&(const Mask& a, const Mask& b) { return Mask(a.m & b.m); }
   friend Mask operator!(const Mask& a) { return Mask(~a.m); }
 
-  Integers m;  // all bits of a lane, or none
+  Integers m;  // all bits of a lane set or cleared
 };
 
-// The first `count` lanes.
+// Returns the mask of the first `count` lanes.
 template <class Set>
 Mask<Set> first_lanes(int count) {
   typename Mask<Set>::Integers numbers;
@@ -83,7 +82,7 @@ Lanes<Set> larger(const Lanes<Set>& a, const Lanes<Set>& b) {
   return Lanes<Set>(a.v < b.v ? b.v : a.v);
 }
 
-// Bit k is lane k.
+// Returns the mask as bits: bit k for lane k.
 template <class Set>
 unsigned bits(const Mask<Set>& mask) {
 #ifdef __AVX512DQ__
@@ -109,8 +108,6 @@ Lanes<Set> square_root(const Lanes<Set>& x) {
 
 }  // namespace peclet::engine
 
-// Logarithm and exponential of lanes.
-//
 // Names of the vector ABI. NOLINTBEGIN(bugprone-reserved-identifier)
 #ifdef __AVX512F__
 extern "C" __m512d _ZGVeN8v_exp(__m512d);
@@ -121,10 +118,10 @@ extern "C" __m256d _ZGVdN4v_exp(__m256d);
 
 namespace peclet::engine {
 
-// Natural logarithm of positive normal numbers, to 2 units in the last place. x = 2^e m with m in [sqrt(1/2),
-// sqrt(2)), ln m = 2 artanh(s) with s = (m - 1)/(m + 1), |s| < 0.172. The polynomial in s^2 interpolates at
-// Chebyshev's points (relative error 2e-18).
-// (glibc's vector logarithm is a call in the middle of the loop, with everything else on the stack.)
+// Returns the natural logarithm of positive normal numbers, to 2 units in the last place:
+//   x = 2^e m,   ln m = 2 artanh(s),   s = (m - 1)/(m + 1)
+// with m in [sqrt(1/2), sqrt(2)), |s| < 0.172, and a polynomial in s^2 through Chebyshev points (relative
+// error 2e-18). A call of glibc's vector logarithm would put all other lanes on the stack.
 template <class Set>
 PECLET_ALWAYS_INLINE Lanes<Set> logarithm(const Lanes<Set>& x) {
   using Integers = typename Lanes<Set>::Integers;
@@ -134,7 +131,7 @@ PECLET_ALWAYS_INLINE Lanes<Set> logarithm(const Lanes<Set>& x) {
   constexpr std::int64_t two_to_52 = 0x4330000000000000;
   // Moves the interval's lower end to a power of two: the exponent field is then e + 1023.
   const Integers image = reinterpret_cast<Integers>(x.v) + (0x3ff0000000000000 - root_half);
-  // As a number behind the point of 2^52: the way from integers to doubles that every processor has.
+  // Written into the mantissa of 2^52, an integer becomes a double on every processor.
   const auto field = reinterpret_cast<Integers>(reinterpret_cast<Unsigned>(image) >> 52) | two_to_52;
   const Lanes<Set> exponent(reinterpret_cast<Vector>(field) - (0x1p52 + 1023));
   const Lanes<Set> m(reinterpret_cast<Vector>((image & mantissa) + root_half));
@@ -150,7 +147,7 @@ PECLET_ALWAYS_INLINE Lanes<Set> logarithm(const Lanes<Set>& x) {
   return exponent * 0.693147180559945309417 + s * p;
 }
 
-// By glibc's libmvec (part of libm), at most 4 units in the last place.
+// Returns e^x by glibc's libmvec (part of libm), with an error of at most 4 units in the last place.
 template <class Set>
 PECLET_ALWAYS_INLINE Lanes<Set> exponential(const Lanes<Set>& x) {
 #ifdef __AVX512F__
@@ -164,9 +161,7 @@ PECLET_ALWAYS_INLINE Lanes<Set> exponential(const Lanes<Set>& x) {
 
 namespace peclet::engine {
 
-// How many pairs a number holds, and a row of memory for each of them.
-//
-// How many pairs a number holds.
+// The number of pairs that a Real holds.
 template <class Real>
 constexpr int width_of = Real::width;
 template <>

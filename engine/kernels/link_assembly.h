@@ -1,4 +1,4 @@
-// Couplings of the pairs of a list, computed like their forces: several pairs of one kind side by side.
+// Assembles the links of listed pairs, computed like their forces: several pairs of one kind side by side.
 #pragma once
 
 #include "engine/kernels/lane_access.h"
@@ -10,7 +10,7 @@ namespace peclet::engine {
 
 namespace {
 
-// Of the link of a level that has this number, among the level's groups.
+// Returns the group of the link with this number, among the groups of its level.
 PECLET_ALWAYS_INLINE LinkGroup& group_of(LinkGroup* groups, std::uint32_t number) {
   return groups[number / links_side_by_side * groups_side_by_side + number % groups_side_by_side];
 }
@@ -18,8 +18,8 @@ PECLET_ALWAYS_INLINE int place_of_link(std::uint32_t number) {
   return static_cast<int>(number % links_side_by_side / groups_side_by_side);
 }
 
-// Groups of many levels are written at a time, which no processor sees coming: a line of the next ones with
-// each link, so that they are at hand when these are full.
+// Prefetches one line of a level's next groups with each link, so that they are in the cache when they are
+// needed. The processor cannot predict them, as groups of many levels are written in turn.
 PECLET_ALWAYS_INLINE void fetch_next_groups(LinkGroup* groups, std::uint32_t number) {
   const LinkGroup* const next = groups + std::size_t{number / links_side_by_side + 1} * groups_side_by_side;
   constexpr int for_writing = 1;
@@ -36,7 +36,7 @@ void couple_nothing(LinkGroup& group, int place, std::uint32_t first, std::uint3
   for (Floats* const number : numbers) (*number)[place] = 0;
 }
 
-// Links that couple nothing, so that a level's groups are full.
+// Fills up the last groups of a level with links that couple nothing.
 void fill_up(LinkLevel& level, std::uint32_t links, LinkGroup* groups) {
   const std::uint32_t rest = links % links_side_by_side;
   level.count_of_groups = links / links_side_by_side * groups_side_by_side +
@@ -53,7 +53,7 @@ void fill_up(LinkLevel& level, std::uint32_t links, LinkGroup* groups) {
 
 }  // namespace
 
-// Pairs of one run, as many as a number holds.
+// Up to width_of<Real> pairs of one run.
 template <class Real>
 class LinkedPairs {
  public:
@@ -79,7 +79,7 @@ class LinkedPairs {
     const auto near = listed_lanes(count, Real{}) & (squared <= Real{range * range});
     near_ = bits(near);
     not_finite_ = bits(listed_lanes(count, Real{}) & !(squared < Real{__builtin_inf()}));
-    // Lanes that are not near compute with a distance at which every term is zero.
+    // Lanes out of range compute with a distance at which every term is zero.
     shape_ = {where(near, r), {}, select(near, square_root(squared), Real{2 * range}), kind_.sum_of_radii};
     shape_.normal = (1.0 / shape_.distance) * shape_.separation;
     ahead_ = shape_;
@@ -89,7 +89,7 @@ class LinkedPairs {
   unsigned near() const { return near_; }
   unsigned not_finite() const { return not_finite_; }
 
-  // What a change of the motion changes of the forces of lubrication; `terms` has it.
+  // Returns the derivative of the lubrication load by the motion, as a resistance. Requires lubrication.
   PECLET_ALWAYS_INLINE PairResistanceOf<Real> resistance() const {
     return tangent_resistance(kind_.resistance, in_.parameters.step_resistance, kind_.gap,
                               kind_.lubrication_range, shape_, dot(motion_.velocity, shape_.normal));
@@ -108,7 +108,7 @@ class LinkedPairs {
   }
 
   // Adds the loads of the pairs to the rows of their particles, and their stress to `sums`. `resistance` is
-  // that of their lubrication.
+  // that of lubrication.
   PECLET_ALWAYS_INLINE void leave(const Terms& terms, const PairResistanceOf<Real>& resistance,
                                   const PairKernelOutput& out, LaneSumsOf<Real>& sums) const {
     PairLoadOf<Real> load = lubrication_load(resistance, shape_, motion_);
@@ -133,7 +133,7 @@ class LinkedPairs {
     leave(load, out);
   }
 
-  // Adds what a change of the motion adds to the loads, by the coefficients of coupling(), over the timestep.
+  // Adds the loads that a change of the motion adds, by the coefficients of coupling() over the timestep.
   PECLET_ALWAYS_INLINE void leave_change(const Terms& terms, const LinkWeights& weights,
                                          const ChangeRows& change, const PairKernelOutput& out,
                                          LaneSumsOf<Real>& sums) const {
@@ -182,10 +182,10 @@ class LinkedPairs {
     leave(load, out);
   }
 
-  // Of a pair within its block.
+  // Writes the links of pairs within a block.
   PECLET_ALWAYS_INLINE void emit(const LinkPlaces& places, LinkGroup* groups,
                                  const PairResistanceOf<Real>& coupling) const {
-    // Pairs within reach whose way leads past the range are coupled by nothing.
+    // Pairs within reach that leave the range in this step have no coupling.
     const unsigned coupled = near_ & (bits(coupling.squeeze > 0.0) | bits(coupling.shear > 0.0));
     const LinkNumbers numbers(shape_.normal, coupling);
     for (int k = 0; k < count_; ++k) {
@@ -204,7 +204,7 @@ class LinkedPairs {
     }
   }
 
-  // Of pairs between blocks, whose places are these.
+  // Writes the links of crossing pairs to their places `crossing`.
   PECLET_ALWAYS_INLINE void emit_crossing(const CrossingLink* crossing, const std::uint32_t* row,
                                           LinkGroup* groups, const PairResistanceOf<Real>& coupling) const {
     const LinkNumbers numbers(shape_.normal, coupling);
@@ -233,7 +233,7 @@ class LinkedPairs {
 
   bool is_near(int k) const { return (near_ >> k & 1U) != 0; }
 
-  // What links have of each pair, in single precision.
+  // The numbers of the links of the pairs, in single precision.
   struct LinkNumbers {
     PECLET_ALWAYS_INLINE LinkNumbers(const Vector3Of<Real>& n, const PairResistanceOf<Real>& coupling) {
       store_floats(normal[0], n.x);
@@ -252,7 +252,7 @@ class LinkedPairs {
     Each normal[3], squeeze, shear, pump[2], twist[2], twist_cross;  // pump and twist: of first and second
   };
 
-  // Swapped: the first particle of the link is the second one of the pair.
+  // Writes link k to a place of a group. `swapped`: its first particle is the second one of the pair.
   PECLET_ALWAYS_INLINE static void put(LinkGroup& group, int place, const LinkNumbers& numbers, int k,
                                        bool swapped) {
     const int first = swapped ? 1 : 0, second = 1 - first;
@@ -317,7 +317,6 @@ void assemble(const PairKernelInput& in, const PairRun* runs, std::size_t count,
   if constexpr (with_loads) sums.store(*loads->sums);
 }
 
-// The loads of a change of the motion, as a LinkKernels has it.
 template <class Real>
 void leave_change(const PairKernelInput& in, const PairRun* runs, std::size_t count, const Terms& terms,
                   const LinkWeights& weights, const ChangeRows& change, const PairKernelOutput& loads) {

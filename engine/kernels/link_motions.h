@@ -1,7 +1,6 @@
-// One number of each of eight links, and how rows of particles become such numbers and back.
+// Gathers rows of particles into numbers of eight links side by side, and adds such numbers to rows.
 //
-// Everything is static: nothing that is compiled for one processor may be linked into a program that runs on
-// another.
+// Everything is static: code compiled for one processor must not be linked into the rest of the program.
 #pragma once
 
 #include "engine/kernels/link_kernels.h"
@@ -19,7 +18,7 @@ namespace {
 // The place in a row of each of the six components.
 constexpr int place_of[6] = {0, 1, 2, 4, 5, 6};
 
-// One number of each of eight links, as the formulas of a pair take it (state/real.h).
+// One number of each of eight links, as pair formulas take it (state/real.h).
 struct EightFloats {
   EightFloats() = default;
   EightFloats(const Floats& floats) : v(floats) {}  // NOLINT(google-explicit-constructor): the same numbers
@@ -37,8 +36,8 @@ struct FloatMotions {
 };
 
 #ifdef __AVX2__
-// Rows of eight particles become one number of each. In both halves of a row (velocity, spin) four rows are
-// transposed; then halves change places.
+// Gathers the motions of eight particles. Transposes four rows at a time in both halves (velocity, spin),
+// then exchanges halves.
 PECLET_ALWAYS_INLINE FloatMotions gather_motions(const MotionRow* rows, const std::uint32_t* index) {
   __m256 part[2][3];
   for (int q = 0; q < 2; ++q) {
@@ -54,7 +53,7 @@ PECLET_ALWAYS_INLINE FloatMotions gather_motions(const MotionRow* rows, const st
   return {{velocity(0), velocity(1), velocity(2)}, {spin(0), spin(1), spin(2)}};
 }
 
-// The other way, added to the rows one after the other.
+// Adds motions to the rows of eight particles, one after the other.
 PECLET_ALWAYS_INLINE void add_motions(MotionRow* rows, const std::uint32_t* index, const FloatMotions& add) {
   const __m256 zero = _mm256_setzero_ps();
   for (int q = 0; q < 2; ++q) {

@@ -17,7 +17,7 @@ std::span<const Pair> pairs_of(const NeighbourList& list, const ParticleBlock& b
   return std::span(list.pairs()).subspan(runs.front().begin, runs.back().end - runs.front().begin);
 }
 
-// Calls use(pair, number among the crossing ones).
+// Calls use(pair, number) for each crossing pair.
 template <class Use>
 void for_each_crossing(const NeighbourList& list, Use&& use) {
   for (const PairRun& run : list.runs()) {
@@ -55,8 +55,8 @@ void LinkOrder::find_boundary(const NeighbourList& list, std::size_t particles) 
   });
 }
 
-// Colours the particles of [begin, end) that are in the boundary, or not, by their neighbours that are
-// likewise. Returns how many colours there are.
+// Colours the particles of [begin, end) that are in the boundary, or those in the interior: each gets the
+// first colour that none of its neighbours there has. Returns the number of colours.
 LinkOrder::Colour LinkOrder::colour(std::span<const Pair> pairs, bool boundary, std::uint32_t begin,
                                     std::uint32_t end) {
   const auto among_them = [&](std::uint32_t i) { return (in_boundary_[i] != 0) == boundary; };
@@ -72,11 +72,11 @@ LinkOrder::Colour LinkOrder::colour(std::span<const Pair> pairs, bool boundary, 
   std::uint32_t sum = 0;
   for (std::uint32_t& entry : earlier_begin) {
     sum += entry;
-    entry = sum;  // the end, from which each neighbour goes down by one
+    entry = sum;  // the end, which each neighbour lowers by one below
   }
   earlier.resize(sum);
   for_each_pair([&](std::uint32_t later, std::uint32_t i) { earlier[--earlier_begin[later]] = i; });
-  std::vector<std::uint32_t> taken_by;  // of each colour, the particle whose neighbour has it; from 1
+  std::vector<std::uint32_t> taken_by;  // 1 + the last particle that has a neighbour of this colour
   for (std::uint32_t i = begin; i < end; ++i) {
     if (!among_them(i)) continue;
     for (std::uint32_t k = earlier_begin[i - begin]; k < earlier_begin[i - begin + 1]; ++k) {
@@ -127,7 +127,7 @@ void LinkOrder::number_rows(const LinkBlock& block) {
   }
 }
 
-// For the links within blocks, as many as there are pairs.
+// Makes room for one link for each pair within a block.
 void LinkOrder::make_room(const NeighbourList& list, int threads) {
   std::ranges::fill(next_, 0);
   for_each_range(blocks_.size(), threads, [&](std::size_t begin, std::size_t end) {

@@ -1,13 +1,13 @@
-// The order of the rows of a system of links, in which no two rows of a level are coupled.
+// Orders the rows of a system of links into levels, such that no link couples two rows of a level.
 //
-// Rows belong to the blocks of the list, block after block. Those of particles that have listed neighbours in
-// their own block only come first: the interior, which is eliminated block by block. The others, the
-// boundary, come after the interior of all blocks, level by level. Levels are colours, given one particle
-// after the other: the first that no listed neighbour has. Some six to ten serve any suspension, whatever its
-// size. Particles keep their order within a level.
+// Each block of the list has its own rows. Rows of the interior, whose particles have listed neighbours in
+// their own block only, come first and are eliminated block by block. Rows of the boundary are eliminated
+// level by level, after the interior of all blocks. Levels are colours: each particle in turn gets the first
+// colour that none of its listed neighbours has. Six to ten colours are enough for suspensions of any size.
+// Particles keep their order within a level.
 //
-// A link between two blocks has a place of its own, whether its pair is near or not: so threads put links
-// there without waiting for each other.
+// Each crossing link has a place of its own, whether its pair is near or not, so that threads write links
+// without waiting for each other.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ namespace peclet::engine {
 
 class LinkOrder {
  public:
-  // Of all pairs of the list.
+  // Arranges the rows for the pairs of the list.
   void arrange(const NeighbourList& list, std::size_t particles, int threads = 1);
 
   LinkPlaces places() { return {row_.data(), level_.data(), levels_.data(), next_.data(), crossing_.data()}; }
@@ -29,9 +29,9 @@ class LinkOrder {
   const std::vector<LinkLevel>& levels() const { return levels_; }
   std::uint32_t boundary_levels() const { return boundary_levels_; }
   const std::vector<IncomingLink>& incoming() const { return incoming_; }
-  const std::vector<std::uint32_t>& row() const { return row_; }      // of each particle
-  std::uint32_t inner_groups() const { return inner_groups_; }        // room for so many
-  std::uint32_t crossing_groups() const { return crossing_groups_; }  // after those
+  const std::vector<std::uint32_t>& row() const { return row_; }      // for each particle
+  std::uint32_t inner_groups() const { return inner_groups_; }        // room for links within blocks
+  std::uint32_t crossing_groups() const { return crossing_groups_; }  // room for crossing links, after those
 
  private:
   using Colour = std::uint16_t;
@@ -43,7 +43,7 @@ class LinkOrder {
   void make_room(const NeighbourList& list, int threads);
   void place_crossing_links(const NeighbourList& list);
 
-  std::vector<std::uint8_t> in_boundary_;  // of each particle
+  std::vector<std::uint8_t> in_boundary_;  // for each particle
   std::vector<Colour> colour_;             // within interior or boundary
   std::vector<std::uint32_t> row_, level_, next_;
   std::vector<LinkBlock> blocks_;

@@ -1,8 +1,7 @@
-// The pivots of a system of links: the particles' own 6 x 6 blocks less K, and their inverses
+// Computes the pivots of a system of links: the inverses of the particles' own 6 x 6 blocks less K
 // (link_kernels.h).
 //
-// Everything is static: nothing that is compiled for one processor may be linked into a program that runs on
-// another.
+// Everything is static: code compiled for one processor must not be linked into the rest of the program.
 #pragma once
 
 #include "engine/kernels/link_solver.h"
@@ -10,16 +9,16 @@
 namespace peclet::engine {
 namespace {
 
-// The lower triangle of a symmetric 6 x 6 matrix, row after row.
+// Returns the index of an element in the lower triangle of a symmetric 6 x 6 matrix, row after row.
 constexpr int entry(int row, int column) { return row * (row + 1) / 2 + column; }
 constexpr int entries = 21;
 
-// Before it is inverted the own block of a row is (a b; -b c) with b v = w x v, and a pivot holds
+// Before inversion the own block of a row is (a b; -b c) with b v = w x v, and its pivot holds
 //   { a_xx a_yy a_zz w_x   c_xx c_yy c_zz w_y }
 //   { a_xy a_xz a_yz w_z   c_xy c_xz c_yz 0 }
 // and K: { K_xx K_yy K_zz 0   K_xy K_xz K_yz 0 }.
 
-// What eight links add to the own blocks of their first (sign 1) or second (sign -1) particles.
+// Computes what eight links add to the own blocks of their first (sign 1) or second (sign -1) particles.
 PECLET_ALWAYS_INLINE void block_of_links(const Floats* n, const Floats& squeeze, const Floats& shear,
                                          const Floats& pump, const Floats& twist, float sign, Floats* block) {
   const Floats along = squeeze - shear, p = sign * pump;
@@ -39,7 +38,7 @@ PECLET_ALWAYS_INLINE void block_of_links(const Floats* n, const Floats& squeeze,
   block[15] = Floats{};
 }
 
-// Of eight matrices side by side: A = L D L^T, A^-1 = L^-T D^-1 L^-1.
+// Inverts eight symmetric matrices side by side: A = L D L^T, A^-1 = L^-T D^-1 L^-1.
 PECLET_ALWAYS_INLINE void invert(const Floats* a, Floats* inverse) {
   Floats lower[entries], inverse_lower[entries], per_pivot[6];
   for (int row = 0; row < 6; ++row) {
@@ -72,7 +71,7 @@ PECLET_ALWAYS_INLINE void invert(const Floats* a, Floats* inverse) {
   }
 }
 
-// Eight rows of eight numbers become eight columns.
+// Transposes a matrix of eight rows of eight numbers.
 PECLET_ALWAYS_INLINE void transpose(Floats* rows) {
 #ifdef __AVX2__
   __m256 pairs[8], quads[8];
@@ -101,7 +100,7 @@ PECLET_ALWAYS_INLINE void transpose(Floats* rows) {
 #endif
 }
 
-// What eight links give to the blocks of their particles: calls add(k, part, row).
+// Calls add(k, part, row) for what each link k of eight adds to the own block of its particle.
 template <class Add>
 PECLET_ALWAYS_INLINE void for_each_row_of_blocks(Floats* blocks, Add&& add) {
   for (std::size_t part = 0; part < rows_of_block; ++part) {
@@ -110,7 +109,7 @@ PECLET_ALWAYS_INLINE void for_each_row_of_blocks(Floats* blocks, Add&& add) {
   }
 }
 
-// D and what links add, of the own block of each row; no K. What belongs to other blocks' rows is put aside.
+// Sets the own block of each row to D plus the links' part, without K. Puts aside the parts of other blocks.
 PECLET_ALWAYS_INLINE void set_own_blocks(const LinkSystem& system, const LinkBlock& of, Pivot* pivots) {
   const auto add_to = [&](const std::uint32_t* index, Floats* block) PECLET_INLINE_LAMBDA {
     for_each_row_of_blocks(block, [&](std::size_t k, std::size_t part, const Floats& row)
@@ -151,7 +150,7 @@ PECLET_ALWAYS_INLINE void set_own_blocks(const LinkSystem& system, const LinkBlo
   }
 }
 
-// Adds to K of the first particles what the pivots of the second ones give.
+// Adds to K of the first particles the terms with the pivots of the second ones.
 PECLET_ALWAYS_INLINE void add_squeezing(const GroupRange& groups, Pivot* pivots) {
   constexpr float kept = 0.9F;
   MotionRow* const rows = reinterpret_cast<MotionRow*>(pivots);
@@ -174,7 +173,7 @@ PECLET_ALWAYS_INLINE void add_squeezing(const GroupRange& groups, Pivot* pivots)
   }
 }
 
-// (B - K)^-1 of up to eight rows from `begin` on.
+// Replaces B and K of up to eight rows from `begin` on by (B - K)^-1.
 PECLET_ALWAYS_INLINE void invert_pivots(Pivot* begin, std::size_t count) {
   Floats held[3][8], a[entries], inverse[entries];
   // Lanes without a particle repeat the first one.
@@ -182,7 +181,7 @@ PECLET_ALWAYS_INLINE void invert_pivots(Pivot* begin, std::size_t count) {
     for (std::size_t k = 0; k < 8; ++k) held[part][k] = begin[k < count ? k : 0].rows[part].v;
     transpose(held[part]);
   }
-  // In each 3 x 3 part: the diagonal, and what stands beside it.
+  // The elements beside the diagonal of each 3 x 3 part.
   constexpr int beside[3][2] = {{1, 0}, {2, 0}, {2, 1}};
   for (int c = 0; c < 3; ++c) {
     const auto [row, column] = beside[c];

@@ -1,31 +1,24 @@
-// Conjugate gradients for a system of links that is factorised.
+// Computes the residual of a step and solves a factorised system of links by conjugate gradients.
 //
-// Everything is static: nothing that is compiled for one processor may be linked into a program that runs on
-// another.
+// Everything is static: code compiled for one processor must not be linked into the rest of the program.
 #pragma once
 
 #include "engine/kernels/link_sweeps.h"
 #include "engine/kernels/streaming.h"
 
 namespace peclet::engine {
-
-// What the equations of a step leave, and the motion that it is measured by.
-//
-// Everything is static: nothing that is compiled for one processor may be linked into a program that runs on
-// another.
-
 namespace {
 
-// The loads of eight links on their particles at these motions.
+// Returns the loads of eight links on their particles at these motions.
 PECLET_ALWAYS_INLINE PairLoadOf<EightFloats> load_of(const LinkGroup& group, const FloatMotions& i,
                                                      const FloatMotions& j) {
-  PairGeometryOf<EightFloats> pair{};  // of which the load depends on the normal alone
+  PairGeometryOf<EightFloats> pair{};  // the load depends on its normal alone
   pair.normal = normal_of(group);
   const PairMotionOf<EightFloats> motion = {j.velocity - i.velocity, i.spin, j.spin};
   return lubrication_load(coupling_of(group), pair, motion);
 }
 
-// Of a particle.
+// Returns D of a particle.
 PECLET_ALWAYS_INLINE const Floats& diagonal_of(const LinkSystem& system, std::size_t i) {
   return system.diagonal[system.size_class[i]].v;
 }
@@ -46,13 +39,13 @@ void multiply(const LinkSystem& system, const MotionRow* vector, MotionRow* prod
                  add);
 }
 
-// Calls body(i) for the particles of a block, in their order in memory: their fields are larger than a row.
+// Calls body(i) for the particles of a block in the order of their fields, which are larger than rows.
 template <class Body>
 PECLET_ALWAYS_INLINE void for_each_particle(const LinkBlock& block, Body&& body) {
-  for_each_row(block, body);  // the same numbers, in another order
+  for_each_row(block, body);  // rows and particles of a block have the same numbers
 }
 
-// The row of a particle in a field of vectors.
+// Returns the row of a particle in a field of vectors.
 PECLET_ALWAYS_INLINE const Row& vector_row(const double* rows, std::size_t i) {
   return reinterpret_cast<const Row*>(rows)[i];
 }
@@ -84,7 +77,7 @@ void set_residual(const LinkSystem& system, const StepRows& step, MotionRow* res
   });
 }
 
-// Motions relative to the flow; returns the sums of m u u + I w w.
+// Sets motions relative to the flow; returns the sums of m u u + I w w by component.
 template <bool is_simple_shear>
 Row set_motions(const LinkSystem& system, const StepRows& step, const LinkBlock& block, MotionRow* motion) {
   const Row& spin = streaming_spin(step.flow);
@@ -104,7 +97,7 @@ Row set_motions(const LinkSystem& system, const StepRows& step, const LinkBlock&
   return inertial;
 }
 
-// What links and D dissipate.
+// Adds up v.D v and v.load of the links.
 SquaredMotion squared_motion(const LinkSystem& system, const StepRows& step, MotionRow* motion, Team& team) {
   for_my_blocks(system, team, [&](const LinkBlock& block, std::size_t b) PECLET_INLINE_LAMBDA {
     const Row sums = step.flow.is_simple_shear ? set_motions<true>(system, step, block, motion)
@@ -147,7 +140,7 @@ void add_motion(const LinkSystem& system, const MotionRow* motion, double* veloc
   });
 }
 
-// The first three numbers of both halves in this order.
+// Returns the numbers with the first three of both halves in this order.
 template <int a, int b, int c>
 PECLET_ALWAYS_INLINE Floats arranged(const Floats& v) {
 #ifdef __AVX2__
@@ -174,7 +167,7 @@ PECLET_ALWAYS_INLINE Floats with_halves_changed(const Floats& v) {
 #endif
 }
 
-// P^-1 r of one row, see Pivot: with r = (f, g) the halves a f + b g and b^T f + c g.
+// Returns P^-1 r of one row (see Pivot): with r = (f, g) its halves are a f + b g and b^T f + c g.
 PECLET_ALWAYS_INLINE Floats over_pivot(const Pivot& pivot, const Floats& r) {
   const Floats &beside = pivot.rows[1].v, &across = pivot.rows[3].v;
   const Floats other = with_halves_changed(r);
@@ -185,7 +178,7 @@ PECLET_ALWAYS_INLINE Floats over_pivot(const Pivot& pivot, const Floats& r) {
   return even + odd;
 }
 
-// K t of one row, in the velocity.
+// Returns K t of one row, which has a velocity alone.
 PECLET_ALWAYS_INLINE Floats squeezed(const Pivot& pivot, const Floats& t) {
   const Floats fourth = __builtin_shufflevector(pivot.rows[0].v, pivot.rows[1].v, 2, 10, 3, 11, 6, 14, 7, 15);
   const Floats k = __builtin_shufflevector(fourth, pivot.rows[2].v, 2, 3, 11, 11, 6, 7, 15, 15);
@@ -199,7 +192,7 @@ PECLET_ALWAYS_INLINE Floats squeezed(const Pivot& pivot, const Floats& t) {
   return __builtin_shufflevector(sum, FourFloats{}, 0, 1, 2, 3, 4, 5, 6, 7);
 }
 
-// residual = (P + L)^-1 right, weighted = P residual.
+// Sets residual = (P + L)^-1 b and weighted = P residual.
 double begin(const LinkSystem& system, const SolverRows& rows, Team& team) {
   MotionRow *const r = rows.residual, *const z = rows.weighted;
   climb(
@@ -209,7 +202,7 @@ double begin(const LinkSystem& system, const SolverRows& rows, Team& team) {
         for_each_row(block, [&](std::size_t i) PECLET_INLINE_LAMBDA { z[i].v = rows.solution[i].v; });
       },
       [&](const LinkLevel& level) PECLET_INLINE_LAMBDA {
-        // Links that fill up a group look at it.
+        // Links that fill up a group read these rows.
         for_each_row(level, [&](std::size_t i) PECLET_INLINE_LAMBDA { r[i].v = Floats{}; });
       },
       [&](const GroupRange& groups) PECLET_INLINE_LAMBDA { pull(groups, r, z); },
@@ -224,15 +217,15 @@ double begin(const LinkSystem& system, const SolverRows& rows, Team& team) {
   return total(system, team, &LinkSums::begun);
 }
 
-// Conjugate gradients for
-//   A^ = (P + L)^-1 A (P + L^T)^-1   with the preconditioner P^-1,
-// which are those for A with C. With t = (P + L^T)^-1 p (Eisenstat 1981, SIAM J. Sci. Stat. Comput. 2, 1)
-//   A^ p = t + y,   (P + L) y = p + (K - P) t = K t + L^T t,
-// a product costs what A itself would, and not C^-1 as well. Rows: r of A^, z = P r, p, t, y; `loads` is
-// -L^T t, later P (t + y) = p + K t - L y.
+// Runs conjugate gradients for
+//   A^ = (P + L)^-1 A (P + L^T)^-1
+// with the preconditioner P^-1, which is equivalent to A with C. With t = (P + L^T)^-1 p and
+//   A^ p = t + y,   (P + L) y = p + (K - P) t = K t + L^T t
+// an iteration costs no more than a product with A (Eisenstat 1981, SIAM J. Sci. Stat. Comput. 2, 1). Rows:
+// residual r of A^, z = P r, p, t, y; `loads` is -L^T t, later P (t + y) = p + K t - L y.
 //
-// The boundary comes last on the way up and first on the way down: between the two, a block's interior stays
-// in the cache.
+// The boundary comes first on the way down the levels and last on the way up: between the two, a block's
+// interior stays in the cache.
 SolverReport solve(const LinkSystem& system, const SolverRows& rows, double squared_residual, double target,
                    int most_iterations, Team& team) {
   MotionRow *const x = rows.solution, *const r = rows.residual, *const z = rows.weighted,

@@ -1,7 +1,6 @@
 // Sweeps over the levels of a system of links, eight links side by side.
 //
-// Everything is static: nothing that is compiled for one processor may be linked into a program that runs on
-// another.
+// Everything is static: code compiled for one processor must not be linked into the rest of the program.
 #pragma once
 
 #include "engine/kernels/link_motions.h"
@@ -16,11 +15,11 @@ PECLET_ALWAYS_INLINE double sum_of(const Floats& v) {
   return sum;
 }
 
-// Sums of many single-precision numbers: those of some rows are added up before they count as doubles.
+// The number of rows that are added up in single precision, before their sum counts as a double.
 constexpr std::size_t rows_per_sum = 128;
 
-// Calls body(i, sum) for each i of [begin, end), and returns the sum of all lanes. Four sums side by side, so
-// that none waits for the one before.
+// Calls body(i, sum) for each i of [begin, end), and returns the sum of all lanes. Four sums run side by
+// side, so that they do not wait for each other.
 template <class Body>
 PECLET_ALWAYS_INLINE double summed(std::size_t begin, std::size_t end, Body&& body) {
   double total = 0;
@@ -53,8 +52,7 @@ PECLET_ALWAYS_INLINE Vector3Of<EightFloats> normal_of(const LinkGroup& group) {
   return {group.normal[0], group.normal[1], group.normal[2]};
 }
 
-// Loops over much more than a cache holds: what comes next is asked for in time. Beyond the end nothing
-// happens.
+// Distances of prefetching, for loops over more than a cache holds. Prefetching beyond the end is harmless.
 constexpr int groups_ahead = 12, rows_ahead = 48;
 
 template <class T>
@@ -78,14 +76,14 @@ PECLET_ALWAYS_INLINE GroupRange crossing_groups(const LinkSystem& system, const 
   return {begin, begin + (level.count_of_crossing + links_per_group - 1) / links_per_group};
 }
 
-// Calls body(block, its number) for this member's blocks.
+// Calls body(block, number) for this member's blocks.
 template <class Body>
 PECLET_ALWAYS_INLINE void for_my_blocks(const LinkSystem& system, const Team& team, Body&& body) {
   const Team::Part mine = team.part_of(system.count_of_blocks);
   for (std::size_t b = mine.begin; b < mine.end; ++b) body(system.blocks[b], b);
 }
 
-// The sum over all blocks, in their order, once all members have contributed theirs.
+// Returns the sum over all blocks, in their order, once all members have contributed theirs.
 PECLET_ALWAYS_INLINE double total(const LinkSystem& system, Team& team, double LinkSums::*sum) {
   team.meet();
   double total = 0;
@@ -109,7 +107,7 @@ PECLET_ALWAYS_INLINE void for_each_level(const LinkSystem& system, std::uint32_t
   }
 }
 
-// Adds to rows what the vector of earlier rows does to them: -L vector.
+// Adds -L vector to `loads`: the action of earlier rows on later ones.
 PECLET_ALWAYS_INLINE void pull(const GroupRange& groups, const MotionRow* vector, MotionRow* loads) {
   for (const LinkGroup* group = groups.begin; group < groups.end; ++group) {
     fetch(group + groups_ahead);
@@ -119,7 +117,7 @@ PECLET_ALWAYS_INLINE void pull(const GroupRange& groups, const MotionRow* vector
   }
 }
 
-// What the vector of later rows does to earlier ones: -L^T vector.
+// Returns -L^T vector of eight links: the action of later rows on earlier ones.
 PECLET_ALWAYS_INLINE FloatMotions pushed(const LinkGroup& group, const MotionRow* vector) {
   const FloatMotions i = gather_motions(vector, group.first);
   const auto load = load_on_second(coupling_of(group), normal_of(group), i.velocity, i.spin);
@@ -135,14 +133,14 @@ PECLET_ALWAYS_INLINE void push(const LinkSystem& system, const LinkLevel& level,
   }
 }
 
-// Where what the crossing links of a level do is put aside, that many rows for each.
+// Returns where the loads of the crossing links of a level are put aside, with `rows` rows for each link.
 PECLET_ALWAYS_INLINE MotionRow* aside_of(const LinkSystem& system, const LinkLevel& level, std::size_t rows) {
   return system.aside + rows * links_per_group * (level.crossing_begin - system.crossing_begin);
 }
 
 constexpr std::uint32_t in_order[links_per_group] = {0, 1, 2, 3, 4, 5, 6, 7};
 
-// The same for links to other blocks.
+// Puts aside -L^T vector of the links to other blocks.
 PECLET_ALWAYS_INLINE void push_aside(const LinkSystem& system, const LinkLevel& level,
                                      const MotionRow* vector) {
   const GroupRange groups = crossing_groups(system, level);
@@ -155,7 +153,7 @@ PECLET_ALWAYS_INLINE void push_aside(const LinkSystem& system, const LinkLevel& 
   }
 }
 
-// Calls take(row, number of the crossing link) for what other blocks have put aside for these rows.
+// Calls take(row, number of the crossing link) for each link of another block to a row of this level.
 template <class Take>
 PECLET_ALWAYS_INLINE void for_each_incoming(const LinkSystem& system, const LinkLevel& level, Take&& take) {
   for (std::uint32_t k = level.incoming_begin; k < level.incoming_end; ++k) {
@@ -163,9 +161,9 @@ PECLET_ALWAYS_INLINE void for_each_incoming(const LinkSystem& system, const Link
   }
 }
 
-// From the first level to the last: the interior of each block after enter(block, number), then the boundary.
-// Of each level prepare(level), then add(groups) for the groups of links to earlier rows, then finish(level,
-// number of the block). Members do not wait for each other at the end.
+// Walks the levels from first to last: the interior of each block after enter(block, number), then the
+// boundary. Calls for each level prepare(level), then add(groups) for the groups of links to earlier rows,
+// then finish(level, number of the block). Members do not wait for each other at the end.
 template <class Enter, class Prepare, class Add, class Finish>
 PECLET_ALWAYS_INLINE void climb(const LinkSystem& system, Team& team, Enter&& enter, Prepare&& prepare,
                                 Add&& add, Finish&& finish) {

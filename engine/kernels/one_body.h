@@ -1,8 +1,7 @@
-// The bodies of the loops over particles, compiled once for each width of register. A row is a vector, so one
-// particle after the other is as fast as several.
+// The loops over particles, compiled once for each register width. A row is a vector, so particles one by one
+// are as fast as several side by side.
 //
-// Everything is static: nothing that is compiled for one processor may be linked into a program that runs on
-// another.
+// Everything is static: code compiled for one processor must not be linked into the rest of the program.
 #pragma once
 
 #include "engine/kernels/one_body_kernels.h"
@@ -11,7 +10,7 @@
 namespace peclet::engine {
 namespace {
 
-// NOLINTNEXTLINE(readability-non-const-parameter): who receives the row writes to it
+// NOLINTNEXTLINE(readability-non-const-parameter): callers write to the row
 inline Row& row(double* rows, std::size_t i) { return reinterpret_cast<Row*>(rows)[i]; }
 
 void kick(const OneBodyInput& in, std::size_t begin, std::size_t end) {
@@ -22,7 +21,7 @@ void kick(const OneBodyInput& in, std::size_t begin, std::size_t end) {
   }
 }
 
-// The drag on a particle in its flow.
+// Sets the rows of a particle to its drag in the uniform flow.
 template <bool is_simple_shear>
 void set_drag(const OneBodyInput& in, const OneBodyFactors& drag, std::size_t i, const Row& position,
               const Row& velocity, const Row& spin) {

@@ -1,6 +1,6 @@
-// The compiled loops over particles: what they take, and one table of them for each instruction set.
+// The compiled loops over particles: their input, and one table of them for each instruction set.
 //
-// Plain data, because this is shared with files that are compiled for one processor only.
+// Plain data, because files that are compiled for one processor only include this header.
 #pragma once
 
 #include <cstddef>
@@ -14,8 +14,8 @@ struct OneBodyFactors {
   double translational, rotational;
 };
 
-// Rows are those of a VectorField; kicks (half a step over mass and moment of inertia) and drag
-// (coefficients) are those of each size class.
+// The input of the loops: rows of VectorFields, and for each size class kicks (half a step over mass and
+// moment of inertia) and drag coefficients.
 struct OneBodyInput {
   double *position, *velocity, *spin;
   double *force, *torque;
@@ -27,18 +27,18 @@ struct OneBodyInput {
 // Squared speeds relative to the streaming flow.
 struct Speeds {
   double largest = 0;
-  double sum = 0;  // not finite if one is not; a maximum would pass over it
+  double sum = 0;  // not finite if a speed is not, which `largest` may miss
 };
 
 struct OneBodyKernels {
-  // velocity += kick force and likewise for spins, of particles [begin, end).
+  // Adds kick * force to velocities, and likewise to spins, of particles [begin, end).
   void (*kick)(const OneBodyInput& in, std::size_t begin, std::size_t end);
-  // The same once or twice, and then position += timestep velocity.
+  // Kicks once or twice, then adds timestep * velocity to positions.
   Speeds (*kick_and_drift)(const OneBodyInput& in, std::size_t begin, std::size_t end, bool twice,
                            double timestep);
-  // force = drag (streaming velocity - velocity) and likewise for torques.
+  // Sets force = drag (streaming velocity - velocity), and likewise torques.
   void (*set_drag)(const OneBodyInput& in, std::size_t begin, std::size_t end);
-  // The last two in one loop.
+  // Does kick_and_drift and set_drag in one loop.
   Speeds (*kick_drift_and_drag)(const OneBodyInput& in, std::size_t begin, std::size_t end, bool twice,
                                 double timestep);
 };

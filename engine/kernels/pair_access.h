@@ -1,4 +1,4 @@
-// separation() and relative_velocity(): how a pair of the list is seen through the periodic cell.
+// Returns separation and relative velocity of listed pairs through the periodic cell.
 #pragma once
 
 #include <vector>
@@ -8,19 +8,20 @@
 
 namespace peclet::engine {
 
-// Displacement and velocity of every image that the list uses, at one moment.
+// The displacement and velocity of an image, relative to the particle itself.
 struct ImageFrame {
   Vector3 displacement, velocity;
 };
 
+// Returns the frame of each image that the list uses.
 std::vector<ImageFrame> image_frames(const NeighbourList& list, const PeriodicCell& box);
 
-// r = x_j + image - x_i.
+// Returns r = x_j + image - x_i.
 inline Vector3 separation(const ParticleState& particles, const Pair& pair, const ImageFrame& frame) {
   return particles.position[pair.second] - particles.position[pair.first] + frame.displacement;
 }
 
-// U_j + image's own velocity - U_i.
+// Returns U_j + velocity of the image - U_i.
 inline Vector3 relative_velocity(const ParticleState& particles, const Pair& pair, const ImageFrame& frame) {
   return particles.velocity[pair.second] - particles.velocity[pair.first] + frame.velocity;
 }

@@ -1,8 +1,7 @@
-// The loop over pairs: compiled for each recipe, once with double and once with the lanes of each instruction
-// set.
+// The loop over pairs, compiled for each recipe with double and with the lanes of each instruction set.
 //
-// Included by one file for each instruction set, compiled with its flags. What is here and in the headers
-// that it includes are templates on the number and plain data: nothing that another file could share with it.
+// Included by one file for each instruction set, compiled with its flags. This header and those that it
+// includes have only templates on the number and plain data, so that no other file shares code with it.
 #pragma once
 
 #include <utility>
@@ -15,11 +14,7 @@
 
 namespace peclet::engine {
 
-// The sums of a pass over pairs while it runs, lane by lane.
-//
-// Included by files that are compiled for one instruction set.
-//
-// Pairs are added in the order of the list.
+// The sums of a pass over pairs, lane by lane. Pairs are added in the order of the list.
 template <class Real>
 struct LaneSumsOf {
   SymmetricTensorOf<Real> stress[count_of_stress_terms];
@@ -32,7 +27,7 @@ struct LaneSumsOf {
     stress[static_cast<std::size_t>(term)] += symmetric_dyad(pair.separation, force);
   }
 
-  // Counts the pairs that overlap. Returns whether any does.
+  // Counts the pairs that overlap and adds up their overlaps. Returns true if any does.
   PECLET_ALWAYS_INLINE bool count_contacts(const PairKind& kind, const Real& overlap) {
     const unsigned touching = bits(overlap > Real{});
     if (touching == 0) return false;
@@ -57,18 +52,13 @@ struct LaneSumsOf {
   }
 };
 
-// Where the loads of pairs go: into the rows of their particles.
-//
-// Included by files that are compiled for one instruction set.
-//
-// NOLINTNEXTLINE(readability-non-const-parameter): who receives the row writes to it
+// NOLINTNEXTLINE(readability-non-const-parameter): callers write to the row
 PECLET_ALWAYS_INLINE Row& row_of(double* rows, std::size_t number) {
   return *reinterpret_cast<Row*>(rows + 4 * number);
 }
 
-// Adds the loads of the pairs [begin, begin + count) of a run to the rows of the particles, pair after pair;
-// what acts on particles of other blocks goes to the rows of crossing pairs. `mirrored`: the first particles
-// are away.
+// Adds the loads of pairs [begin, begin + count) of a run to the rows of their particles, pair after pair.
+// Loads on particles of other blocks go to the rows of crossing pairs. `mirrored`: these are the first ones.
 template <bool mirrored, class Real>
 PECLET_ALWAYS_INLINE void leave_load(const PairLoadOf<Real>& load, const PairRun& run, std::uint32_t begin,
                                      int count, const std::uint32_t* first, const std::uint32_t* second,
@@ -101,14 +91,14 @@ PECLET_ALWAYS_INLINE void leave_load(const PairLoadOf<Real>& load, const PairRun
   }
 }
 
-// Up to eight pairs of one run: noise is drawn for all of them together, when the first one needs it.
+// Up to eight pairs of one run, for which noise is drawn together when the first one needs it.
 struct EightPairs {
   std::uint32_t begin, end;
   bool drawn = false;
   NormalBlock normals;
 };
 
-// One copy for all recipes, as of strained_lubrication_load().
+// Returns the non-uniform flow at the spheres of pairs. It is not inlined: one copy serves all recipes.
 template <class Real>
 [[gnu::noinline]] PairVariationOf<Real> variation_at(const FlowRows& flow, const std::uint32_t* first,
                                                      const std::uint32_t* second) {
@@ -122,7 +112,7 @@ template <class Real>
           strain(second)};
 }
 
-// The springs of pairs from `begin` on, those that the terms have.
+// Returns the springs that the terms have, of pairs from `begin` on.
 template <class Real>
 PECLET_ALWAYS_INLINE PairSpringsOf<Real> springs_at(const PairKernelInput& in, const Terms& terms,
                                                     std::uint32_t begin, int count) {
@@ -137,7 +127,7 @@ PECLET_ALWAYS_INLINE PairSpringsOf<Real> springs_at(const PairKernelInput& in, c
   return springs;
 }
 
-// Up to as many pairs of one run as a number holds. `mirrored`: of a run whose first particles are away.
+// Up to width_of<Real> pairs of one run. `mirrored`: their first particles lie in other blocks.
 template <class Real, Terms terms, bool mirrored>
 class PairGroup {
  public:
@@ -145,7 +135,7 @@ class PairGroup {
                                  std::uint32_t begin, int count)
       : in_(in), run_(run), kind_(in.kinds[run.kind]), eight_(eight), begin_(begin), count_(count) {
     for (int k = 0; k < width_of<Real>; ++k) {
-      // Lanes without a pair repeat the first one; they are left out of everything.
+      // Lanes without a pair repeat the first one and are masked or skipped below.
       const Pair& pair = in.pairs[begin + static_cast<std::uint32_t>(k < count ? k : 0)];
       first_[k] = pair.first;
       second_[k] = pair.second;
@@ -169,7 +159,7 @@ class PairGroup {
       leave_nothing(out);
       return;
     }
-    // Lanes that are not near compute with a distance at which every term is zero.
+    // Lanes out of range compute with a distance at which every term is zero.
     PairGeometryOf<Real> shape;
     shape.separation = where(near, r);
     shape.distance = select(near, square_root(squared), Real{2 * range});
@@ -218,7 +208,7 @@ class PairGroup {
     return sum;
   }
 
-  // Those of conservative laws apart.
+  // Adds contacts and stress to the sums; that of conservative laws comes from pair_terms() directly.
   PECLET_ALWAYS_INLINE void add_sums(const PairGeometryOf<Real>& shape, const TermLoadsOf<Real>& loads,
                                      LaneSumsOf<Real>& sums) {
     const auto add = [&](StressTerm term, const Vector3Of<Real>& force) {
@@ -247,7 +237,7 @@ class PairGroup {
     leave_load<mirrored>(load, run_, begin_, count_, first_, second_, out);
   }
 
-  // The rows of crossing pairs are written at every evaluation: nobody clears them.
+  // Writes zero to the rows of crossing pairs, which are not cleared before an evaluation.
   PECLET_ALWAYS_INLINE void leave_nothing(const PairKernelOutput& out) const {
     if (run_.crossing == within_block) return;
     for (int k = 0; k < count_; ++k) {
@@ -281,7 +271,7 @@ class PairGroup {
     return result;
   }
 
-  // For all pairs of the eight.
+  // Draws the noise of all eight pairs.
   void draw() const {
     std::uint64_t identity[identities_per_block] = {}, image[identities_per_block] = {};
     for (std::uint32_t p = eight_.begin; p < eight_.end; ++p) {
@@ -320,8 +310,7 @@ class PairGroup {
   std::uint32_t first_[width_of<Real>], second_[width_of<Real>], image_[width_of<Real>];
 };
 
-// One particle of a crossing pair lies in another block, which is seldom in a cache: its rows are asked for
-// some pairs ahead.
+// Prefetches, some pairs ahead, the rows of the particles in other blocks, which are seldom in a cache.
 inline constexpr std::uint32_t pairs_ahead = 16;
 PECLET_ALWAYS_INLINE void ask_for_rows(const PairKernelInput& in, const PairRun& run, std::uint32_t begin,
                                        std::uint32_t end) {
@@ -357,8 +346,8 @@ template <class Real, Terms terms, bool mirrored>
   sums.store(total);
 }
 
-// Mirrored runs, the last ones of a block, have a loop of their own: the compiler makes slower code of one
-// for both.
+// Runs the loop over the pairs of a block. Mirrored runs, the last ones of a block, have a loop of their own:
+// the compiler makes slower code of one loop for both.
 template <class Real, Terms terms>
 void run_pair_kernel(const PairKernelInput& in, const PairRun* runs, std::size_t count,
                      const PairKernelOutput& out) {
@@ -372,9 +361,7 @@ void run_pair_kernel(const PairKernelInput& in, const PairRun* runs, std::size_t
   }
 }
 
-// The table of pair kernels of one number, by the code of their recipe.
-//
-// Included by one file for each instruction set, compiled with its flags: see pair_kernel.h.
+// Returns the kernel of a recipe, or null if it is not compiled.
 template <class Real, unsigned code>
 constexpr PairKernel kernel_of_code() {
   constexpr Terms terms = decoded_terms(code);

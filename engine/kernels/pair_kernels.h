@@ -1,7 +1,6 @@
-// The compiled loops over pairs: what they take, what they leave, and one table of them for each instruction
-// set.
+// The compiled loops over pairs: their input and output, and one table of them for each instruction set.
 //
-// Plain data, because this is shared with files that are compiled for one processor only.
+// Plain data, because files that are compiled for one processor only include this header.
 #pragma once
 
 #include "engine/kernels/pair_recipes.h"
@@ -13,34 +12,32 @@
 
 namespace peclet::engine {
 
-// What a pass over pairs adds up.
-//
-// Sums over the pairs of one evaluation. stress is sum of sym(r F_i): divide by the volume for (1/V) sum r F.
+// Sums over the pairs of one evaluation. `stress` is the sum of sym(r F_i), not divided by the volume.
 struct PairSums {
   SymmetricTensor stress[count_of_stress_terms] = {};
   double contacts = 0;
-  double overlaps = 0;         // of all contacts, over the smaller radius of the pair
-  double largest_overlap = 0;  // of them
+  double overlaps = 0;         // sum over contacts of the overlap over the smaller radius
+  double largest_overlap = 0;  // over the smaller radius
   bool finite = true;          // no separation was NaN or infinite
 
   SymmetricTensor& of(StressTerm term) { return stress[static_cast<std::size_t>(term)]; }
   const SymmetricTensor& of(StressTerm term) const { return stress[static_cast<std::size_t>(term)]; }
 };
 
-// The stress of all terms together.
+// Returns the stress of all terms together.
 inline SymmetricTensor total_stress(const PairSums& sums) {
   SymmetricTensor total;
   for (const SymmetricTensor& term : sums.stress) total += term;
   return total;
 }
 
-// What varies of the flow at the centres of the particles: rows of velocity and spin, and of the rate of
-// strain xx, yy, zz and xy, xz, yz.
+// The non-uniform part of the flow at the centres of the particles: rows of velocity and spin, and of the
+// rate of strain (xx, yy, zz and xy, xz, yz).
 struct FlowRows {
   const double *velocity, *spin, *strain_along, *strain_across;
 };
 
-// What the pairs of all blocks are computed from. Rows are those of a VectorField.
+// The input for the pairs of all blocks, with rows of VectorFields.
 struct PairKernelInput {
   const double *position, *velocity, *spin;
   const Pair* pairs;
@@ -48,18 +45,18 @@ struct PairKernelInput {
   const PairKind* kinds;
   PairParameters parameters;
   double* springs[6];  // components, see SpringField; advanced in place
-  double* slides;      // of each pair, with kinetic friction
+  double* slides;      // for each pair, with kinetic friction
 
   NoiseKey noise;
   FillNormals fill_normals;
-  const std::uint32_t* id;          // of each particle
-  const std::uint64_t* image_keys;  // of each image
+  const std::uint32_t* id;          // for each particle
+  const std::uint64_t* image_keys;  // for each image
   const double* given_normals;      // six of each pair, instead of drawn ones; or null
   FlowRows varying;                 // null unless parameters.flow varies
 };
 
-// Where the pairs of one block leave their loads: rows of the block's own particles, and of each crossing
-// pair two rows (force and torque on its particle in the other block).
+// The output for the pairs of one block: rows of loads on its own particles, and for each crossing pair two
+// rows (force and torque on its particle in the other block).
 struct PairKernelOutput {
   std::uint32_t first_particle;
   double *force, *torque;
@@ -70,12 +67,12 @@ struct PairKernelOutput {
 using PairKernel = void (*)(const PairKernelInput& input, const PairRun* runs, std::size_t count,
                             const PairKernelOutput& output);
 
-// Indexed by the code of the terms (recipes.h); null where they are not compiled.
+// Kernels by the code of their terms (pair_recipes.h), null if these are not compiled.
 struct PairKernelTable {
   PairKernel kernel[count_of_codes];
 };
 
-extern const PairKernelTable baseline_pair_kernels;  // one pair at a time: the twin of the others
+extern const PairKernelTable baseline_pair_kernels;  // one pair at a time; the reference for the others
 extern const PairKernelTable avx2_pair_kernels;
 extern const PairKernelTable avx512_pair_kernels;
 

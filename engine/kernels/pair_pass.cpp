@@ -111,7 +111,7 @@ double* PairPass::crossing_rows(const NeighbourList& list) {
 void PairPass::add_incoming(const NeighbourList& list, const ParticleBlock& block, VectorField& force,
                             VectorField& torque) const {
   for (std::uint32_t k = block.incoming_begin; k < block.incoming_end; ++k) {
-    // These rows follow no order that the processor could guess.
+    // The processor cannot predict the order of these rows.
     const std::size_t ahead = std::min<std::size_t>(k + 16, list.incoming().size() - 1);
     __builtin_prefetch(crossing_.data() + 8 * std::size_t{list.incoming()[ahead].crossing});
     const IncomingPair& pair = list.incoming()[k];
@@ -136,7 +136,7 @@ void PairPass::each_pair(const PairPassInput& input, SpringField& springs, const
 }
 
 void PairPass::each_pair(const NeighbourList& list, const ComputePair& compute, const VisitPair& visit) {
-  // Rows of crossing pairs, which the step may still need, stay as they are.
+  // Own rows: the step may still need crossing_.
   const std::size_t count = list.blocks().empty() ? 0 : list.blocks().back().end;
   VectorField force(count), torque(count), crossing(2 * list.crossings());
   std::vector<PairSums> sums(2);

@@ -1,4 +1,4 @@
-// Which laws of pairs a scene has.
+// Selects the pair terms that a scene needs, and lists the combinations of terms that are compiled.
 #pragma once
 
 #include "engine/terms/laws.h"
@@ -7,18 +7,16 @@ namespace peclet::engine {
 
 struct Physics;
 
-// The terms that this physics asks for.
+// Returns the terms that this physics needs.
 Terms required_terms(const Physics& physics);
 
-// Whether this physics has that part of the stress.
+// True if this physics has that part of the stress.
 bool has_stress_term(const Physics& physics, StressTerm term);
 
-// Every combination of terms that is compiled, in one place.
+// Returns the terms of a code, whose bits are the terms in the order of every_term.
 //
-// Two independent choices (conservative laws; lubrication of either form without or with noise or none) times
-// the ways in which spheres can touch make 70 recipes, and 20 more with kinetic friction.
-//
-// The bits of `code` are the terms in the order of every_term.
+// Two independent choices (conservative laws or none; no lubrication, or either form of it without or with
+// noise) and seven ways in which spheres touch make 70 recipes. Kinetic friction makes 20 more.
 constexpr Terms decoded_terms(unsigned code) {
   Terms terms;
   for (unsigned bit = 0; bit < count_of_terms; ++bit) terms.*every_term[bit].chosen = (code >> bit & 1U) != 0;
@@ -31,7 +29,7 @@ constexpr unsigned code_of(const Terms& terms) {
   return code;
 }
 
-// What is compiled for these terms: with kinetic friction there always is damping, which may be zero.
+// Returns the terms that are compiled for these: kinetic friction always has damping, which may be zero.
 constexpr Terms compiled_terms(Terms terms) {
   terms.damping = terms.damping || terms.kinetic;
   return terms;

@@ -1,4 +1,4 @@
-// All terms of one pair, or of several side by side, each on its own: the physics of the pair loop as a pure
+// Computes all terms of one pair or of several side by side: the physics of the pair loop, as a pure
 // function.
 #pragma once
 
@@ -12,35 +12,35 @@
 
 namespace peclet::engine {
 
-// Everything that is the same for all pairs of two radii.
+// The constants of all pairs of two radii.
 struct PairKind {
   double radius_first, radius_second, sum_of_radii;
   double range;              // centre distance beyond which every term is zero
-  double listed_range;       // up to which observables want to see the pair too
-  double lubrication_range;  // of the centres; 0 without lubrication
+  double listed_range;       // centre distance up to which forces or observables need the pair
+  double lubrication_range;  // centre distance; 0 without lubrication
   double smaller_radius;
   double reduced_diameter;  // 2 a_i a_j / (a_i + a_j)
-  LubricatedGap gap;        // where there is lubrication
+  LubricatedGap gap;        // set if there is lubrication
   ResistanceConstants resistance;
   RootConstants roots;
   StrainLengths strain;
   ConservativeLaws conservative;
 };
 
-// What is the same for all pairs of one evaluation.
+// The parameters of all pairs in one evaluation.
 struct PairParameters {
   ContactParameters contact;
-  double spring_timestep = 0;  // by which the springs advance; 0: the springs are taken as they are
-  // Forces that depend on the distance are those at the distance that the present motion leads to in this
+  double spring_timestep = 0;  // time by which the springs advance; with 0 they stay as they are
+  // Forces that depend on the distance are taken at the distance that the present motion leads to in this
   // time; their direction stays.
   double approach_time = 0;
-  double felt_share = 1;       // of the springs' advance, after which they push
+  double felt_share = 1;       // share of the springs' advance after which they push
   double noise_amplitude = 0;  // sqrt(2 kT / dt)
   StepResistance step_resistance = {};
   FlowFrame flow = {};
 };
 
-// How much farther than its range a pair of this kind may be and still feel something.
+// Returns how far beyond its range a pair of this kind may be and still have a resistance.
 inline double kind_reach(const PairParameters& parameters, const PairKind& kind) {
   return parameters.step_resistance.reach(kind.gap);
 }
@@ -57,14 +57,14 @@ struct PairNormalsOf {
   Vector3Of<Real> theta, chi;
 };
 
-// Absent terms stay zero and cost nothing: a sum over a zero constant is folded away by the compiler.
+// The loads of each term. Absent terms stay zero and cost nothing: the compiler folds them away.
 template <class Real>
 struct TermLoadsOf {
   PairLoadOf<Real> lubrication, noise;
   OfEachSpring<PairLoadOf<Real>> springs;
   Vector3Of<Real> contact_normal, contact_damping;
-  Vector3Of<Real> conservative;  // of all conservative laws
-  Real overlap{};                // that contact forces belong to
+  Vector3Of<Real> conservative;  // sum over all conservative laws
+  Real overlap{};                // at which contact forces are taken
 };
 
 template <Terms terms, class Real>
@@ -91,10 +91,10 @@ struct NoVariation {
   PairVariationOf<Real> operator()() const { return {}; }
 };
 
-// Every pair lies within kind.range. `normals()` returns theta and chi and is called only where a pair is
-// lubricated and there is noise. `of_law(part, force)` is told the force of each conservative law that acts
-// on any of the pairs. `variation()` returns what varies of the flow at the spheres, where any of it is asked
-// for. The springs advance with the motion and are forgotten when the contact opens.
+// Returns the loads of pairs that lie within kind.range. `normals()` returns theta and chi; it is called only
+// if a pair is lubricated and has noise. `of_law(part, force)` receives the force of each conservative law
+// that acts on any of the pairs. `variation()` returns the non-uniform flow at the spheres; it is called only
+// if lubrication needs it. The springs advance with the motion and are reset when the contact opens.
 template <Terms terms, class Real, class Normals, class OfLaw, class Variation = NoVariation<Real>>
 PECLET_ALWAYS_INLINE TermLoadsOf<Real> pair_terms(const PairParameters& parameters, const PairKind& kind,
                                                   const PairGeometryOf<Real>& pair,
@@ -108,7 +108,7 @@ PECLET_ALWAYS_INLINE TermLoadsOf<Real> pair_terms(const PairParameters& paramete
   }
   if constexpr (terms.lubrication) {
     if (any(pair.distance <= kind.lubrication_range + kind_reach(parameters, kind))) {
-      // Noise belongs to the resistance as it is.
+      // Noise belongs to the whole resistance.
       const ResistanceModesOf<Real> modes = resistance_modes<terms.strained>(
           terms.noise ? StepResistance{} : parameters.step_resistance, kind.gap, kind.lubrication_range, pair,
           dot(motion.velocity, pair.normal));
@@ -136,8 +136,7 @@ PECLET_ALWAYS_INLINE TermLoadsOf<Real> pair_terms(const PairParameters& paramete
   if constexpr (terms.conservative) {
     for_each_conservative_law(
         [&](StressTerm part, const auto& law) PECLET_INLINE_LAMBDA {
-          // The same for all pairs of a run. Laws after the first one are placed out of the way of kernels
-          // that have it alone.
+          // All pairs of a run agree here. Code of laws after the first is placed out of the way.
           if (part != StressTerm::repulsion) {
             if (__builtin_expect(!(law.range > 0), 1)) return;
           }
@@ -161,10 +160,9 @@ PECLET_ALWAYS_INLINE TermLoadsOf<Real> pair_terms(const PairParameters& paramete
   return loads;
 }
 
-// How conservative laws and contacts couple the motions of a pair, in the form of a resistance.
-//
-// Adds to `sum`, which has the resistance of lubrication times its weight. The distance is the one that
-// forces are evaluated at. `held()` is called where spheres touch and have friction.
+// Adds the couplings of conservative laws and contacts to `sum`, in the form of a resistance. `pair` has the
+// distance at which forces are taken. `held()` returns held_shares() of the springs; it is called only if
+// spheres touch and have friction.
 template <class Real, class Held>
 PECLET_ALWAYS_INLINE void add_stiffness(PairResistanceOf<Real>& sum, const Terms& terms,
                                         const ContactParameters& contact, const PairKind& kind,

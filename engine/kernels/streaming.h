@@ -1,6 +1,6 @@
-// The uniform flow where a particle is. Simple shear apart: one product instead of three.
+// Computes the uniform flow at the position of a particle; simple shear needs one product instead of three.
 //
-// Static for the same reason as one_body.h.
+// Everything is static, for the reason given in one_body.h.
 #pragma once
 
 #include "engine/flow/background_flow.h"

@@ -1,8 +1,8 @@
-// Named quantities that an observable measures, and the sums over the window that they are made of.
+// Registers the quantities that an observable measures, and accumulates them over the production window.
 //
-// A quantity is registered once, with its description and its accumulator, or with a function of others that
-// are kept. The numbers of the result, their blocks, their descriptions, the targets of campaigns, and what
-// checkpoints hold follow from the registration.
+// A quantity is registered once: its description, with its accumulator or with a function that computes it.
+// The numbers of the result, their blocks and descriptions, the targets of campaigns and the content of
+// checkpoints follow from the registration.
 #pragma once
 
 #include <cstdint>
@@ -19,9 +19,8 @@
 
 namespace peclet::engine {
 
-// Means over the production window and over its blocks. Values are sums over weights. A number keeps its 32
-// blocks, lists of up to 64 elements the four quarters of the window (which is what the test for transients
-// compares), longer ones the window alone.
+// The blocks that means keep besides the window: 32 for a number, the four quarters of the window (which the
+// test for transients compares) for lists of up to 64 elements, none for longer lists.
 constexpr std::size_t count_of_blocks = 32;
 constexpr std::size_t count_of_quarters = 4;
 constexpr std::size_t most_elements_with_blocks = 64;
@@ -32,25 +31,26 @@ inline std::size_t blocks_kept(const std::vector<std::size_t>& shape) {
   return shape.back() > most_elements_with_blocks ? 0 : count_of_quarters;
 }
 
-// Rounds every number to five significant digits: far below the scatter of a block, and less than half the
-// room of all seventeen. Anything else than a number stays as it is.
+// Rounds every number to five significant digits: far below the scatter of a block, and less than half as
+// long as all seventeen. Other values stay as they are.
 Json rounded(const Json& number);
 
+// A mean over the production window and over its blocks: a sum of values over a sum of weights.
 class BlockedMean {
  public:
-  // A number (no shape), or lists within lists of these lengths, the first one outermost.
+  // Makes the mean of a number (no shape) or of nested lists of these lengths, the outermost first.
   explicit BlockedMean(const std::vector<std::size_t>& shape = {}) : BlockedMean(shape, blocks_kept(shape)) {}
-  // The window is divided into `kept` equal blocks, at most 32.
+  // Divides the window into `kept` equal blocks, at most 32.
   BlockedMean(const std::vector<std::size_t>& shape, std::size_t kept);
 
-  // Adds to the sum of an element, counted through all lists. `block` counts from 0 to 31.
+  // Adds to the sum of an element, numbered through all lists. `block` is 0 to 31.
   void add(std::size_t block, std::size_t element, double value);
-  // Every element's sum is divided by the sum of these weights.
+  // Adds to the weight by which all elements are divided.
   void weigh(std::size_t block, double weight);
 
-  // Returns the mean over the window; null in the place of a number, or of an innermost list, without weight.
+  // Returns the mean over the window, with null for a number or an innermost list without weight.
   Json value() const;
-  // Returns a list with the mean of each block in five digits; null where none are kept.
+  // Returns a list with the mean of each block in five digits, or null if no blocks are kept.
   Json blocks() const;
 
   void save(ArchiveWriter& archive) const { archive.put_all(sums_, blocks_, weight_, block_weights_); }
@@ -61,7 +61,7 @@ class BlockedMean {
 
   std::vector<std::size_t> shape_;
   std::size_t kept_;
-  std::vector<double> sums_;    // of the window
+  std::vector<double> sums_;    // sums over the window
   std::vector<double> blocks_;  // a row of sums for each block
   double weight_ = 0;
   std::vector<double> block_weights_;
@@ -80,21 +80,21 @@ Axis axis_of(const std::string& name, const std::string& unit, std::size_t count
   return axis;
 }
 
-// Returns the times of lags in samples that are `between` apart.
+// Returns the axis of these lags [samples] in time, with samples `between` apart.
 inline Axis axis_of_lags(const std::string& name, const std::vector<std::uint64_t>& lags, double between) {
   return axis_of(name, "time", lags.size(),
                  [&](std::size_t k) { return between * static_cast<double>(lags[k]); });
 }
 
-// Components of a symmetric tensor in the order of every result, and their axis.
+// Return the components of a symmetric tensor, in the order of every result, and their axis.
 inline std::vector<double> components_of(const SymmetricTensor& t) {
   return {t.xx, t.yy, t.zz, t.xy, t.xz, t.yz};
 }
 inline Axis axis_of_components() { return {"component", "1", {"xx", "yy", "zz", "xy", "xz", "yz"}}; }
 
-// A ratio of means: the quantity's object in the result has two members of these names, each a mean (or a
-// sum over the window) that is averaged over the seeds before it is divided. One of the two may be a single
-// number where the other one has axes.
+// A ratio of means. The quantity's object in the result has two members of these names, each a mean or a sum
+// over the window. Both are averaged over the seeds before they are divided. One may be a number while the
+// other has axes.
 struct RatioOfMeans {
   std::string numerator, denominator;
 };
@@ -102,15 +102,15 @@ struct RatioOfMeans {
 struct Quantity {
   std::string name;          // its path in the result's "mean" (and "blocks"): "pressure", "stress/total"
   std::string symbol, unit;  // "1": a pure number
-  std::vector<Axis> axes{};  // none: a scalar; otherwise lists within lists, the first axis outermost
-  std::optional<RatioOfMeans> ratio{};  // absent: its values are means
+  std::vector<Axis> axes{};  // empty for a scalar; otherwise of nested lists, the outermost first
+  std::optional<RatioOfMeans> ratio{};  // absent if its values are means
   bool is_share = false;                // a scalar that is 0 or 1 in each realisation
 };
 
 Json to_json(const Quantity& quantity);
 
-// Names of the numbers of a quantity at which a campaign may aim: of a scalar its own, of others "NAME/*"
-// with a star for the index of each axis. None of a ratio: it is no mean over seeds.
+// Returns the names that a campaign may target: that of a scalar, or "NAME/*" with a star for the index of
+// each axis. Returns nothing for a ratio, which is not a mean over seeds.
 std::vector<std::string> targets_in(const Quantity& quantity);
 
 class Accumulators {
@@ -123,16 +123,15 @@ class Accumulators {
 
   // Registers a mean of the shape of the quantity's axes, and its blocks.
   BlockedMean& mean(const Quantity& quantity) { return mean_if(true, quantity); }
-  // A mean that the result has only if `is_reported`; with `blocks` blocks, or as many as is usual.
+  // Makes a mean that the result has only if `is_reported`, with `blocks` blocks or the usual number.
   BlockedMean& mean_if(bool is_reported, const Quantity& quantity, std::optional<std::size_t> blocks = {});
-  // Registers a ratio of means: of the one that is returned, to another one of the same shape.
+  // Registers a ratio of means and returns its numerator. `denominator` must have the same shape.
   BlockedMean& ratio(const Quantity& quantity, const BlockedMean& denominator);
-  // Registers a quantity that `value` works out when the result is written, and its blocks where they are not
-  // null.
+  // Registers a quantity that `value` computes when the result is written; `blocks` may compute its blocks.
   void derive(const Quantity& quantity, Numbers value, Numbers blocks = nullptr);
-  // Writes a value beside the quantities, without a description: the places along an axis, for example.
+  // Registers a value without a description, for example the points of an axis.
   void beside(const std::string& name, const Json& value);
-  // Registers what checkpoints must have besides the means.
+  // Registers state that checkpoints must have besides the means.
   template <class... Parts>
   void keep(Parts&... parts) {
     saved_.emplace_back([&](ArchiveWriter& archive) { archive.put_all(parts...); });
@@ -140,12 +139,12 @@ class Accumulators {
   }
 
   const std::vector<Quantity>& quantities() const { return quantities_; }
-  // Adds all numbers to the result's means, at the paths that their names are. Requires a sample.
+  // Adds all numbers to the result's means; their names are paths. Requires at least one sample.
   void add_to(Json& mean) const;
-  // Adds the blocks of those that have some. A function of lags up to the whole window has none.
+  // Adds the blocks of quantities that have them. Functions of lags up to the whole window have none.
   void add_blocks_to(Json& blocks) const;
 
-  // Everything that samples have left, bit by bit.
+  // Save and load all accumulated state, bit by bit.
   void save(ArchiveWriter& archive) const;
   void load(ArchiveReader& archive);
 

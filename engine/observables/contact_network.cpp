@@ -1,10 +1,11 @@
-// Contacts of the spheres, and how much of their friction is mobilised.
+// Measures the contacts of the spheres and the mobilisation of their friction.
 //
 // `contacts` is the share of the particles with 0, 1, ... 11 and with 12 or more contacts. With friction,
-// mobilised_friction is the mean of |F_t| / (mu F_n) over contacts, F_t = k_t s of the sliding spring, F_n =
-// frictional_load(), k_n delta as a rule; `mobilisation` is its distribution, the share of contacts in each
-// twentieth from 0 to 1; and sliding_contacts is the share of those above 0.99. With a critical load these
-// are of the contacts above it, and frictional_contacts is their share. Null without such contacts.
+// mobilised_friction is the mean over contacts of |F_t| / (mu F_n), with the force F_t of spring and dashpot
+// and F_n = frictional_load(), usually k_n delta. `mobilisation` is its distribution: the share of contacts
+// in each twentieth from 0 to 1. sliding_contacts is the share of contacts that slide (TouchingPair). With a
+// critical load these means are over contacts above it, and frictional_contacts is their share. Without
+// contacts they are null.
 #include <algorithm>
 
 #include "engine/observables/observable.h"
@@ -13,10 +14,9 @@
 namespace peclet::engine {
 namespace {
 
-// Particles by their contacts, the last with as many or more; contacts by equal parts of their mobilisation.
+// The number of classes of particles, by contacts (the last class is open), and of contacts, by mobilisation.
 constexpr std::size_t counts_of_contacts = 13, parts_of_mobilisation = 20;
 
-// Names of means over the contacts with friction.
 constexpr const char *mobilised_name = "mobilised_friction", *sliding_name = "sliding_contacts",
                      *frictional_name = "frictional_contacts";
 
@@ -78,7 +78,7 @@ class ContactNetwork : public Observable {
 
 ObservableKind contact_network() {
   return {.name = "contact_network",
-          .meaning = "contacts of a particle, mobilised friction",
+          .meaning = "number of contacts of a particle, and mobilised friction",
           .numbers = {mobilised_name, sliding_name, frictional_name},
           .read = [](const SceneDocument& document, const Scene& scene) {
             if (!scene.physics.contact) {

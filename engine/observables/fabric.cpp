@@ -42,7 +42,7 @@ FabricSums fabric_of(const System& system, double gap) {
   for_each_near_pair(system, range, [&](std::uint32_t i, std::uint32_t j, const Vector3& r) {
     const double touching = radius[i] + radius[j], squared = dot(r, r);
     const auto is_within = [&](double distance) { return squared < distance * distance; };
-    if (j < i || !is_within((1 + 0.5 * gap) * touching)) return;  // j < i: seen from j
+    if (j < i || !is_within((1 + 0.5 * gap) * touching)) return;  // j < i: counted from j
     const FabricSums::Pairs pair{(1 / squared) * symmetric_dyad(r, r), 1};
     sums.near += pair;
     if (is_within(touching)) sums.contacts += pair;

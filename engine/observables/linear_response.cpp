@@ -1,30 +1,32 @@
-// The viscosity of a suspension at rest, by linear response, without an approximation but those of the step,
-// of the number of particles and of the window.
+// Measures the viscosity of a suspension at rest by linear response. It is exact up to the errors of the
+// step, the number of particles and the window.
 //
-// With the flux of momentum J of every step (kernels/pair_pass.h; V J in the sums below), in the five
-// independent components xy, xz, yz, (xx - yy)/2, (xx + yy - 2 zz)/(2 sqrt 3) of its traceless part, which
-// count alike, a step response t -> eta+(t) to a shear that begins at 0 follows from Helfand's moment:
-//   B(t) = 1/(2 V eta kT) < (integral over t of V J)^2 > = integral of eta+ - 1 - 2.5 phi from 0 to t,
-//   eta(t) = 1 + 2.5 phi + B(t) / t -> eta_r at rest.
-// Helfand, Phys. Rev. 119, 1 (1960). The random forces are in J: their squares are the viscosity at high
-// frequency, and what they do to later forces must not be lost.
+// J is the flux of momentum of every step (kernels/pair_pass.h). The five independent components of its
+// traceless part, xy, xz, yz, (xx - yy)/2 and (xx + yy - 2 zz)/(2 sqrt 3), count alike. The response eta+(t)
+// to a shear that begins at time 0 follows from Helfand's moment B (Phys. Rev. 119, 1 (1960)):
+//   B(t) = 1/(2 V eta kT) < (integral over t of V J)^2 > = integral of eta+ - 1 - 2.5 phi from 0 to t
+//   eta(t) = 1 + 2.5 phi + B(t) / t -> eta_r at rest
+// J includes the random forces: their squares are the viscosity at high frequency, and their effect on later
+// forces must not be lost.
 //
-// `viscosity` is eta(t) at the times `time`. `zero_shear_viscosity` is the slope 1 + 2.5 phi + (B(2t) -
-// B(t))/t at a sixteenth t of the window (the longest time of the grid up to there), which has the plateau
-// where eta(t) still has what was missing at short times. `zero_shear_rise` is that slope less the one from
-// t/2 to t: where it is not zero within its error, the window is too short.
+// `viscosity` is eta(t) at the times `time`. `zero_shear_viscosity` is the slope
+//   1 + 2.5 phi + (B(2t) - B(t))/t
+// with the longest time t of the grid up to a sixteenth of the window. It reaches the plateau earlier than
+// eta(t), which includes the rise at short times. `zero_shear_rise` is this slope minus the one from t/2 to
+// t; the window is too short if it is not zero within its error.
 //
-// Green and Kubo's form of the same number, as a check, has a partner under reversal of time (Ernst & Brito,
-// Europhys. Lett. 73, 183 (2006); Jung & Schmid, J. Chem. Phys. 144, 204104 (2016)), in discrete steps
-//   eta_r = 1 + 2.5 phi + dt/(V eta kT) [ < J_0^2 >/2 + sum over k > 0 of < (C + D)_k (C_0 - D_0') > ],
-// with the conservative part C and the dissipative one D of V J; D' is that of the velocities on the other
-// side of the step, which is D_-1 where a step finds the velocities that its forces feel (implicit), D_1
-// where it is given them (explicit). `correlation` is eta up to the lag, `modulus` the correlation times
-// V/kT: G(t) without what the random forces do at once.
+// The Green-Kubo form of the same number is a check. It correlates with a partner under time reversal (Ernst
+// & Brito, Europhys. Lett. 73, 183 (2006); Jung & Schmid, J. Chem. Phys. 144, 204104 (2016)), in discrete
+// steps
+//   eta_r = 1 + 2.5 phi + dt/(V eta kT) [ < J_0^2 >/2 + sum over k > 0 of < (C + D)_k (C_0 - D_0') > ]
+// with J for V J here, its conservative part C and its dissipative part D. D' has the velocities on the other
+// side of the step: it is D_-1 if a step finds the velocities that its forces feel (implicit), and D_1 if it
+// is given them (explicit). `correlation` is eta up to the lag. `modulus` is the correlation times V/kT: G(t)
+// without the instantaneous part.
 //
-// `storage` G' and `loss` G'' at `frequency` w, from 1 over eight steps down to 1 over the plateau's time, in
-// the scene's units, solvent included: i w eta eta*(w) with eta* of the step response between whose values at
-// the middle of two times lines are drawn.
+// `storage` G' and `loss` G'' are i w eta eta*(w), solvent included, in the scene's units. `frequency` w runs
+// from 1 over eight steps down to 1 over the plateau's time t. eta* is the transform of the step response,
+// which is linear between its values at the middle of two times.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -44,14 +46,14 @@ namespace {
 constexpr const char *at_rest_name = "zero_shear_viscosity", *rise_name = "zero_shear_rise";
 constexpr std::size_t components = 5;
 
-// Up to nearly half of the window.
+// Returns the number of levels that have lags up to nearly half of the window.
 std::size_t levels_to_half_of(std::uint64_t steps) {
   std::size_t levels = 1;
   while ((std::uint64_t{32} << levels) <= steps) ++levels;
   return levels;
 }
 
-// The longest time of the grid up to a sixteenth of the window; half of it and twice as much are there, too.
+// Returns the longest grid time [steps] up to a sixteenth of the window; its half and double are grid times.
 std::uint64_t plateau_of(std::uint64_t steps) {
   std::uint64_t spacing = 1;
   while (16 * spacing <= steps / 16) spacing *= 2;
@@ -60,7 +62,7 @@ std::uint64_t plateau_of(std::uint64_t steps) {
 
 double lag_time(std::uint64_t lag, double timestep) { return timestep * static_cast<double>(lag); }
 
-// A lag of 0 is one step: a step is correlated with the partner of the one before.
+// Returns the lags [steps]. They begin at 1: a step is correlated with the partner of the step before.
 std::vector<std::uint64_t> correlation_lags(std::uint64_t steps) {
   std::vector<std::uint64_t> lags = MultipleTau::lags(levels_to_half_of(steps), steps - 2);
   for (std::uint64_t& lag : lags) ++lag;
@@ -108,7 +110,7 @@ class LinearResponse : public Observable {
   void take_flux(const MomentumFlux& flux) override {
     const Components acted = components_of(flux.acted());
     const Parts now = {components_of(flux.conservative), components_of(flux.dissipative)};
-    // The partner of the last step needs the one before it or this one.
+    // The partner of the last step needs the step before it or the present step.
     const Parts& other = velocities_are_found_ ? before_ : now;
     for (std::size_t c = 0; c < components; ++c) {
       sums_[c].add(timestep_ * acted[c]);
@@ -162,7 +164,7 @@ class LinearResponse : public Observable {
           [=, this] { return moduli(frequency, [](const std::complex<double>& g) { return g.imag(); }); });
   }
 
-  // B(t).
+  // Returns B(t).
   Curve moments() const {
     Curve curve;
     for (const LagMean& value : sums_[0].values()) curve.time.push_back(lag_time(value.lag, timestep_));
@@ -185,7 +187,7 @@ class LinearResponse : public Observable {
     return viscosity;
   }
 
-  // From `from`, which is a time of the curve as its double is.
+  // Returns the slope between `from` and twice `from`, which must be times of the curve.
   double slope(const Curve& moments, double from) const {
     const auto at = [&](double time) {
       const auto place = std::ranges::lower_bound(moments.time, time - 0.5 * timestep_);
@@ -194,13 +196,13 @@ class LinearResponse : public Observable {
     return (at(2 * from) - at(from)) / from;
   }
 
-  // eta+(0) + integral of (d eta+ / dt) exp(-i w t).
+  // Returns eta*(w) = eta+(0) + integral of (d eta+ / dt) exp(-i w t).
   std::complex<double> viscosity_at(const Curve& moments, double frequency) const {
     using namespace std::complex_literals;
     double last_time = 0, last_moment = 0, last_middle = 0, last_slope = 0;
     std::complex<double> sum = background_;
     for (std::size_t k = 0; k < moments.time.size(); ++k) {
-      // Beyond twice the time of the plateau nothing is added.
+      // Adds nothing beyond twice the plateau's time.
       if (moments.time[k] > lag_time(2 * plateau_, timestep_) + 0.5 * timestep_) break;
       const double slope = (moments.value[k] - last_moment) / (moments.time[k] - last_time);
       if (k == 0) {
@@ -235,7 +237,7 @@ class LinearResponse : public Observable {
     Correlation curves;
     constexpr std::array<double, components> alike = {1, 1, 1, 1, 1};
     const std::vector<LagMean> mean = weighted_sum(correlators_, alike);
-    // The part that acts at once, and half of the first step: trapezia leave out half of their last step.
+    // The instantaneous part. Trapezia leave out half of the first and of the last step, added below.
     const double at_once = 0.5 * timestep_ * factor_ * squares_ / static_cast<double>(components * taken_);
     double integral = 0, before = 0, last = 0;
     for (std::size_t k = 0; k < mean.size(); ++k) {
@@ -254,11 +256,11 @@ class LinearResponse : public Observable {
   std::uint64_t plateau_;                   // the time t of the plateau in steps
   double viscosity_, factor_, background_;  // factor: 1 / (V eta kT); background: 1 + 2.5 phi
   bool velocities_are_found_;
-  std::vector<SquaredSums> sums_;         // one for each component, as below
-  std::vector<MultipleTau> correlators_;  // of a step and the partner of the one before
-  double squares_ = 0;                    // of J, of all components and steps
+  std::vector<SquaredSums> sums_;         // one for each component
+  std::vector<MultipleTau> correlators_;  // for each component: of a step with the partner of the step before
+  double squares_ = 0;                    // sum of (V J)^2 over components and steps
   std::uint64_t taken_ = 0;
-  Parts last_, before_;  // of the last step and the one before
+  Parts last_, before_;  // the last step and the step before
 };
 
 MakeFromPlan read_response(const SceneDocument& document, const Scene& scene) {
@@ -274,8 +276,8 @@ MakeFromPlan read_response(const SceneDocument& document, const Scene& scene) {
 ObservableKind linear_response() {
   return {.name = "linear_response",
           .meaning =
-              "the viscosity of a fluid at rest, exactly, from the flux of momentum of every step; its "
-              "curves over time and frequency",
+              "the exact viscosity of a fluid at rest from the momentum flux of every step, with curves over "
+              "time and frequency",
           .sampling = Sampling::of_every_step,
           .numbers = {at_rest_name, rise_name},
           .read = read_response};

@@ -1,19 +1,19 @@
-// Mean squared displacements over lags from one sample to seven sixteenths of the window.
+// Measures mean squared displacements over lags from one sample to seven sixteenths of the window:
 //
-//   x(t) = < (x_i(s + t) - x_i(s))^2 >, y and z likewise,
+//   x(t) = < (x_i(s + t) - x_i(s))^2 >, y and z likewise
 //
-// the mean over particles i of a species (or all) and origins s, of unwrapped places in the laboratory frame
-// and in units of length squared. `centre` is the same of the mean displacement of all particles: that of the
-// suspension as a whole, which is no diffusion of one particle in it. Under shear the flow carries particles
-// along x, and that direction is left out.
+// with the mean over particles i of a species (or all) and origins s, of unwrapped positions in the
+// laboratory frame [length^2]. `centre` has the squares of the mean displacement of all particles: the motion
+// of the suspension as a whole, which is not diffusion. In shear the flow carries particles along x, and x is
+// left out.
 //
 // Lags are k 2^l samples: k = 1 ... 7 for l = 0 and 4 ... 7 beyond, with origins 2^l samples apart, so that
-// cost per sample does not grow with the window. Memory: 192 bytes for each particle and level.
+// the cost per sample does not grow with the window. Memory: 192 bytes for each particle and level.
 //
 // self_diffusion is the slope between the two longest lags t and 2 t, in three dimensions, relative to the
-// centre, over that of a free sphere of the reference radius a,
-//   D_0 = kT / (pi eta a)   (Li's thesis, ch. 4; three times the one-dimensional kT / (3 pi eta a));
-// null without temperature. Under shear it is 3/2 of that of y and z.
+// centre, over that of a free sphere of the reference radius a
+//   D_0 = kT / (pi eta a)   (Li's thesis, ch. 4; three times the one-dimensional kT / (3 pi eta a))
+// It is null without temperature. In shear it is 3/2 of the slope of y and z.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@
 namespace peclet::engine {
 namespace {
 
-constexpr std::size_t kept_places = 8;  // of each level
+constexpr std::size_t kept_places = 8;  // in each level
 constexpr const char* diffusion_name = "self_diffusion";
 
 Vector3 squares_of(const Vector3& v) { return {v.x * v.x, v.y * v.y, v.z * v.z}; }
@@ -39,7 +39,7 @@ std::vector<Vector3> unwrapped_places(const System& system) {
   return places;
 }
 
-// The lags 4 2^l to 7 2^l samples of the last level begin at a quarter of the window or before.
+// Returns the number of levels, such that the shortest lag of the last is at most a quarter of the window.
 std::size_t levels_in(std::uint64_t samples) {
   std::size_t levels = 1;
   for (std::uint64_t reach = 2; 16 * reach <= samples; reach *= 2) ++levels;
@@ -100,7 +100,7 @@ class MeanSquaredDisplacement : public Observable {
       }
     }
   };
-  // One line of the result.
+  // A point of the curves.
   struct Lag {
     std::uint64_t samples;
     const Level* level;
@@ -121,7 +121,7 @@ class MeanSquaredDisplacement : public Observable {
     }
   }
 
-  // Lags are those that a completed window has met.
+  // Registers curves over the lags that a completed window has.
   void register_squares(const std::vector<double>& radii, std::uint64_t samples) {
     std::vector<std::uint64_t> lags;
     for (std::size_t l = 0; l < levels_.size(); ++l) {
@@ -240,7 +240,7 @@ class MeanSquaredDisplacement : public Observable {
 
 ObservableKind mean_squared_displacement() {
   return {.name = "mean_squared_displacement",
-          .meaning = "of each species",
+          .meaning = "of each species and of all particles, over lags; self-diffusion",
           .sampling = Sampling::often,
           .numbers = {diffusion_name},
           .read = [](const SceneDocument&, const Scene&) { return maker<MeanSquaredDisplacement>(); }};

@@ -5,8 +5,8 @@
 namespace peclet::engine {
 namespace {
 
-// Lags of a level are multiples of its spacing. The first level begins at `least` of them, later ones where
-// the level before them ends.
+// Returns the first lag of a level in units of its spacing: `least` for the first level; a later level begins
+// where the level before it ends.
 std::size_t first_lag(std::size_t level, std::size_t least) { return level == 0 ? least : LagSums::kept / 2; }
 
 template <class Level>
@@ -23,7 +23,7 @@ std::vector<LagMean> means_of(const std::vector<Level>& levels, LagSums Level::*
   return means;
 }
 
-// Returns the lags that so many samples meet.
+// Returns the lags that this number of samples has.
 std::vector<std::uint64_t> lags_of(std::size_t levels, std::uint64_t samples, std::size_t least) {
   std::vector<std::uint64_t> lags;
   for (std::size_t l = 0; l < levels; ++l) {

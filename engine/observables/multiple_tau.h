@@ -10,7 +10,7 @@
 
 namespace peclet::engine {
 
-// A mean at a lag, which is counted in samples.
+// A mean at a lag [samples].
 struct LagMean {
   std::uint64_t lag;
   double mean;
@@ -28,8 +28,7 @@ struct LagSums {
   }
 };
 
-// Correlation of a series with itself or with another one, over lags from one sample to many, at a cost per
-// sample that does not grow.
+// Correlates a series with itself or with another one.
 //
 // Level l holds the last 16 means of 2^l consecutive samples. It correlates them over lags of 0 ... 15 of its
 // own spacings (8 ... 15 beyond the first level): the multiple-tau scheme with m = 2 and p = 16 of Ramirez,
@@ -39,13 +38,12 @@ class MultipleTau {
   explicit MultipleTau(std::size_t levels) : levels_(levels) {}
 
   void add(double value) { add(value, value); }
-  // A sample of the series and one of its partner, which is correlated with later ones of the series.
+  // Adds a sample of the series and one of its partner, which is correlated with this and later samples.
   void add(double value, double partner);
 
-  // Returns <p(s) v(s + lag)>, from which the means are not taken away, in order of the lags; those that were
-  // never met are left out.
+  // Returns <p(s) v(s + lag)> in order of the lags, means not subtracted. Lags without samples are left out.
   std::vector<LagMean> values() const;
-  // Returns the lags of so many samples in so many levels, in the same order.
+  // Returns the lags that this number of samples has in these levels, in the same order.
   static std::vector<std::uint64_t> lags(std::size_t levels, std::uint64_t samples);
 
   void save(ArchiveWriter& archive) const { archive.put_all(levels_); }
@@ -55,7 +53,7 @@ class MultipleTau {
   static constexpr std::size_t kept = LagSums::kept, block = 2;
   struct Level {
     std::uint64_t pushed = 0;
-    std::array<double, kept> last{};  // of the partner, a ring
+    std::array<double, kept> last{};  // ring of values of the partner
     LagSums products;
     double sum = 0, partner_sum = 0;  // for the next level
   };
@@ -63,25 +61,23 @@ class MultipleTau {
   std::vector<Level> levels_;
 };
 
-// Returns the sum of the correlations, each with its weight.
+// Returns the sum of the correlations, each times its weight.
 std::vector<LagMean> weighted_sum(const std::vector<MultipleTau>& correlators,
                                   std::span<const double> weights);
 
-// Mean squares of the sums of a series over all windows of a length, for lengths from one entry to many, at a
-// cost per entry that does not grow.
+// Averages the squared sums of a series over windows of a length, for lengths from one entry to many.
 //
 // Level l keeps the last 16 sums up to every 2^l-th entry. It takes windows of 1 ... 15 of its spacings (8
-// ... 15 beyond the first level), which begin that far apart: they overlap.
+// ... 15 beyond the first level), which begin one spacing apart and overlap.
 class SquaredSums {
  public:
   explicit SquaredSums(std::size_t levels) : levels_(levels) {}
 
   void add(double value);
 
-  // Returns < (sum over the window)^2 > in order of the lengths, which are the lags; those that were never
-  // met are left out.
+  // Returns < (sum over the window)^2 > in order of the lengths (lags). Lengths without windows are left out.
   std::vector<LagMean> values() const;
-  // Returns the lengths of so many entries in so many levels, in the same order.
+  // Returns the lengths that this number of entries has in these levels, in the same order.
   static std::vector<std::uint64_t> lengths(std::size_t levels, std::uint64_t entries);
 
   void save(ArchiveWriter& archive) const { archive.put_all(sum_, entries_, levels_); }
@@ -90,7 +86,7 @@ class SquaredSums {
  private:
   static constexpr std::size_t kept = LagSums::kept;
   struct Level {
-    std::array<double, kept> last{};  // a ring of sums up to an entry; the first is that of nothing
+    std::array<double, kept> last{};  // ring of sums up to an entry; the first is 0
     LagSums squares;
   };
 

@@ -1,7 +1,7 @@
 // An observable: a measurement besides the stress, sampled during the production window.
 //
-// An observable is one file: its class, its keys and a function that returns its ObservableKind, which the
-// list in observable.cpp names.
+// Each observable is one file with its class, its keys and a function that returns its ObservableKind. The
+// list in observable.cpp names this function.
 #pragma once
 
 #include <cstdint>
@@ -19,11 +19,11 @@
 
 namespace peclet::engine {
 
-// The production window that is measured in.
+// The production window.
 struct Window {
   double timestep = 0;
   std::uint64_t steps = 0;
-  Vector3 box{};  // its edges
+  Vector3 box{};  // edges
 
   double volume() const { return box.x * box.y * box.z; }
 };
@@ -32,19 +32,19 @@ struct Window {
 struct Plan {
   const Scene& scene;
   const Window& window;
-  std::uint64_t interval;  // steps between samples, of which the first is at the first step of the window
+  std::uint64_t interval;  // steps between samples; the first sample is at the first step of the window
   const std::string& file;
 
   double time_between() const { return window.timestep * static_cast<double>(interval); }
   std::uint64_t samples() const { return (window.steps - 1) / interval + 1; }
 
-  // Throws InputError if the window has fewer samples of the observable of this name.
+  // Throws InputError, in the name of this observable, if the window has fewer samples.
   void need_samples(const char* name, std::uint64_t least) const;
 };
 
 class Observable : public Accumulators {
  public:
-  // Constructors register what is measured. They throw InputError if box or window are too small for it.
+  // Constructors register quantities. They throw InputError if the box or the window is too small.
   explicit Observable(const Plan& plan) : interval_(plan.interval) {}
   virtual ~Observable() = default;
 
@@ -52,11 +52,11 @@ class Observable : public Accumulators {
   // Override both to take the flux of momentum of every step of the window.
   virtual bool takes_flux() const { return false; }
   virtual void take_flux(const MomentumFlux& /*flux*/) {}
-  // Returns who looks at the pairs of each step that is sampled, before the sample; null: nobody.
+  // Returns the watcher that receives the pairs of each sampled step before sample(), or null.
   virtual PairWatcher* watcher() { return nullptr; }
   // Requires a complete step (integrator.h). `block` counts the 32 blocks of the window from 0.
   virtual void sample(const System& /*system*/, std::size_t /*block*/) {}
-  // Returns what it writes beside the result; null: nothing.
+  // Returns the frames that are written beside the result, or null.
   virtual gsd::Frames* frames() { return nullptr; }
 
  private:
@@ -65,26 +65,26 @@ class Observable : public Accumulators {
 
 using MakeFromPlan = std::function<std::unique_ptr<Observable>(const Plan&)>;
 
-// Makes an observable of this class, whose constructor takes a plan and these settings.
+// Returns a maker of observables of this class, whose constructor takes a plan and these settings.
 template <class Measured, class... Settings>
 MakeFromPlan maker(const Settings&... settings) {
   return [=](const Plan& plan) { return std::make_unique<Measured>(plan, settings...); };
 }
 
 enum class Sampling {
-  of_every_step,  // whatever the scene says
-  often,          // one step unless the scene says otherwise
-  seldom          // a 256th of the window: it costs a walk over all pairs and changes slowly
+  of_every_step,  // without a key for the interval
+  often,          // at every step unless the scene has an interval
+  seldom  // at every 256th of the window unless the scene has an interval: costly, and changing slowly
 };
 
 struct ObservableKind {
   std::string name;
-  std::string meaning;  // behind its name in the list of all
+  std::string meaning;  // follows the name in the list of all
   Sampling sampling = Sampling::seldom;
   bool interval_is_a_duration = false;  // in strain, Brownian times or time; else it is a time
-  std::string settings{};               // rows of the block "/NAME" without its interval
-  std::vector<std::string> numbers{};   // of the result that are not below its name
-  // Reads the settings. Throws InputError where the scene does not go with them.
+  std::string settings{};               // key rows of the block "/NAME", without its interval
+  std::vector<std::string> numbers{};   // numbers of the result that are not below its name
+  // Reads the settings. Throws InputError if they or the observable do not suit the scene.
   MakeFromPlan (*read)(const SceneDocument& document, const Scene& scene);
 
   bool has_settings() const { return sampling != Sampling::of_every_step || !settings.empty(); }
@@ -104,26 +104,20 @@ ObservableKind trajectory();
 
 const std::vector<ObservableKind>& observable_kinds();
 
-// Makes the observables that the scene lists. Throws InputError where box or window are too small for one.
+// Makes the observables that the scene lists. Throws InputError if box or window are too small for one.
 std::vector<std::unique_ptr<Observable>> make_observables(const Scene& scene, const Window& window,
                                                           const std::string& file);
 
-// Throws InputError unless the thermal energy is > 0 and the fluid at rest.
+// Throws InputError unless the thermal energy is > 0 and the fluid is at rest.
 void require_rest(const SceneDocument& document, const Scene& scene, const char* name);
 
-// Throws InputError with lubrication of the form mari, whose stress is not that of the forces alone.
+// Throws InputError if lubrication has the form mari, whose stress is not that of the forces alone.
 void require_stress_of_forces(const SceneDocument& document, const Scene& scene, const char* name);
 
-// Returns the distinct radii, ascending, as the size classes of the spheres are.
+// Returns the distinct radii in ascending order, one for each size class.
 std::vector<double> radii_in(const Scene& scene);
 
-// Returns the pairs of these size classes.
+// Returns the kinds of pairs of these size classes.
 std::vector<PairKind> pair_kinds_in(const Scene& scene);
-
-// Returns all keys of a scene, with those of the observables.
-const KeyTable& scene_keys();
-
-// Reads and checks a scene. `file` names it in messages. Throws InputError.
-Scene read_scene(const Json& document, const std::string& file);
 
 }  // namespace peclet::engine

@@ -1,13 +1,13 @@
-// The stress of an oscillating shear gamma = g sin(w t), in phase with the strain and with the rate; of a
-// shear that oscillates across a steady one the stress across, sigma_yz.
+// Measures the stress of an oscillating shear gamma = g sin(w t), in phase with the strain and with the rate.
+// In a shear that oscillates across a steady one it is the transverse stress sigma_yz.
 //
 //   sigma_xy = g sum over n odd of [G'_n sin(n w t) + G''_n cos(n w t)]
 //   G'_n = (2 / g T) integral of sigma_xy sin(n w t), G''_n with cos, over whole cycles of length T
-// storage_modulus and loss_modulus are those of n = 1, dynamic_viscosity is G'' / (eta w); of n = 3 there are
-// third_storage_modulus and third_loss_modulus. All in the units of the scene. The stress is the flux of
-// momentum that acted in each step (kernels/pair_pass.h), at the moment that it belongs to: the middle of
-// an implicit step, the end of an explicit one. What solvent and stresslets add, 1 + 2.5 phi times eta w, is
-// exact. Blocks have whole cycles: 4, 8, 16 or 32 of them, as many as there are cycles for.
+// storage_modulus and loss_modulus are those of n = 1, dynamic_viscosity is G''_1 / (eta w), and
+// third_storage_modulus and third_loss_modulus are those of n = 3. Moduli are in the units of the scene. The
+// stress is the flux of momentum that acted in each step (kernels/pair_pass.h), at the moment that it belongs
+// to: the middle of an implicit step, the end of an explicit one. Solvent and stresslets add (1 + 2.5 phi)
+// eta w to G'', which is exact. Each of 4, 8, 16 or 32 blocks has whole cycles.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -27,9 +27,8 @@ const Quantity moduli[] = {{"storage_modulus", "G'", "stress"},
                            {"third_storage_modulus", "G'_3", "stress"},
                            {"third_loss_modulus", "G''_3", "stress"}};
 
-// The number of equal blocks into which a window of `cycles` is divided: a power of two, and at least a
-// cycle a block. A window of fewer than four cycles has no blocks, because the test of its beginning compares
-// quarters.
+// Returns the number of equal blocks of a window of `cycles`: a power of two, with at least a cycle in each.
+// Fewer than four cycles give no blocks, because the test for transients compares quarters.
 std::size_t blocks_of_cycles(std::uint64_t cycles) {
   const std::size_t blocks = std::bit_floor(std::min<std::uint64_t>(cycles, count_of_blocks));
   return blocks < count_of_quarters ? 0 : blocks;
@@ -37,7 +36,7 @@ std::size_t blocks_of_cycles(std::uint64_t cycles) {
 
 class Oscillation : public Observable {
  public:
-  // Requires a flow that oscillates, a window of whole cycles after whole cycles, and steps that divide one.
+  // Requires an oscillating flow, whole cycles before and in the window, and steps that divide a cycle.
   explicit Oscillation(const Plan& plan)
       : Observable(plan),
         volume_(plan.window.volume()),
@@ -87,9 +86,9 @@ class Oscillation : public Observable {
   double volume_;
   Swing swing_;
   double solvent_;     // eta w
-  double background_;  // of G''
+  double background_;  // part of solvent and stresslets in G''
   std::uint64_t steps_of_cycle_, cycles_;
-  double ahead_;  // of the beginning of a step, in steps: the moment that its flux belongs to
+  double ahead_;  // moment that the flux of a step belongs to, in steps after its beginning
   std::uint64_t taken_ = 0;
   std::array<Modulus, 2> cycle_{};  // sums of this cycle, n = 1 and 3
   std::vector<BlockedMean*> means_;
@@ -103,7 +102,7 @@ ObservableKind oscillation() {
   return {.name = "oscillation",
           .meaning =
               "G' and G'' of an oscillating shear, and the third harmonic of the stress; with "
-              "cross_shear of the stress across",
+              "cross_shear those of the transverse stress",
           .sampling = Sampling::of_every_step,
           .numbers = names,
           .read = [](const SceneDocument& document, const Scene& scene) {

@@ -1,17 +1,16 @@
-// Where other particles are, seen from one.
+// Measures the distribution of other particles around a particle.
 //
 // Every sample counts the separations r = x_j - x_i of all ordered pairs (i, j), each to the nearest image:
-// `radial` by |r|, in shells as thick as `bin`; `slice` by (x, y), in squares of that edge, where |z| is
-// below `slab`. Beside the counts stand those of points without a structure, N (N - 1) / V times the volume
-// of the bin and the number of samples, so that g = counts / ideal, and counts of several realisations may be
-// added up. Lengths are in units of the reference radius a. The slice has y >= 0 only: the other half is its
-// image in the origin, because every pair is counted from both ends; counts[row][column] has y in the row and
-// x in the column.
+// `radial` by |r| in shells of thickness `bin`, `slice` by (x, y) in squares of edge `bin`, if |z| is below
+// `slab`. The result also has the ideal counts of uncorrelated points, N (N - 1) / V times the volume of the
+// bin and the number of samples. Then g = counts / ideal, and counts of several realisations may be added up.
+// Lengths are in units of the reference radius a. The slice has y >= 0 only: every pair is counted from both
+// ends, and the other half is the reflection of this one through the origin. counts[row][column] has y in the
+// row and x in the column.
 //
-// The nearest image is unique up to half of the box. A fluid at rest may be looked at up to 1 / sqrt(2) of
-// it: shells beyond the half are then partly outside of the cube of nearest images, and the ideal count has
-// the factor 3 L / (2 r) - 2 of the sphere's surface that is inside. This is how a pair in a small box is
-// looked at.
+// The nearest image is unique up to half of the edge L of the box. In a cube at rest, for pairs in a small
+// box, the range may be up to L / sqrt(2). Shells beyond L / 2 lie partly outside the cube of nearest images.
+// Their ideal count has the factor 3 L / (2 r) - 2, the share of the sphere's surface inside.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,7 +27,7 @@ namespace {
 
 constexpr double most_bins = 1000;
 
-// In units of the reference radius.
+// Lengths in units of the reference radius.
 struct DistributionSettings {
   double range, bin, slab;
 
@@ -37,22 +36,22 @@ struct DistributionSettings {
 
 double shortest(const Vector3& edges) { return std::min({edges.x, edges.y, edges.z}); }
 
-// Pairs within the range must not have other images in the box: it would be ambiguous which is meant.
+// Throws InputError if the nearest image of a pair within the range is not unique.
 void check_range(const Plan& plan, double range) {
   const Scene& scene = plan.scene;
   const double unit = scene.particles.reference_radius;
-  // Beyond half of it the volume of a shell is that in a cube.
+  // Volumes of shells beyond half of the edge are those in a cube.
   const bool whole_cube = !(scene.physics.flow.rate() > 0) && !scene.height;
   const double reach = whole_cube ? std::numbers::sqrt2 / 2 : 0.5;
   const double edge = shortest(plan.window.box);
   if (range * unit <= reach * edge) return;
-  // The default is no part of a scene without the block.
-  throw InputError(
-      plan.file, "/pair_distribution/range", fmt::format("{}", range),
-      fmt::format("must be at most {:.4g} in this box of {:.4g} radii", reach * edge / unit, edge / unit));
+  // The scene may lack the block, so the value is given here.
+  throw InputError(plan.file, "/pair_distribution/range", fmt::format("{}", range),
+                   fmt::format("must be at most {:.4g} in this box, whose shortest edge is {:.4g}",
+                               reach * edge / unit, edge / unit));
 }
 
-// Places of the centres of `count` bins, of which the first one begins at `from` bins.
+// Returns the axis of the centres of `count` bins, of which the first one begins at `from` bins.
 Axis bins_along(const char* name, const DistributionSettings& settings, std::size_t count, double from) {
   return axis_of(name, "reference radius", count,
                  [&](std::size_t k) { return (static_cast<double>(k) + 0.5 + from) * settings.bin; });
@@ -100,7 +99,7 @@ class PairDistribution : public Observable {
  private:
   void count(const Vector3& r, std::size_t quarter) {
     const double half = 0.5 * edge_;
-    // Within half of the box no other image is near.
+    // Beyond half of the edge, skips images that are not the nearest.
     if (range_ > half && (std::abs(r.x) > half || std::abs(r.y) > half || std::abs(r.z) > half)) return;
     if (const auto shell = static_cast<std::size_t>(norm(r) / bin_); shell < bins_) {
       ++radial_[shell];
@@ -114,8 +113,8 @@ class PairDistribution : public Observable {
     }
   }
 
-  // The volume of a shell that lies in the cube of nearest images: the integral of 4 pi r^2 up to half of the
-  // edge and of 4 pi r^2 (3 L / (2 r) - 2) beyond.
+  // Returns the volume of a shell within the cube of nearest images: the integral of 4 pi r^2 up to half of
+  // the edge and of 4 pi r^2 (3 L / (2 r) - 2) beyond.
   double ideal_shell(std::size_t bin) const {
     const double half = 0.5 * edge_;
     const auto within = [&](double r) {
@@ -133,12 +132,12 @@ class PairDistribution : public Observable {
     return within((k + 1) * bin_) - within(k * bin_);
   }
 
-  // Ordered pairs in a unit of volume, in `samples` samples without a structure.
+  // Returns the ordered pairs of uncorrelated points per volume, in `samples` samples.
   double ideal_pairs(std::uint64_t samples) const {
     return static_cast<double>(samples) * particles_ * (particles_ - 1) / volume_;
   }
 
-  // Rows of counts, of this length.
+  // Returns the counts in rows of this length.
   static Json rows(const std::vector<std::uint64_t>& counts, std::size_t length) {
     Json rows = Json::array();
     for (auto row = counts.begin(); row != counts.end(); row += static_cast<std::ptrdiff_t>(length)) {
@@ -174,7 +173,7 @@ class PairDistribution : public Observable {
   std::size_t bins_;
   std::uint64_t samples_ = 0;
   std::vector<std::uint64_t> radial_;
-  // Quarters of the window; without rows where there are too many bins.
+  // Quarters of the window; too many bins are not kept in quarters.
   std::array<std::uint64_t, count_of_quarters> quarter_samples_{};
   std::vector<std::uint64_t> radial_quarters_;  // rows of bins_
   std::vector<std::uint64_t> slice_;            // rows of 2 bins_
@@ -200,10 +199,10 @@ ObservableKind pair_distribution() {
   return {.name = "pair_distribution",
           .meaning = "g(r) and g(x, y)",
           .settings = R"(
-/pair_distribution/range | number > 0; in reference radius; default 4 | Largest distance; at most half of the
-    shortest edge of the box, in a cube at rest 0.707 of it.
-/pair_distribution/bin | number > 0; in reference radius; default 0.1 | Width of a bin; a whole number of
-    them, at most 1000, makes up the range.
+/pair_distribution/range | number > 0; in reference radius; default 4 | Largest distance: at most half of the
+    shortest edge of the box, or 0.707 of it in a cube at rest.
+/pair_distribution/bin | number > 0; in reference radius; default 0.1 | Width of a bin; must divide the range
+    into at most 1000 equal bins.
 /pair_distribution/slab | number > 0; in reference radius; default 0.1 | Distance |z| below which a pair
     counts for g(x, y).
 )",

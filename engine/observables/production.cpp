@@ -5,7 +5,7 @@
 namespace peclet::engine {
 
 Production::Production(std::uint64_t steps) : steps_(steps) {
-  // The first step of a block.
+  // Returns the first step of a block.
   const auto begin = [&](std::size_t block) {
     return (block * steps + count_of_blocks - 1) / count_of_blocks;
   };
@@ -39,7 +39,7 @@ double statistical_inefficiency(const std::vector<double>& series) {
     return sum / count;
   };
   const double variance = covariance(0);
-  // Values that differ by rounding alone say nothing.
+  // The series is constant up to rounding.
   if (!(variance > 1e-24 * mean * mean)) return 1;
   double inefficiency = 1;
   for (std::size_t lag = 1; lag < series.size(); ++lag) {

@@ -1,4 +1,4 @@
-// Sums over the production window, in 32 consecutive blocks.
+// Adds up stress, motion and contacts over the production window, in 32 consecutive blocks.
 #pragma once
 
 #include <array>
@@ -12,20 +12,20 @@
 namespace peclet::engine {
 
 struct BlockSums {
-  std::uint64_t planned = 0;  // steps that it has once it is complete
+  std::uint64_t planned = 0;  // steps of the complete block
   std::uint64_t steps = 0;    // every step adds to the stress: thinning would destroy the Brownian part
   std::array<SymmetricTensor, count_of_stress_terms> stress{};  // sum over pairs of sym(r F)
   SymmetricTensor motion{};                                     // -sum m sym(v v), relative to the flow
-  double shear_rate = 0;                                        // of the cell, x along y
+  double shear_rate = 0;                                        // rate of the cell, x along y
   double contacts = 0;
-  double overlaps = 0;        // of these, over the smaller radius of the pair
-  std::uint64_t samples = 0;  // the rest is sampled
+  double overlaps = 0;        // sum over contacts of the overlap over the smaller radius
+  std::uint64_t samples = 0;  // number of samples of the members below
   SymmetricTensor structural_brownian{};
   SymmetricTensor varying_stresslet{};
   KineticTemperatures temperature{};
 
   BlockSums& operator+=(const BlockSums& block);
-  // Over contacts; 0 without any.
+  // Returns the mean over contacts, or 0 without contacts.
   double mean_overlap() const { return contacts > 0 ? overlaps / contacts : 0; }
 };
 
@@ -37,7 +37,7 @@ inline BlockSums sum_of(std::span<const BlockSums> blocks) {
 
 class Production {
  public:
-  // The window has `steps` steps, at least one for each block.
+  // `steps` is the length of the window, at least one for each block.
   explicit Production(std::uint64_t steps);
 
   // `index` counts the steps of the window from 0.
@@ -58,7 +58,7 @@ class Production {
   }
 
   const std::array<BlockSums, count_of_blocks>& blocks() const { return blocks_; }
-  // The block that a step of the window belongs to.
+  // Returns the block that a step of the window belongs to.
   std::size_t block_at(std::uint64_t index) const {
     return static_cast<std::size_t>(index * count_of_blocks / steps_);
   }
@@ -73,8 +73,8 @@ class Production {
   std::array<BlockSums, count_of_blocks> blocks_{};
 };
 
-// 1 + 2 sum of the autocorrelation of `series` up to its first value that is not positive: by how many times
-// fewer independent values it has than entries. At least 1; 1 for a series that is constant but for rounding.
+// Returns the number of entries of a series per independent value: 1 + 2 sum of its autocorrelation up to the
+// first value that is not positive. It is at least 1, and 1 for a series that is constant up to rounding.
 double statistical_inefficiency(const std::vector<double>& series);
 
 }  // namespace peclet::engine

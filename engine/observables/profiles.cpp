@@ -1,24 +1,24 @@
-// Profiles along y, the direction of the velocity gradient, in equal bins of the box.
+// Measures profiles along y, the direction of the velocity gradient, in equal bins of the box.
 //
-// `volume_fraction` is the volume of spheres in a bin over that of the bin; a sphere that reaches into
-// several gives each its slab,
-//   V(y) = pi h^2 (3 a - h) / 3 below the height y, h = y - (y_i - a) between 0 and 2 a.
-// `volume_fraction_by_radius` has the spheres of each radius apart, a list of bins for each; they add up to
-// the former.
-// `velocity` is the mean of u_x - U(y_i), with each sphere's part V_i of the bin as its weight; U is the
-// uniform part of the flow. A ratio of means: numerator sum V_i (u_x - U) and denominator sum V_i, both over
-// the bin's volume.
-// `velocity_variance`: velocity_variance.h.
+// `volume_fraction` is the volume of spheres in a bin over that of the bin. A sphere that reaches into
+// several bins gives each its slab, by its volume below the height y
+//   V(y) = pi h^2 (3 a - h) / 3,   h = y - (y_i - a) between 0 and 2 a
+// `volume_fraction_by_radius` has a list of bins for each radius; these add up to `volume_fraction`.
+//
+// `velocity` is the mean of u_x - U(y_i) with the uniform part U of the flow, weighted by each sphere's part
+// V_i of the bin. It is a ratio of means: numerator sum V_i (u_x - U) and denominator sum V_i, both over the
+// bin's volume. For `velocity_variance` see velocity_variance.h.
 //
 // Each pair's stress lies on the line between its centres (Irving & Kirkwood 1950, J. Chem. Phys. 18, 817; as
 // the mean over a bin: Cormier, Rickman & Delph 2001, J. Appl. Phys. 89, 99):
-//   stress_k = (1 / V_k) sum over pairs of sym(r F_i) l_k,
-// l_k the part of the line within bin k. `momentum_flux` is the same of r_y F_i, not made symmetric: what the
-// traction on planes y = const is, F on what lies below. Its means over two bins differ by the drag of the
-// spheres between them,
-//   flux_k - flux_(k-1) = -(1 / A) sum_i F_drag,i t(y_i) = -drag_k,
-// t the tent that is 1 at the boundary and 0 a bin's width away, A = Lx Lz, but for inertia, which has no
-// mean in steady flow. `imbalance` is the largest |flux_k - flux_(k-1) + drag_k| over the largest |flux_k|.
+//   stress_k = (1 / V_k) sum over pairs of sym(r F_i) l_k
+// with the part l_k of the line within bin k. `momentum_flux` is such a sum of r_y F_i, not made symmetric:
+// the traction on planes y = const, exerted on the material below. Its means over two neighbouring bins
+// differ by the drag of the spheres between them,
+//   flux_k - flux_(k-1) = -(1 / A) sum_i F_drag,i t(y_i) = -drag_k
+// with the tent function t, 1 at the boundary and 0 a bin's width away, and A = Lx Lz. Inertia is left out:
+// its mean is zero in steady flow. momentum_imbalance is the ratio of the largest |flux_k - flux_(k-1) +
+// drag_k| to the largest |flux_k|.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -32,13 +32,13 @@
 namespace peclet::engine {
 namespace {
 
-// The volume of a sphere of radius a around 0 below the height y.
+// Returns the volume below the height y of a sphere of radius a around 0.
 double volume_below(double y, double a) {
   const double h = std::clamp(y + a, 0.0, 2 * a);
   return std::numbers::pi * h * h * (3 * a - h) / 3;
 }
 
-// Bin centres (from = 0.5), or boundaries below the bins (from = 0).
+// Returns the axis of the centres of bins (from = 0.5) or of the boundaries below them (from = 0).
 Axis along_y(const Window& window, std::size_t bins, double from) {
   return axis_of("y", "length", bins, [&](std::size_t k) {
     return (static_cast<double>(k) + from) * window.box.y / static_cast<double>(bins);
@@ -68,7 +68,7 @@ std::vector<StressTerm> terms_of(const Physics& physics) {
   return present;
 }
 
-// Rows of components over y.
+// Returns a quantity with rows of components over y.
 Quantity profile(const std::string& name, const char* symbol, const Physics& physics, const Json& components,
                  const Axis& y) {
   return {.name = "profiles/" + name,
@@ -83,7 +83,7 @@ Quantity vector_profile(const char* name, const char* symbol, const Physics& phy
   return profile(name, symbol, physics, {"xy", "yy", "zy"}, y);
 }
 
-// The stress of the pairs by y, and the balance of momentum.
+// The stress of the pairs over y, and the balance of momentum.
 class StressProfile final : public PairWatcher {
  public:
   StressProfile(Accumulators& all, const Physics& physics, const Axis& centres, const Axis& boundaries)
@@ -152,7 +152,7 @@ class StressProfile final : public PairWatcher {
   }
 
  private:
-  // Without noise, whose forces have no drag.
+  // True without noise, whose forces are not part of the drag.
   bool has_balance() const { return !(physics_.thermal_energy > 0); }
 
   void add_drag(const System& system) {
@@ -163,7 +163,7 @@ class StressProfile final : public PairWatcher {
       const Vector3 x = particles.position[i];
       const Vector3 drag = (weight_ * translational_drag(physics_.viscosity, a) / area_) *
                            (flow.velocity(x, a) - particles.velocity[i]);
-      // Between the boundaries below and above.
+      // Shares the drag between the boundaries below and above.
       const double place = x.y / width_, bottom = std::floor(place);
       const std::size_t below = periodic_bin(static_cast<std::int64_t>(bottom), bins_);
       step_drag_[below] += (1 - (place - bottom)) * drag;
@@ -270,15 +270,14 @@ class Profiles : public Observable {
 }  // namespace
 
 ObservableKind profiles() {
-  return {
-      .name = "profiles",
-      .meaning =
-          "by y: volume fraction, of each radius too, velocity and its variance, stress by term, "
-          "and the balance of momentum",
-      .settings = "/profiles/bins | integer >= 1 and <= 1000; default 20 | Equal bins of the box along y.",
-      .read = [](const SceneDocument& document, const Scene&) {
-        return maker<Profiles>(document.at("/profiles/bins").get<std::size_t>());
-      }};
+  return {.name = "profiles",
+          .meaning =
+              "over y: volume fraction, also of each radius, velocity and its variance, stress by term, "
+              "and the balance of momentum",
+          .settings = "/profiles/bins | integer >= 1 and <= 1000; default 20 | Number of equal bins along y.",
+          .read = [](const SceneDocument& document, const Scene&) {
+            return maker<Profiles>(document.at("/profiles/bins").get<std::size_t>());
+          }};
 }
 
 }  // namespace peclet::engine

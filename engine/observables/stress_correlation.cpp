@@ -1,15 +1,14 @@
-// Autocorrelation of the structural Brownian stress of a suspension at rest, and the viscosity that follows.
+// Measures the autocorrelation of the structural Brownian stress of a suspension at rest, and its viscosity.
 //
 //   G(t) = (V / kT) < S(s) S(s + t) >,   eta_B(t) = integral of G from 0 to t   (Green and Kubo)
 //
-// S are the five independent components of the traceless stress, in the combination that every rotation
-// leaves alone: xy, xz, yz with weights 1/5 and xx - yy, yy - zz, zz - xx with 1/30. The stress is that of
-// structural_brownian_stress(); Li's thesis, section 4.3 (fig. 4.3b), fits eta_B(t) with eta_phi (1 -
-// exp(-t / tau)).
+// S are the five independent components of the traceless structural_brownian_stress(), combined so that
+// rotations do not matter: xy, xz, yz with weights 1/5 and xx - yy, yy - zz, zz - xx with 1/30. Li's thesis
+// (fig. 4.3b) fits
+//   eta_B(t) = eta_phi (1 - exp(-t / tau))
 //
-// The result has `modulus` G in the scene's units and `viscosity` eta_B / eta, by the trapezoidal rule over
-// the lags `time`; green_kubo_viscosity is the last of them, up to a quarter of a window of 60 samples or
-// more.
+// The result has `modulus` G in the scene's units and `viscosity` eta_B / eta over the lags `time`, by the
+// trapezoidal rule. green_kubo_viscosity is the last value, at up to a quarter of the window.
 #include <array>
 
 #include "engine/observables/multiple_tau.h"
@@ -22,7 +21,7 @@ namespace {
 constexpr std::array<double, 6> weights = {1.0 / 5, 1.0 / 5, 1.0 / 5, 1.0 / 30, 1.0 / 30, 1.0 / 30};
 constexpr const char* green_kubo_name = "green_kubo_viscosity";
 
-// The longest lag of level l is 15 2^l samples: as many levels as that part of the window has room for.
+// Returns the number of levels with lags, the longest of 15 2^l samples, up to a quarter of the window.
 std::size_t levels_to_a_quarter_of(std::uint64_t samples) {
   std::size_t levels = 1;
   while ((std::uint64_t{60} << levels) <= samples) ++levels;
@@ -82,21 +81,20 @@ class StressCorrelation : public Observable {
   double time_;  // between samples
   double thermal_energy_, viscosity_, volume_;
   std::vector<PairKind> kinds_;
-  std::vector<MultipleTau> correlators_;  // six
+  std::vector<MultipleTau> correlators_;  // one for each weight
 };
 
 }  // namespace
 
 ObservableKind stress_correlation() {
-  return {
-      .name = "stress_correlation",
-      .meaning = "of the structural Brownian stress of a fluid at rest, and the viscosity by Green and Kubo",
-      .sampling = Sampling::often,
-      .numbers = {green_kubo_name},
-      .read = [](const SceneDocument& document, const Scene& scene) {
-        require_rest(document, scene, "stress_correlation");
-        return maker<StressCorrelation>();
-      }};
+  return {.name = "stress_correlation",
+          .meaning = "of the structural Brownian stress of a fluid at rest, and its Green-Kubo viscosity",
+          .sampling = Sampling::often,
+          .numbers = {green_kubo_name},
+          .read = [](const SceneDocument& document, const Scene& scene) {
+            require_rest(document, scene, "stress_correlation");
+            return maker<StressCorrelation>();
+          }};
 }
 
 }  // namespace peclet::engine

@@ -1,4 +1,4 @@
-// The structure of a configuration: its near and touching pairs, and what is sampled of them.
+// Finds near and touching pairs of a configuration, and computes stresses and temperatures that are sampled.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,8 @@
 namespace peclet::engine {
 
 // Calls visit(i, j, separation) for every sphere i and each image of another sphere j that is closer than
-// `range`, and for some that are further away: every pair from both ends. `separation` leads from i to j. The
-// order depends on the configuration alone.
+// `range`, and for some further away: every pair from both ends. `separation` leads from i to j. The order
+// depends only on the configuration.
 template <class Visit>
 void for_each_near_pair(const System& system, double range, const Visit& visit) {
   const LatticePlaces places = lattice_places(system.particles.position, system.box);
@@ -30,19 +30,19 @@ void for_each_near_pair(const System& system, double range, const Visit& visit) 
   }
 }
 
-// A spring that is cut at each step is as long as it may be but for what the step itself changes.
+// The mobilisation above which a contact slides: below 1, as a step changes the spring after it was cut.
 constexpr double sliding_from = 0.99;
 
 struct TouchingPair {
   const Pair& pair;
-  double distance, overlap;  // of centres; delta = a_i + a_j - distance > 0
+  double distance, overlap;  // centre distance; delta = a_i + a_j - distance > 0
   double tangential_force;   // |F_t| of spring and dashpot
-  bool rough;                // whether it has friction: k_n delta above the critical load
+  bool rough;                // true if it has friction: k_n delta is above the critical load
   double mobilised;          // |F_t| / (mu frictional_load()), 0 without friction
-  bool slides;               // as it remembers, or else by `mobilised`
+  bool slides;               // remembered by the contact, or mobilised > sliding_from
 };
 
-// In the order of the list.
+// Calls visit(TouchingPair) for each contact, in the order of the list.
 template <class Visit>
 void for_each_touching_pair(const System& system, const std::vector<PairKind>& kinds,
                             const ContactParameters& contact, const Visit& visit) {
@@ -70,13 +70,13 @@ void for_each_touching_pair(const System& system, const std::vector<PairKind>& k
   }
 }
 
-// Sigma^B = -(kT / V) sum_i (a_i / Delta_i) sum_{j: h < Delta_i} n n with Delta_i = 0.05 a_i: every pair is
-// seen from both sides, overlapping ones included. Li, Royer & Ness (2023) eqs. 25, 26. Zero without
-// temperature.
+// Returns the structural Brownian stress (Li, Royer & Ness (2023) eqs. 25, 26), zero without temperature:
+//   Sigma^B = -(kT / V) sum_i (a_i / Delta_i) sum_{j: h < Delta_i} n n,   Delta_i = 0.05 a_i
+// Every pair counts from both sides, overlapping ones included.
 SymmetricTensor structural_brownian_stress(const System& system, const std::vector<PairKind>& kinds,
                                            double thermal_energy);
 
-// Mean of m |U - streaming flow|^2 / 3 and of I |Omega - streaming spin|^2 / 3 over the particles: kT each in
+// The means over particles of m |U - streaming flow|^2 / 3 and I |Omega - streaming spin|^2 / 3, each kT in
 // equilibrium.
 struct KineticTemperatures {
   double translational, rotational;
@@ -84,8 +84,8 @@ struct KineticTemperatures {
 
 KineticTemperatures kinetic_temperatures(const System& system, const ImposedFlow& imposed);
 
-// What the variation of the flow within the cell adds to the stresslets of isolated spheres, over V: the sum
-// of 20/3 pi eta a^3 (1 + a^2/10 lap) E'.
+// Returns what the non-uniform flow, of strain rate E', adds to the stresslets of isolated spheres over V:
+//   (1 / V) sum of 20/3 pi eta a^3 (1 + a^2/10 lap) E'
 SymmetricTensor varying_stresslet(const ParticleState& particles, const PeriodicCell& box,
                                   const Physics& physics);
 

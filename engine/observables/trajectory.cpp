@@ -1,18 +1,18 @@
-// Frames of a realisation for other programs: centres, motion, stress of each sphere and, where asked for,
-// contacts, as a GSD file of the schema "hoomd" 1.4. All numbers are in the units of the scene.
+// Writes frames of a realisation for other programs: centres, motion and stress of each sphere and, if asked
+// for, contacts. The file is GSD of the schema "hoomd" 1.4, in the units of the scene.
 //
-// Spheres stand in the order of their ids. A centre is the image in the cell around the origin, -1/2 <=
-// fractional < 1/2, velocity is that of this image (the streaming flow there is rate y), and centre + image .
-// lattice vectors of the frame is the way that the sphere has gone, also when the basis of the cell changes.
+// Spheres are in the order of their ids. A centre is the image in the cell around the origin, -1/2 <=
+// fractional < 1/2, and velocity is that of this image (the streaming flow there is rate y). The unwrapped
+// position is centre + image . lattice vectors of the frame, also after changes of the basis of the cell.
 //
-// A frame has its first lattice vector along x and its second one in the plane of x and y. The cell of an
-// extension or a cross shear does not: places and motion are then those along the rows of log/axes, which are
-// unit vectors in the axes of the flow. Stress is in the axes of the flow.
+// A frame has its first lattice vector along x and its second one in the xy plane. The cell of an extension
+// or a cross shear does not: positions and motion are then components along the rows of log/axes, unit
+// vectors in the axes of the flow. Stress is in the axes of the flow.
 //
-// Positions, motion and contacts are those at the end of a step, stress is that of the step: what the means
-// of the result add up. log/particles/stress is V sigma_i, xx yy zz xy xz yz, tension positive: half of sym(r
-// F_i) of each pair of the sphere, its stresslet as if it were alone and, with noise, -m sym(v v), so that
-//   log/stress/total = solvent + (1/V) sum_i V sigma_i.
+// Positions, motion and contacts are those at the end of a step. Stress is that of the step, which the means
+// of the result add up. log/particles/stress is V sigma_i, xx yy zz xy xz yz, tension positive. It has half
+// of sym(r F_i) of each pair, the stresslet of the sphere as if alone and, with noise, -m sym(v v). Hence
+//   log/stress/total = solvent + (1/V) sum_i V sigma_i
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -29,11 +29,11 @@
 namespace peclet::engine {
 namespace {
 
-// An index that stays small beside a checkpoint, and the largest file that a campaign takes.
+// Limits for an index that is small in a checkpoint, and for the largest file that a campaign takes.
 constexpr std::uint64_t most_frames = 50'000, most_bytes = std::uint64_t{1} << 32;
 
-// Bytes of a frame: of each sphere position, image, velocity, spin, stress and contacts; of a contact the
-// group, three numbers and the state; no packing of spheres has more than six contacts each, on average.
+// The bytes of a sphere (position, image, velocity, spin, stress, contacts), of a contact (group, three
+// numbers, state) and of a frame besides. A sphere has at most six contacts on average, as two share each.
 constexpr std::uint64_t of_sphere = 4 * 12 + 24 + 4, of_contact = 8 + 3 * 4 + 1, contacts_of_sphere = 6,
                         of_frame = 2048;
 
@@ -43,7 +43,7 @@ void append(std::vector<float>& values, const Vector3& v) {
   for (const double x : {v.x, v.y, v.z}) values.push_back(static_cast<float>(x));
 }
 
-// "A", "B" ... "Z", "27", "28" ...: rows of equal length that end with a zero.
+// Returns "A", "B" ... "Z", "27", "28" ... in rows of equal length that end with a zero.
 std::vector<std::int8_t> names_of_species(std::uint32_t count, std::uint32_t& columns) {
   constexpr std::uint32_t letters = 26;
   columns = 4;
@@ -127,7 +127,7 @@ class Trajectory : public Observable, private PairWatcher {
     std::uint32_t columns = 0;
     const std::vector<std::int8_t> names =
         names_of_species(static_cast<std::uint32_t>(number.size()), columns);
-    std::vector<std::uint32_t> species;  // of each id
+    std::vector<std::uint32_t> species;  // for each id
     for (std::uint32_t s = 0; s < number.size(); ++s) species.insert(species.end(), number[s], s);
     std::vector<float> diameter, mass;
     for (const std::uint32_t i : places_of_ids(particles)) {
@@ -232,7 +232,7 @@ class Trajectory : public Observable, private PairWatcher {
     });
     frames_.add("log/particles/contact_number", number);
     if (!with_contacts_) return;
-    // Two images of one sphere may be touched at once: these stay in the order of the list.
+    // A sphere may touch two images of another one: such contacts stay in the order of the list.
     std::ranges::stable_sort(bonds, {}, &Bond::group);
     std::vector<std::uint32_t> group;
     std::vector<float> gap, normal, tangential;
@@ -260,7 +260,7 @@ class Trajectory : public Observable, private PairWatcher {
   Physics physics_;
   std::vector<PairKind> kinds_;
   bool with_contacts_;
-  bool turns_;  // the cell, against the axes of the flow
+  bool turns_;  // true if the cell is turned relative to the axes of the flow
   // Sums over the step that is sampled; shares are by id.
   double weight_ = 0;
   PairSums sums_;
@@ -274,8 +274,8 @@ class Trajectory : public Observable, private PairWatcher {
 ObservableKind trajectory() {
   return {.name = "trajectory",
           .meaning =
-              "trajectory.gsd beside the result, with places, motion and stress of each sphere in "
-              "every frame",
+              "the file trajectory.gsd beside the result, with position, motion and stress of each sphere "
+              "in every frame",
           .interval_is_a_duration = true,
           .settings =
               "/trajectory/contacts | true or false; default false | "

@@ -1,11 +1,11 @@
-// The stress over the strain of the production window: how it rises when a flow begins, falls when it is
-// reversed or stops. Where the rate of the window is not one and constant, over time.
+// Measures the stress over the strain of the production window, for a flow that begins, is reversed or stops.
+// If the rate is not constant and positive, it is over time.
 //
-// Each of a number of equal parts of the window has a mean of its own, and no blocks. The stress is the flux
-// of momentum that acted in each step (kernels/pair_pass.h) and what solvent and stresslets add; in units
-// of viscosity times rate where that is constant, so that shear_stress is the relative viscosity.
+// Each of a number of equal parts of the window has its own mean, without blocks. The stress is the flux of
+// momentum that acted in each step (kernels/pair_pass.h), with the parts of solvent and stresslets. Its unit
+// is viscosity times rate if that is constant, so that shear_stress is the relative viscosity.
 //
-// With a gap, `fabric` has the tensors of fabric.h in the same parts, of at least three samples in each.
+// With a gap, `fabric` has the tensors of fabric.h in the same parts, with at least three samples in each.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,7 +25,8 @@ constexpr std::pair<const char*, const char*> stresses[] = {{"shear_stress", "σ
                                                             {"second_normal_difference", "N_2"},
                                                             {"pressure", "P"}};
 
-// The middles of equal parts of the window. Strains are those of durations: Hencky strains of extension.
+// Returns the axis of the middles of equal parts. Strains are those of durations: Hencky strains in
+// extension.
 Axis parts_of(const Window& window, const ImposedFlow& flow, std::size_t parts) {
   const bool is_steady = flow.steady_rate() > 0;
   const double length = window.timestep * static_cast<double>(window.steps);
@@ -35,14 +36,14 @@ Axis parts_of(const Window& window, const ImposedFlow& flow, std::size_t parts) 
   });
 }
 
-// Steps between samples of the fabric, which changes slowly.
+// Returns the steps between samples of the fabric, which changes slowly.
 std::uint64_t fabric_interval(std::uint64_t steps, std::size_t parts) {
   return std::max<std::uint64_t>(1, steps / std::max<std::size_t>(256, 4 * parts));
 }
 
 class Transient : public Observable {
  public:
-  // `gap` is the one of near pairs; without one there is no fabric.
+  // `gap` is that of near pairs; without it the fabric is not measured.
   Transient(const Plan& plan, std::size_t bins, std::optional<double> gap)
       : Observable(plan),
         flow_(plan.scene.physics.flow),
@@ -57,8 +58,9 @@ class Transient : public Observable {
         interval_of_fabric_(fabric_interval(steps_, bins)),
         parts_(bins) {
     if (bins > steps_) {
-      throw InputError(plan.file, "/transient/bins", std::to_string(bins),
-                       fmt::format("must be at most {}, the steps of the production window", steps_));
+      throw InputError(
+          plan.file, "/transient/bins", std::to_string(bins),
+          fmt::format("must be at most {}, the number of steps of the production window", steps_));
     }
     const Axis axis = parts_of(plan.window, flow_, bins);
     for (std::size_t q = 0; q < std::size(stresses); ++q) {
@@ -127,7 +129,7 @@ class Transient : public Observable {
   ImposedFlow flow_;
   bool has_noise_;
   double viscosity_, volume_fraction_, volume_, unit_;
-  double behind_;  // half a step: the time from its middle, whose rate is the step's mean, to its end
+  double behind_;  // half a step: the time from its middle, where the rate is the step's mean, to its end
   std::uint64_t steps_, taken_ = 0;
   SymmetricTensor flux_;
   std::optional<double> gap_;
@@ -144,9 +146,9 @@ ObservableKind transient() {
               "window",
           .sampling = Sampling::of_every_step,
           .settings = R"(
-/transient/bins | integer >= 1 and <= 1000; default 50 | Equal parts of the production window.
-/transient/fabric_gap? | number > 0 and <= 1 | As /fabric/gap, of the fabric over the window; absent: that is
-    not measured.
+/transient/bins | integer >= 1 and <= 1000; default 50 | Number of equal parts of the production window.
+/transient/fabric_gap? | number > 0 and <= 1 | As /fabric/gap, for the fabric in these parts; absent: the
+    fabric is not measured.
 )",
           .read = [](const SceneDocument& document, const Scene& scene) {
             require_stress_of_forces(document, scene, "transient");

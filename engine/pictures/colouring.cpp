@@ -13,7 +13,7 @@
 namespace peclet::engine {
 namespace {
 
-// Every fifth of its 256 colours.
+// Every fifth of the 256 colours of viridis.
 constexpr std::array<std::uint32_t, 52> viridis_table = {
     0x440154, 0x46085c, 0x471063, 0x481769, 0x481d6f, 0x482475, 0x472a7a, 0x46307e, 0x453781,
     0x433d84, 0x414287, 0x3f4889, 0x3d4e8a, 0x3a538b, 0x38598c, 0x355e8d, 0x33638d, 0x31688e,
@@ -23,7 +23,7 @@ constexpr std::array<std::uint32_t, 52> viridis_table = {
     0xb0dd2f, 0xbddf26, 0xcae11f, 0xd8e219, 0xe5e419, 0xf1e51d, 0xfde725,
 };
 
-// The scheme "light".
+// The scheme "light" (colouring.h).
 constexpr std::array<std::uint32_t, count_of_species_colours> species_table = {
     0x77aadd, 0xee8866, 0xeedd88, 0x44bb99, 0xffaabb, 0x99ddff, 0xbbcc33, 0xaaaa00};
 
@@ -39,7 +39,7 @@ Colouring on_scale(const ColourScale& scale, const std::vector<double>& values) 
   return all;
 }
 
-// For more species than there are colours: their radii on a scale, or their places where all are alike.
+// Colours more species than there are colours: by radius on a scale, or by index if all radii are equal.
 Colouring by_radius(const Snapshot& snapshot) {
   const auto [low, high] = std::minmax_element(snapshot.radius.begin(), snapshot.radius.end());
   if (*low < *high) return on_scale({"radius", *low, *high}, snapshot.radius);
@@ -67,7 +67,7 @@ Colouring by_species(const Snapshot& snapshot) {
   return all;
 }
 
-// The velocity gradient of the file or, of a file with strain and time, that of a simple shear; else 0.
+// Returns the velocity gradient of the file, or that of simple shear from strain and time, or 0.
 Matrix3 mean_flow(const Snapshot& snapshot) {
   if (snapshot.velocity_gradient) return *snapshot.velocity_gradient;
   const bool flows = snapshot.strain && snapshot.time && *snapshot.time > 0;
@@ -95,7 +95,7 @@ Colour colour_of(std::uint32_t rgb) {
 }
 
 std::uint8_t encoded(float linear) {
-  // So fine that the darkest steps, a 3295th of white, are told apart.
+  // Fine enough for the darkest steps, which are 1/3295 of white.
   static const std::vector<std::uint8_t> table = [] {
     std::vector<std::uint8_t> all(65536);
     for (std::size_t k = 0; k < all.size(); ++k) {
@@ -134,7 +134,7 @@ ColourScale scale_over(const std::string& title, std::vector<double> values) {
     return *place;
   };
   const double low = percentile(2), high = percentile(98);
-  // All alike, or so nearly that ticks between them would be one number: such a scale has no places.
+  // Values that are nearly equal get a wider scale, on which ticks differ.
   const bool is_wide = high - low > 1e-9 * std::max(std::abs(low), std::abs(high));
   return {title, low, is_wide ? high : low + std::max(1e-12, std::abs(low))};
 }
@@ -172,7 +172,7 @@ Colouring colouring_of(const Snapshot& snapshot, const std::string& name, const 
       values.push_back(snapshot.stress[i].xy / (4.0 / 3.0 * std::numbers::pi * a * a * a));
     }
   } else {
-    throw std::logic_error("no such colouring: " + name);
+    throw std::logic_error("unknown colouring: " + name);
   }
   return on_scale(scale_over(title, values), values);
 }

@@ -1,4 +1,4 @@
-// What colours mean: a number of each sphere, or its species.
+// Colours spheres by species or by a number, and describes the colours for a legend.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace peclet::engine {
 
-// Linear red, green and blue, 1 each for white; files hold sRGB (IEC 61966-2-1).
+// A colour in linear red, green and blue, 1 each for white; files hold sRGB (IEC 61966-2-1).
 struct Colour {
   float red = 0, green = 0, blue = 0;
 
@@ -22,24 +22,24 @@ struct Colour {
 
 constexpr Colour white{1, 1, 1};
 
-// So much of b, the rest of a.
+// Returns a mixture with this share of b.
 inline Colour mixed(const Colour& a, const Colour& b, float share) { return (1 - share) * a + share * b; }
 
-// From 0xRRGGBB of sRGB; of one number in [0, 1]; and back to 0 ... 255.
+// Convert 0xRRGGBB of sRGB, or one of its numbers in [0, 1], to linear light, and back to 0 ... 255.
 Colour colour_of(std::uint32_t rgb);
 float linear_of(double encoded);
 std::uint8_t encoded(float linear);
 
-// The colour map viridis by S. van der Walt, N. Smith and E. Firing (published under CC0 with matplotlib),
-// equal steps of which look equal. `place` is from 0 to 1, what lies outside of it is drawn as the end.
+// Returns a colour of the map viridis by S. van der Walt, N. Smith and E. Firing (published under CC0 with
+// matplotlib), on which equal steps look equal. `place` is cut to [0, 1].
 Colour viridis(double place);
 
-// Eight colours that most people with a defect of colour vision tell apart: P. Tol, "Colour Schemes" (2021),
-// scheme light. Requires species < count_of_species_colours.
+// Eight colours that most people with impaired colour vision can distinguish: P. Tol, "Colour Schemes"
+// (2021), scheme light. Requires species < count_of_species_colours.
 constexpr std::size_t count_of_species_colours = 8;
 Colour colour_of_species(std::size_t species);
 
-// The names of --colour.
+// Returns the values of the option --colour.
 const std::vector<std::string>& names_of_colourings();
 
 // A scale from low to high, drawn as a bar.
@@ -50,10 +50,10 @@ struct ColourScale {
   Colour at(double value) const { return viridis((value - low) / (high - low)); }
 };
 
-// A scale over nearly all of the values: from the 2nd to the 98th percentile.
+// Returns a scale from the 2nd to the 98th percentile of the values.
 ColourScale scale_over(const std::string& title, std::vector<double> values);
 
-// Round numbers on a scale, some five of them: 1, 2 or 5 times a power of ten apart.
+// Returns about five round numbers on a scale, 1, 2 or 5 times a power of ten apart.
 std::vector<double> ticks_of(const ColourScale& scale);
 
 struct NamedColour {
@@ -61,18 +61,20 @@ struct NamedColour {
   Colour colour;
 };
 
-// Of every sphere its colour, and what explains them: a scale or names.
+// The colour of each sphere, and the legend: a scale or names.
 struct Colouring {
   std::vector<Colour> of_spheres;
-  std::vector<ColourScale> scale;  // one, or none
+  std::vector<ColourScale> scale;  // at most one
   std::vector<NamedColour> names;
 };
 
-// species, of more than eight their radii on a scale; speed: of the centre beyond the mean flow L r, L the
-// velocity gradient of the file, or without it gamma y along x with gamma = strain / time, or in the
-// laboratory where the file has neither; contacts: of a sphere; stress: sigma_xy, what the sphere adds to V
-// sigma over its own volume. Throws InputError naming the file where the frame does not have what is asked
-// for.
+// Returns the colours of the spheres by one of these names:
+//   species   species; radius on a scale if there are more than eight species
+//   speed     speed of the centre relative to the mean flow L r
+//   contacts  number of contacts
+//   stress    sigma_xy: the sphere's part of V sigma over its own volume
+// L is the velocity gradient of the file, or that of simple shear at the rate strain / time, or 0. Throws
+// InputError, naming the file, if the frame lacks the numbers.
 Colouring colouring_of(const Snapshot& snapshot, const std::string& name, const std::string& file);
 
 }  // namespace peclet::engine

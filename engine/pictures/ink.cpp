@@ -12,8 +12,8 @@ namespace {
 
 constexpr double capitals = 21, base_line = 9;  // in units of the letters
 
-// Mixes `colour` into each pixel by its share that `distance`, of the pixel's centre from the edge, positive
-// outside, lets expect.
+// Mixes `colour` into each pixel by the pixel's share inside the edge, estimated from the distance of its
+// centre from the edge (positive outside).
 template <class Distance>
 void cover(Canvas& canvas, Spot low, Spot high, const Colour& colour, const Distance& distance) {
   const auto within = [](double x, std::size_t count) {
@@ -39,7 +39,7 @@ void append_big_endian(std::string& text, std::uint32_t number) {
   for (int shift = 24; shift >= 0; shift -= 8) text += static_cast<char>(number >> shift);
 }
 
-// Length, name, content and checksum, which is that of name and content.
+// Appends length, name, content, and the checksum of name and content.
 void append_chunk(std::string& file, std::string_view name, std::string_view content) {
   append_big_endian(file, static_cast<std::uint32_t>(content.size()));
   const std::string checked = std::string(name) + std::string(content);
@@ -55,7 +55,7 @@ std::uint8_t paeth(int left, int above, int corner) {
   return static_cast<std::uint8_t>(a <= b && a <= c ? left : b <= c ? above : corner);
 }
 
-// Each byte less what its neighbours let expect of it, by the filter "Paeth", which suits soft shades.
+// Returns the rows after the filter "Paeth", which predicts bytes by their neighbours: good for soft shades.
 std::string filtered(const Image& image) {
   constexpr std::size_t channels = 3;
   const std::size_t length = channels * image.width;

@@ -1,4 +1,4 @@
-// Lines and letters on a finished picture, with smooth edges.
+// Draws lines and letters with smooth edges, and writes images as PNG.
 #pragma once
 
 #include <array>
@@ -9,16 +9,16 @@
 
 namespace peclet::engine {
 
-// Strokes of letters: Hershey's simplex roman, of the characters from blank to tilde.
+// The strokes of the characters from blank to tilde: Hershey's simplex roman.
 //
 // The Hershey Fonts were originally created by Dr. A. V. Hershey while working at the U. S. National Bureau
 // of Standards. The format of the Font data in this distribution was originally created by James Hurt,
 // Cognition, Inc., 900 Technology Park Drive, Billerica, MA 01821 (mit-eddie!ci-dandelion!hurt). This notice
 // must go with the data, which anyone may use for any purpose.
 //
-// A text is pairs of letters, whose distances from R are x to the right and y downwards. The first pair is
-// the left and the right edge of the character; " R" lifts the pen. Capitals reach from y = -12 down to the
-// line at y = 9.
+// A text consists of pairs of letters; their distances from R are x to the right and y downwards. The first
+// pair is the left and the right edge of the character; " R" lifts the pen. Capitals reach from y = -12 down
+// to the base line at y = 9.
 constexpr std::array<const char*, 95> hershey_simplex = {
     R"(JZ)",
     R"(MWRFRT RRYQZR[SZRY)",
@@ -117,7 +117,7 @@ constexpr std::array<const char*, 95> hershey_simplex = {
     R"(F^IUISJPLONOPPTSVTXTZS[Q RISJQLPNPPQTTVUXUZT[Q[O)",
 };
 
-// A finished picture: red, green and blue of sRGB, row after row from the top.
+// A finished image: red, green and blue of sRGB, row after row from the top.
 struct Image {
   std::size_t width = 0, height = 0;
   std::vector<std::uint8_t> rgb;
@@ -127,8 +127,7 @@ struct Image {
 // - 1.
 std::string png(const Image& image);
 
-// A picture in linear light, row after row from the top. Places are in pixels; the first one is [0, 1) x [0,
-// 1).
+// An image in linear light, row after row from the top. Places are in pixels; the first is [0, 1) x [0, 1).
 struct Canvas {
   Canvas(std::size_t w, std::size_t h) : width(w), height(h), pixel(w * h, white) {}
 
@@ -143,15 +142,15 @@ struct Spot {
   double x, y;
 };
 
-// A stroke with round ends.
+// Draws a stroke with round ends.
 void draw_line(Canvas& canvas, Spot from, Spot to, double width, const Colour& colour);
 void draw_disc(Canvas& canvas, Spot centre, double radius, const Colour& colour);
-// Edges on whole pixels are sharp.
+// Draws a box; edges on whole pixels are sharp.
 void draw_box(Canvas& canvas, Spot corner, Spot opposite, const Colour& colour);
 
-// Width of a line of text whose capitals are so high; characters other than ASCII are drawn as "?".
+// Returns the width of a text with capitals of this height. Characters other than ASCII are drawn as "?".
 double width_of_text(std::string_view text, double height);
-// `line` is where the line of the text begins.
+// Draws a text; `line` is the left end of its base line.
 void draw_text(Canvas& canvas, Spot line, double height, std::string_view text, const Colour& colour);
 
 }  // namespace peclet::engine

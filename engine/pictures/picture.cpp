@@ -19,7 +19,7 @@ const Colour& ink() {
   return dark;
 }
 
-// Texts of 0.1 and 0.30000000000000004 alike.
+// Returns a short text: 0.3 for 0.30000000000000004.
 std::string text_of(double value) { return fmt::format("{:.6g}", value); }
 
 void draw_scale(Canvas& canvas, const Layout& layout, const ColourScale& scale) {
@@ -52,7 +52,7 @@ void draw_names(Canvas& canvas, const Layout& layout, const std::vector<NamedCol
 
 constexpr std::size_t least_side = 64, most_side = 10000;
 
-// Reads "1600x1200": two numbers and what stands between them.
+// Reads two numbers with a character between them, such as "1600x1200".
 template <class Number>
 bool read_pair(std::string_view text, char between, Number& first, Number& second) {
   const std::size_t at = text.find(between);
@@ -89,8 +89,8 @@ Vector3 into_cell(const Snapshot& snapshot, const CellFrame& cell, const Vector3
   return place - snapshot.lattice * Vector3{std::floor(cells.x), std::floor(cells.y), std::floor(cells.z)};
 }
 
-// From the first sphere to the nearest image of the second. A sheared cell is compact: the lattice planes
-// next to the first sphere hold the nearest of spheres that touch.
+// Returns the vector from the first sphere to the nearest image of the second one, for spheres that touch. It
+// relies on a compact cell, as sheared cells are.
 Vector3 apart(const Snapshot& snapshot, const CellFrame& cell, const Vector3& from, const Vector3& to) {
   const auto& [a, b, c] = snapshot.lattice.column;
   const auto& [x, y, z] = cell.axes.column;
@@ -101,8 +101,9 @@ Vector3 apart(const Snapshot& snapshot, const CellFrame& cell, const Vector3& fr
   return d;
 }
 
-// Contacts as rods, as wide as their normal force, up to four times its mean. One that leaves the cell is
-// drawn at both of its ends; one without force has no width, and one of no length nothing to be drawn along.
+// Adds contacts as rods and returns their scale. The cross section of a rod is proportional to its normal
+// force, up to four times the mean. Contacts that leave the cell are drawn at both ends; those without force
+// or length are left out.
 ColourScale add_chains(const Snapshot& snapshot, const CellFrame& cell, Stage& stage) {
   std::vector<double> forces;
   double sum = 0;
@@ -195,7 +196,7 @@ Image picture_of(const Snapshot& given, const PictureOptions& options) {
     if (!snapshot.contacts) {
       throw InputError(
           options.file, "", "",
-          "has no contacts, which --chains asks for: \"trajectory\": {\"contacts\": true} leaves them");
+          "has no contacts, which --chains needs: set \"trajectory\": {\"contacts\": true} in the scene");
     }
     colouring = {{}, {add_chains(snapshot, cell, stage)}, {}};
     for (std::size_t i = 0; i < snapshot.count(); ++i) {

@@ -1,4 +1,4 @@
-// A frame as a picture: the verb `peclet-engine snapshot`.
+// Draws a frame of a trajectory: the verb `peclet-engine snapshot`.
 #pragma once
 
 #include <string>
@@ -10,17 +10,17 @@
 
 namespace peclet::engine {
 
-// The parts of a picture in pixels; everything else follows from the height of the picture.
+// The layout of an image [pixels], which follows from its size.
 struct Layout {
   Layout(std::size_t width, std::size_t height);
 
   double width, height, margin, letters;
-  // What the spheres have, and what is left of the right side.
+  // The frame of the spheres, and that of the legend at the right side.
   Frame spheres, legend;
 };
 
 void draw_legend(Canvas& canvas, const Layout& layout, const Colouring& colouring);
-// At the lower left: x, y and z as the camera sees them; beside them a line of text.
+// Draws x, y and z as the camera sees them at the bottom of the legend, and a line of text at its top.
 void draw_axes(Canvas& canvas, const Layout& layout, const Camera& camera, const std::string& text);
 
 struct PictureOptions {
@@ -31,14 +31,13 @@ struct PictureOptions {
   int threads = 1;
 };
 
-// Writes a PNG file. Returns what there is to say of the frame, if anything. Throws InputError,
-// std::system_error.
+// Writes a PNG file. Returns a note for the user, or an empty text. Throws InputError or std::system_error.
 std::string draw_picture(const PictureOptions& options);
 
-// "corner", "x", "y" or "z", along which one looks, or "AZIMUTH,ELEVATION" in degrees. Throws InputError.
+// Reads a line of sight: "corner", "x", "y", "z", or "AZIMUTH,ELEVATION" in degrees. Throws InputError.
 View view_named(const std::string& name);
 
-// The picture itself. Colours that the frame has no numbers for: InputError naming `options.file`.
+// Returns the image. Throws InputError, naming `options.file`, if the frame lacks numbers for the colours.
 Image picture_of(const Snapshot& snapshot, const PictureOptions& options);
 
 }  // namespace peclet::engine

@@ -12,7 +12,7 @@
 namespace peclet::engine {
 namespace {
 
-// Balls that hold everything: the balls and both ends of the rods.
+// Calls visit(centre, radius) for balls that enclose the stage: its balls and both ends of its rods.
 template <class Visit>
 void for_each_bound(const Stage& stage, const Visit& visit) {
   for (const Ball& ball : stage.balls) visit(ball.centre, ball.radius);
@@ -23,15 +23,15 @@ void for_each_bound(const Stage& stage, const Visit& visit) {
   }
 }
 
-// Gaps over the larger radius beyond which a neighbour's cap is too small to be seen.
+// The gap over the larger radius beyond which a neighbour's cap is too small to be seen.
 constexpr double listed_within = 1.2;
 
 using Box = std::array<std::int64_t, 3>;
 
-// Light on surfaces: a bright sky, a lamp from the upper left, and air that takes colour with the distance.
+// The light on surfaces: a bright sky, a lamp at the upper left, and haze that grows with the distance.
 class Light {
  public:
-  // Of a stage as the camera sees it.
+  // `seen` is the stage in the coordinates of the camera.
   Light(const Camera& camera, const Stage& seen) : glass_(colour_of(0x8fa3b8)) {
     constexpr Vector3 towards_lamp = {-0.45, 0.75, -0.6};  // over the eye's left shoulder
     lamp_ = (1 / norm(towards_lamp)) * towards_lamp;
@@ -47,7 +47,7 @@ class Light {
     depth_ = std::max(far - near, std::numeric_limits<double>::min());
   }
 
-  // What reaches the eye from a place of that normal, of whose sky a share is free.
+  // Returns the light that reaches the eye from a place with this normal and this free share of the sky.
   Colour on(const Colour& surface, const Vector3& place, const Vector3& normal, double free_sky) const {
     const Vector3 to_eye = (-1 / norm(place)) * place;
     const double facing = std::max(0.0, dot(normal, to_eye));
@@ -63,8 +63,8 @@ class Light {
     return mixed(colour, white, static_cast<float>(air));
   }
 
-  // The colour of glass, and the share of the light behind it that it takes where ray and surface have that
-  // cosine: more towards the rim.
+  // Return the colour of glass, and the share of the light behind that it takes, by the cosine of ray and
+  // surface: more towards the rim.
   const Colour& glass() const { return glass_; }
   static double veil(double cosine) {
     const double rim = 1 - cosine;
@@ -78,12 +78,12 @@ class Light {
 };
 
 constexpr std::size_t rays = 3;           // along each side of a pixel
-constexpr std::size_t rows_of_band = 16;  // of pixels: what is drawn of them stays in the cache
+constexpr std::size_t rows_of_band = 16;  // rows of pixels whose rays stay in the cache
 
 constexpr float nothing = std::numeric_limits<float>::infinity();
 constexpr std::uint32_t background = 0xffffffff;
 
-// Depths of some rows of pixels, and what is seen there: balls by their number, then rods.
+// The depth and the number of the object, balls before rods, that each ray of some rows of pixels sees.
 class Band {
  public:
   Band(const Camera& camera, std::size_t width, std::size_t first_row, std::size_t rows)
@@ -100,14 +100,14 @@ class Band {
   double u(std::size_t x) const { return u0_ + (static_cast<double>(x) + 0.5) * pixel_; }
   double v(std::size_t y) const { return v0_ - (static_cast<double>(first_ + y) + 0.5) * pixel_; }
 
-  // Calls visit(place, u) of each ray of a row within [low, high].
+  // Calls visit(place, u) for each ray of a row with u in [low, high].
   template <class Visit>
   void for_each_ray(std::size_t y, double low, double high, const Visit& visit) const {
     const std::size_t begin = bounded((low - u0_) / pixel_ - 0.5, width_),
                       end = bounded((high - u0_) / pixel_ + 0.5, width_);
     for (std::size_t x = begin; x < end; ++x) visit(y * width_ + x, u(x));
   }
-  // Rows whose v is within [low, high].
+  // Returns the rows with v in [low, high].
   std::pair<std::size_t, std::size_t> rows_within(double low, double high) const {
     const double first = static_cast<double>(first_);
     return {bounded((v0_ - high) / pixel_ - first - 0.5, rows_),
@@ -123,7 +123,7 @@ class Band {
     if (depth < depth_[place]) through_[place] *= 1 - share;
   }
 
-  // Calls visit(depth, object, through, u, v) of the rays of a pixel.
+  // Calls visit(depth, object, through, u, v) for the rays of a pixel.
   template <class Visit>
   void for_each_ray_of_pixel(std::size_t x, std::size_t y, const Visit& visit) const {
     for (std::size_t row = rays * y; row < rays * (y + 1); ++row) {
@@ -143,10 +143,10 @@ class Band {
   double pixel_, u0_, v0_;
   std::vector<float> depth_;
   std::vector<std::uint32_t> object_;
-  std::vector<float> through_;  // share of the light that the glass before it lets pass
+  std::vector<float> through_;  // share of the light that the glass in front lets pass
 };
 
-// Where the ray (u, v, 1) meets the ball first; calls hit(place, depth, cosine of ray and surface).
+// Calls hit(place, depth, cosine of ray and surface) where rays (u, v, 1) first meet the ball.
 template <class Hit>
 void trace(Band& band, const Ball& ball, const Hit& hit) {
   const Vector3& c = ball.centre;
@@ -164,13 +164,13 @@ void trace(Band& band, const Ball& ball, const Hit& hit) {
   }
 }
 
-// The same of a rod. The ray (u, v, 1) t meets the cylinder about p + s q, 0 < s < 1, where its distance from
-// the axis is the radius, and else one of the ends.
+// Puts a rod into the band. A ray (u, v, 1) t meets the cylinder about p + s q, 0 < s < 1, where its distance
+// from the axis is the radius, or one of the ends.
 void trace(Band& band, const Rod& rod, std::uint32_t number) {
   const Vector3 &p = rod.from, q = rod.to - rod.from;
   const double square = rod.radius * rod.radius, qq = dot(q, q), qp = -dot(q, p), pp = dot(p, p);
   const Reach a = reach_of(rod.from, rod.radius), b = reach_of(rod.to, rod.radius);
-  // A row crosses the strip between the ends where its axis does, and as far to both sides as it is wide.
+  // A row crosses the rod around the point where it crosses the axis, within the width of the rod.
   const double from_u = p.x / p.z, from_v = p.y / p.z, to_u = rod.to.x / rod.to.z, to_v = rod.to.y / rod.to.z;
   const double slope = std::abs(to_v - from_v) > 0 ? (to_u - from_u) / (to_v - from_v) : 0;
   const double half =
@@ -228,8 +228,7 @@ class Rendering {
   }
 
  private:
-  // Light is computed once for what a pixel shows of one object, where its middle ray, or the first, meets
-  // it.
+  // Computes the light of each object in a pixel once, where the first of the pixel's rays meets it.
   Colour colour_of_pixel(const Band& band, std::size_t x, std::size_t y, const Colour& behind) const {
     struct Seen {
       std::uint32_t object;
@@ -268,7 +267,7 @@ class Rendering {
 
   Canvas& canvas_;
   const Camera& camera_;
-  Stage stage_;  // as the camera sees it
+  Stage stage_;  // in the coordinates of the camera
   Occlusion sky_;
   Light light_;
 };
@@ -356,7 +355,7 @@ double Occlusion::free_sky(std::uint32_t ball, const Vector3& place, const Vecto
     const Vector3 apart = neighbours_[k].centre - place;
     const double square = dot(apart, apart), cap = neighbours_[k].square / square;
     const double cosine = dot(normal, apart) / std::sqrt(square);
-    // Where the horizon cuts the cap, between +-sine, a parabola joins what is whole to nothing.
+    // If the horizon cuts the cap, between +-sine, a parabola joins the full cap to 0.
     const double sine = std::sqrt(std::min(cap, 1.0));
     const double seen = cosine >= sine    ? cosine
                         : cosine <= -sine ? 0

@@ -1,4 +1,4 @@
-// The stage in light: spheres and rods by scanline, each pixel from nine rays.
+// Renders spheres and rods by scanline, with nine rays for each pixel.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,6 @@
 
 namespace peclet::engine {
 
-// What stands before the camera.
 struct Ball {
   Vector3 centre;
   double radius;
@@ -27,21 +26,21 @@ struct Rod {
 struct Stage {
   std::vector<Ball> balls;
   std::vector<Rod> rods;
-  // Seen through: each takes some light from what lies behind it, most at its rim.
+  // Transparent balls: each takes some of the light from behind, most at its rim.
   std::vector<Ball> glass;
 };
 
-// The part of a picture, in pixels, into which everything is to fit.
+// The part of an image [pixels] that the stage is fitted into.
 struct Frame {
   double left, top, right, bottom;
 };
 
-// From where one looks: degrees about y, from z towards x, and upwards from the plane of x and z.
+// The direction of the eye [degrees]: azimuth about y from z towards x, and elevation above the xz plane.
 struct View {
   double azimuth, elevation;
 };
 
-// Coordinates of the camera: x to the right, y upwards, z away from the eye, which is at the origin.
+// A camera. In its coordinates x is to the right, y upwards and z away from the eye, which is at the origin.
 class Camera {
  public:
   // Looks at the middle of the stage from six times its half width, and fits it into the frame. Requires a
@@ -49,7 +48,7 @@ class Camera {
   Camera(const Stage& stage, const View& view, const Frame& frame);
 
   Vector3 seen(const Vector3& place) const;
-  // A direction that has no place, such as that of light.
+  // Returns a direction, such as that of light, in the coordinates of the camera.
   Vector3 turned(const Vector3& direction) const;
   Stage seen(const Stage& stage) const;
 
@@ -63,32 +62,31 @@ class Camera {
   double scale_ = 1, left_ = 0, top_ = 0;
 };
 
-// How far a ball reaches along u and v as the camera sees it. Requires that the eye is outside.
+// The extent of a ball along u and v. Requires that the eye is outside.
 struct Reach {
   double low_u, high_u, low_v, high_v;
 };
 Reach reach_of(const Vector3& centre, double radius);
 
-// The neighbours of each ball, so near that they take some of its sky: the soft shade in gaps.
+// Soft shade in gaps: near neighbours of each ball cover some of its sky.
 class Occlusion {
  public:
   explicit Occlusion(const std::vector<Ball>& balls);
 
-  // The free share of the sky over a place with that normal on the surface of a ball: the product over its
-  // neighbours of 1 less the share of the sphere's cap, weighted with the cosine, (n . d) a^2 / r^2 for those
-  // that the horizon does not cut.
+  // Returns the free share of the sky over a place with this normal on the surface of a ball: the product
+  // over its neighbours of 1 - c. A cap c above the horizon, weighted with the cosine, is (n . d) a^2 / r^2.
   double free_sky(std::uint32_t ball, const Vector3& place, const Vector3& normal) const;
 
  private:
   struct Neighbour {
     Vector3 centre;
-    double square;  // of its radius
+    double square;  // square of its radius
   };
-  std::vector<std::uint32_t> begin_;  // of each ball's neighbours, and the end
+  std::vector<std::uint32_t> begin_;  // first neighbour of each ball, and the end
   std::vector<Neighbour> neighbours_;
 };
 
-// Draws over the canvas, from the same rays whatever the number of threads is.
+// Draws the stage over the canvas. The image does not depend on the number of threads.
 void render(Canvas& canvas, const Stage& stage, const Camera& camera, int threads);
 
 }  // namespace peclet::engine

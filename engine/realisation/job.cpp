@@ -14,7 +14,7 @@
 #include "contract/key_table.h"
 #include "contract/provenance.h"
 #include "contract/sha256.h"
-#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/growing_file.h"
 #include "engine/realisation/packing.h"
 #include "engine/realisation/placed_spheres.h"

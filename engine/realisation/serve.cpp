@@ -16,7 +16,7 @@
 #include "contract/key_table.h"
 #include "contract/sha256.h"
 #include "engine/integrators/derived_groups.h"
-#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/job.h"
 #include "engine/realisation/placed_spheres.h"
 #include "engine/realisation/result.h"

@@ -12,7 +12,7 @@
 namespace peclet::engine {
 namespace {
 
-// Numbers as the file had them: the shortest text that is read back as the same float, or double.
+// Appends numbers to a text, each as the shortest one that is read back as the same float or double.
 class RowText {
  public:
   RowText(std::string& text, bool single) : text_(text), single_(single) {}
@@ -30,7 +30,7 @@ class RowText {
   }
   void add(std::uint32_t n) { fmt::format_to(std::back_inserter(text_), " {}", n); }
 
-  // The entry of sphere i, where the frame has the list.
+  // Adds the entry of sphere i, if the frame has the list.
   template <class Value>
   void add(const std::vector<Value>& list, std::size_t i) {
     if (!list.empty()) add(list[i]);
@@ -41,7 +41,7 @@ class RowText {
   bool single_;
 };
 
-// Names of species as words of a line: those that are none, for they are empty or have blanks, are numbered.
+// Returns names of species that are words of a line: numbers replace names that are empty or have blanks.
 std::vector<std::string> words_of_species(const Snapshot& snapshot) {
   const auto is_plain = [](char c) { return c > ' ' && c <= '~'; };
   std::vector<std::string> words = snapshot.species_names;

@@ -18,7 +18,7 @@ namespace {
 constexpr char application[] = "peclet-engine", schema[] = "hoomd";
 constexpr std::uint32_t file_version = version(2, 0), schema_version = version(1, 4);
 
-// Names end with a zero, and the list with at least one more.
+// Returns the list of names. Names end with a zero, and the list with at least one more.
 std::string name_list(const std::vector<std::string>& names) {
   std::string list;
   for (const std::string& name : names) list += name + '\0';
@@ -38,13 +38,12 @@ void put_counted(ArchiveWriter& archive, const std::vector<Value>& values) {
   archive.put(values);
 }
 
-// Of an index in memory: 128 MB. Trajectories of this program have a tenth of it at most.
+// Limits of the index (128 MiB in memory) and of the names. Trajectories of this program need less than half.
 constexpr std::uint64_t most_entries = std::uint64_t{4} << 20, most_segments = std::uint64_t{1} << 16;
-// An entry of the index has 16 bits for its name.
+// The limit by the 16 bits of a name in the index.
 constexpr std::size_t most_names = 65536;
 
-// Not opened as a person's other input is: chunks are read where they are, and a trajectory need not fit into
-// memory. A FIFO would wait for ever.
+// Opens a file whose chunks are read in place, as it need not fit into memory. Does not wait for a FIFO.
 Descriptor opened(const std::filesystem::path& path) {
   Descriptor file = open_file(path, O_RDONLY | O_NONBLOCK | O_NOCTTY);
   if (file.number() < 0) {
@@ -189,7 +188,7 @@ void Reader::read_index(const Header& header) {
   if (header.index_entries > most_entries ||
       !holds(header.index_location, header.index_entries * sizeof(IndexEntry))) {
     refuse(fmt::format("{} entries of the index at byte {}", header.index_entries, header.index_location),
-           "must be at most {} within the {} bytes of the file", most_entries, length_);
+           "must be at most {} entries within the {} bytes of the file", most_entries, length_);
   }
   index_.resize(header.index_entries);
   read(header.index_location, std::as_writable_bytes(std::span(index_)));
@@ -201,7 +200,7 @@ void Reader::read_index(const Header& header) {
     };
     if (entry.name >= names_.size())
       refuse_entry(fmt::format("has name {} of {}", entry.name, names_.size()));
-    // Frames are counted by the last entry: none may be far from the one before it.
+    // The last entry gives the number of frames, so no number may be left out.
     const std::uint64_t before = k == 0 ? 0 : index_[k - 1].frame;
     const bool is_in_order =
         k == 0 || std::pair(before, index_[k - 1].name) < std::pair(entry.frame, entry.name);

@@ -1,4 +1,4 @@
-// GSD files: their layout, frames on their way into one, and a reader of files from anywhere.
+// Writes and reads GSD files.
 #pragma once
 
 #include <fmt/format.h>
@@ -22,37 +22,37 @@
 
 namespace peclet::engine::gsd {
 
-// Layout of a GSD file, version 2.0 (https://gsd.readthedocs.io, "File layer"): a header of 256 bytes, the
-// data chunks of frame after frame, and an index of 32 bytes for each chunk, sorted by frame and by name,
-// with the list of the names that it counts. Numbers are little-endian.
-static_assert(std::endian::native == std::endian::little, "what is in memory is what is in the file");
+// The layout of a GSD file, version 2.0 (https://gsd.readthedocs.io, "File layer"): a header of 256 bytes,
+// the data chunks frame after frame, the list of names, and an index with 32 bytes for each chunk, sorted by
+// frame and name. Numbers are little-endian.
+static_assert(std::endian::native == std::endian::little, "numbers are written as they are in memory");
 
 constexpr std::uint64_t magic = 0x65DF65DF65DF65DF;
 constexpr std::uint32_t version(std::uint32_t major, std::uint32_t minor) { return major << 16 | minor; }
 
 struct Header {
   std::uint64_t magic;
-  std::uint64_t index_location, index_entries;  // entries that there is room for
+  std::uint64_t index_location, index_entries;  // entries with room in the file
   std::uint64_t names_location, names_segments;
   std::uint32_t schema_version, file_version;
   char application[64], schema[64], reserved[80];
 };
 static_assert(sizeof(Header) == 256);
 
-// The list of names is a whole number of these.
+// The list of names is a whole number of segments [bytes].
 constexpr std::size_t segment = 64;
 
 struct IndexEntry {
   std::uint64_t frame;
   std::uint64_t rows;
-  std::int64_t location;  // from the file's beginning; 0 behind the last entry
+  std::int64_t location;  // from the beginning of the file; 0 after the last entry
   std::uint32_t columns;
   std::uint16_t name;
   std::uint8_t type, flags;
 };
 static_assert(sizeof(IndexEntry) == 32);
 
-// Numbers of the types of values.
+// The numbers of the types of values.
 template <class Value>
 constexpr std::uint8_t type_of = 0;
 template <>
@@ -70,22 +70,21 @@ inline constexpr std::uint8_t type_of<float> = 9;
 template <>
 inline constexpr std::uint8_t type_of<double> = 10;
 
-// Frames of a GSD file on their way to it.
-//
-// A file grows by whole frames, header and index are written when it is finished: head() + the bytes of all
-// frames + tail(). What has not been given to the file yet is `pending`; index, names and a checksum of each
-// frame stay here, and are all that a checkpoint needs besides the file.
-//
-// Bytes [begin, end) of the file.
+// A frame as bytes [begin, end) of the file.
 struct FrameBytes {
   std::uint64_t begin, end;
   std::array<char, 64> sha256;
 };
 
+// Collects the frames of a GSD file that is being written.
+//
+// The file grows by whole frames. Header and index are written when it is finished: head() + the bytes of all
+// frames + tail(). Bytes that the file does not have yet are pending(). Index, names and a checksum of each
+// frame stay here; a checkpoint needs only these besides the file.
 class Frames {
  public:
-  // Adds a chunk to the present frame: rows of so many columns. Requires names in the same order in all
-  // frames, though some may be left out, and no name twice in a frame; std::logic_error.
+  // Adds a chunk to the present frame, in rows of `columns` values. Names must come in the same order in all
+  // frames; some may be left out. Throws std::logic_error if a name is out of order or occurs twice.
   template <class Value>
   void add(const std::string& name, const std::vector<Value>& values, std::uint32_t columns = 1) {
     static_assert(type_of<Value> != 0);
@@ -100,16 +99,16 @@ class Frames {
 
   std::uint64_t count() const { return frames_.size(); }
   const std::vector<FrameBytes>& whole() const { return frames_; }
-  // Where the next frame begins, and where the file ends as far as it is written.
+  // Return where the next frame begins, and where the written part of the file ends.
   std::uint64_t length() const { return frames_.empty() ? sizeof(Header) : frames_.back().end; }
   std::uint64_t written() const { return length() - pending_.size(); }
 
-  // Bytes of whole frames that belong at written().
+  // Returns the bytes of whole frames that belong at written().
   const std::string& pending() const { return pending_; }
-  // The file has them.
+  // Drops the pending bytes, which the file now has.
   void hand_over() { pending_.clear(); }
 
-  // Requires that nothing is left of an unfinished frame.
+  // Return the header, and the names and the index. Require that no frame is unfinished.
   std::string head() const;
   std::string tail() const;
 
@@ -124,29 +123,29 @@ class Frames {
   std::vector<IndexEntry> index_;
   std::vector<FrameBytes> frames_;
   std::string pending_;  // whole frames
-  std::string current_;  // the unfinished one
+  std::string current_;  // the unfinished frame
 };
 
-// A GSD file that somebody else may have made.
+// Reads a GSD file of any origin.
 //
-// Nothing in it is believed: every place and count is compared with the length of the file before anything is
-// read or memory is taken. Faults are InputError, which names the file and what is wrong.
+// Every place and count is compared with the length of the file before data are read or memory is allocated.
+// Faults throw InputError, which names the file and the fault.
 class Reader {
  public:
-  // Reads header, names and index. Takes files of layout 2 and schema "hoomd" 1. Throws InputError.
+  // Reads header, names and index. Throws InputError unless the file has layout 2 and schema "hoomd" 1.
   explicit Reader(const std::filesystem::path& path);
 
   std::uint64_t frames() const { return index_.empty() ? 0 : index_.back().frame + 1; }
   const std::filesystem::path& path() const { return path_; }
 
-  // The chunk of that frame; null where it has none of that name.
+  // Returns the chunk of a frame with this name, or null.
   const IndexEntry* find(std::uint64_t frame, std::string_view name) const;
-  // All chunks of that frame, by their places in names().
+  // Returns all chunks of a frame, in the order of names().
   std::span<const IndexEntry> chunks(std::uint64_t frame) const;
-  // Names of all chunks of all frames.
+  // Returns the names of the chunks of all frames.
   const std::vector<std::string>& names() const { return names_; }
 
-  // The values of a chunk, row after row. Throws InputError where it holds another type or has other columns.
+  // Returns the values of a chunk, row after row. Throws InputError if its type or its columns differ.
   template <class Value>
   std::vector<Value> get(const IndexEntry& chunk, std::uint32_t columns = 1) const {
     static_assert(type_of<Value> != 0);
@@ -156,7 +155,7 @@ class Reader {
     return values;
   }
 
-  // What is wrong with this file, for what is read from it.
+  // Throws InputError for this file.
   template <class... Arguments>
   [[noreturn]] void refuse(const std::string& value, fmt::format_string<Arguments...> rule,
                            Arguments&&... arguments) const {
@@ -166,7 +165,7 @@ class Reader {
  private:
   void read(std::uint64_t place, std::span<std::byte> bytes) const;
   std::string read_text(std::uint64_t place, std::uint64_t length) const;
-  // Whether so many bytes from there on are in the file.
+  // True if the file has `length` bytes from `place` on.
   bool holds(std::uint64_t place, std::uint64_t length) const {
     return place <= length_ && length <= length_ - place;
   }
@@ -180,10 +179,10 @@ class Reader {
   std::uint64_t length_ = 0;
   std::vector<std::string> names_;
   std::map<std::string, std::uint16_t, std::less<>> number_of_name_;
-  std::vector<IndexEntry> index_;  // by frame, then by name
+  std::vector<IndexEntry> index_;  // sorted by frame, then by name
 };
 
-// Whether a file begins as a GSD file does. False for what cannot be read.
+// Returns true if a file begins as a GSD file, and false if it cannot be read.
 bool begins_as_gsd(const std::filesystem::path& path);
 
 }  // namespace peclet::engine::gsd

@@ -64,7 +64,7 @@ class FrameReading {
     return file_.get<Value>(*chunk).front();
   }
 
-  // Of each sphere so many numbers; none where the file has none.
+  // Returns `columns` numbers for each sphere, or nothing if the file has none.
   template <class Value, std::uint32_t columns>
   std::vector<std::array<Value, columns>> rows(const std::string& name) const {
     const gsd::IndexEntry* chunk = own(name);
@@ -87,7 +87,7 @@ class FrameReading {
     return all;
   }
 
-  // Sums of edges are those of doubles: the file's are exact in them.
+  // Computes in doubles, in which the numbers of the file are exact.
   void read_cell(Snapshot& snapshot) const {
     const gsd::IndexEntry* const chunk = own_or_first("configuration/box");
     if (chunk == nullptr) refuse("configuration/box", "missing", "must be there");
@@ -139,14 +139,14 @@ class FrameReading {
     }
   }
 
-  // Bonds of other programs have no forces, and are none of ours.
+  // Reads bonds with forces. Bonds of other programs have no forces and are not contacts.
   void read_contacts(Snapshot& snapshot) const {
     const gsd::IndexEntry *const group = own("bonds/group"), *const normal = own("log/bonds/normal_force"),
                                  *const tangential = own("log/bonds/tangential_force");
     if (group == nullptr || normal == nullptr || tangential == nullptr) return;
     if (normal->rows != group->rows || tangential->rows != group->rows) {
       refuse("log/bonds/normal_force", fmt::format("{} rows", normal->rows),
-             "must be {}, as many as bonds/group", group->rows);
+             "must be {}, the rows of bonds/group", group->rows);
     }
     const auto ids = file_.get<std::uint32_t>(*group, 2);
     const auto forces = file_.get<float>(*normal);

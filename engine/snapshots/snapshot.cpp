@@ -12,11 +12,11 @@
 namespace peclet::engine {
 namespace {
 
-// Powers up to the sixth of such lengths, and quotients of such numbers, are far from the ends of a double.
+// Limits that keep sixth powers of lengths and quotients of numbers within the range of a double.
 constexpr double largest = 1e30, least_length = 1e-30, least_time = 1e-30;
 constexpr double finest = 1e-6, most_cells = 1e6;
 
-// False for what is not a number, as in every comparison here.
+// Returns false for NaN, as do all comparisons here.
 bool is_number(double x) { return std::abs(x) <= largest; }
 bool is_vector(const Vector3& v) { return is_number(v.x) && is_number(v.y) && is_number(v.z); }
 
@@ -107,7 +107,7 @@ class Check {
              "must be > 0, from {:.6g} to {:.6g}: a millionth of the longest edge of the cell and "
              "that edge{}",
              finest * longest_, longest_,
-             snapshot_.has_sizes ? "" : "; the file has no diameters, and 1 stands for them");
+             snapshot_.has_sizes ? "" : "; the file has no diameters, so the diameter is 1");
     }
   }
 
@@ -133,8 +133,8 @@ class Check {
       if (is_good) continue;
       refuse(fmt::format("contact of {} and {}: forces {:.6g} and {:.6g}", contact.first, contact.second,
                          contact.normal_force, contact.tangential_force),
-             "must be of two spheres below {}, with a normal force from 0 and a tangential one up "
-             "to {:g}",
+             "must be of two different spheres below {}, with forces up to {:g}, the normal one not "
+             "negative",
              snapshot_.count(), largest);
     }
   }
@@ -172,7 +172,7 @@ SnapshotFile::SnapshotFile(const std::filesystem::path& path) : path_(path) {
     text_->text = read_input(path, text_limits);
     text_->frames = xyz_frames(text_->text, path.string());
   }
-  if (frames() == 0) throw InputError(path.string(), "", "", "must have a frame, and has none");
+  if (frames() == 0) throw InputError(path.string(), "", "", "must have at least one frame");
 }
 
 std::uint64_t SnapshotFile::frames() const { return gsd_ ? gsd_->frames() : text_->frames.size(); }

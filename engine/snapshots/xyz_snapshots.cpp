@@ -14,7 +14,7 @@
 namespace peclet::engine {
 namespace {
 
-// Columns that are taken, by their names and widths; what a file calls otherwise is passed over.
+// The columns that are read, by name and width; others are ignored.
 enum class Field { none, id, species, position, radius, velocity, spin, image, stress, contacts };
 
 struct Column {
@@ -23,7 +23,7 @@ struct Column {
   Field field;
 };
 
-// Other programs ask of a column `species` that it holds chemical symbols.
+// This program writes `type`, because other programs expect chemical symbols in a column `species`.
 constexpr std::array<Column, 10> known_columns = {{{"id", 1, Field::id},
                                                    {"type", 1, Field::species},
                                                    {"species", 1, Field::species},
@@ -66,7 +66,7 @@ class XyzReading {
     return *value;
   }
 
-  // Parts the second line, NAME=VALUE NAME="VALUE" NAME='VALUE' ..., and words without a value.
+  // Splits the second line: NAME=VALUE NAME="VALUE" NAME='VALUE' ... Ignores words without a value.
   void read_keys(std::string_view about) {
     while (!is_blank(about)) {
       about.remove_prefix(about.find_first_not_of(" \t"));
@@ -89,7 +89,7 @@ class XyzReading {
     }
   }
 
-  // Returns the value of a key of the second line; empty where there is none.
+  // Returns the value of a key of the second line, or an empty text.
   std::string_view value_of(std::string_view name) const {
     std::string_view value;
     bool is_there = false;
@@ -166,7 +166,7 @@ class XyzReading {
     if (!is_blank(line)) refuse(where, "must have the columns of Properties, and no more");
   }
 
-  // Takes the words of one column of a sphere off its line. Each field becomes one entry of its list.
+  // Reads one column of a sphere from its line, as one entry of its list.
   void take(const Column& column, std::string_view& line, const std::string& where, Snapshot& snapshot) {
     switch (column.field) {
       case Field::id:
@@ -213,7 +213,7 @@ class XyzReading {
     return static_cast<std::uint32_t>(names.size() - 1);
   }
 
-  // By ids, where there are some; a number that is there twice names nobody.
+  // Sorts the spheres by id, if there are ids. Refuses an id that occurs twice.
   void sort(Snapshot& snapshot) const {
     if (snapshot.species.empty()) name_by_radius(snapshot);
     if (id_.empty()) return;
@@ -238,7 +238,7 @@ class XyzReading {
     arrange(snapshot.contact_number);
   }
 
-  // Where no species are told apart, sizes are.
+  // Makes each radius a species, if the file has no species.
   static void name_by_radius(Snapshot& snapshot) {
     std::vector<double> sizes = snapshot.radius;
     std::ranges::sort(sizes);
@@ -252,7 +252,7 @@ class XyzReading {
 
   std::string_view rest_;
   std::string file_;
-  std::vector<std::pair<std::string_view, std::string_view>> keys_;  // of the second line
+  std::vector<std::pair<std::string_view, std::string_view>> keys_;  // keys and values of the second line
   std::vector<Column> columns_;
   std::vector<std::int64_t> id_;
 };
@@ -270,15 +270,14 @@ std::vector<std::string_view> xyz_frames(std::string_view text, const std::strin
     if (!count || *count < 1 || *count > most_spheres) {
       throw InputError(file, "",
                        fmt::format("frame {} begins with \"{}\"", frames.size(), word.substr(0, 40)),
-                       fmt::format("must be a GSD file, or extended XYZ, of which a frame begins with the "
-                                   "number of its spheres, 1 to {}",
+                       fmt::format("must be a GSD file, or extended XYZ whose frames begin with the "
+                                   "number of their spheres, 1 to {}",
                                    most_spheres));
     }
     for (std::size_t left = *count + 1; left > 0; --left) {
       if (rest.empty()) {
-        throw InputError(
-            file, "", fmt::format("frame {}", frames.size()),
-            fmt::format("must have {} lines after the first, and ends {} before", *count + 1, left));
+        throw InputError(file, "", fmt::format("frame {}", frames.size()),
+                         fmt::format("must have {} lines after the first; {} are missing", *count + 1, left));
       }
       take_line(rest);
     }

@@ -1,4 +1,4 @@
-// Plain values in a fixed order, as bytes of this machine: the inside of a checkpoint.
+// Writes and reads plain values as bytes of this machine in a fixed order: the content of a checkpoint.
 #pragma once
 
 #include <cstring>
@@ -12,7 +12,7 @@
 
 namespace peclet::engine {
 
-// The bytes end too early, or a count is not the expected one.
+// Thrown if the bytes end too early or do not fit the system that they are read into.
 class ArchiveError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -91,7 +91,7 @@ class ArchiveReader {
     return std::string(take(count), count);
   }
 
-  // Reads what put_all() has written of these parts. Vectors and fields keep their sizes.
+  // Reads parts that put_all() wrote. Throws ArchiveError if a vector or field was written with another size.
   template <class... Parts>
   void get_all(Parts&... parts) {
     (get_part(parts), ...);

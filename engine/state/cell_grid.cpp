@@ -3,13 +3,13 @@
 namespace peclet::engine {
 namespace {
 
-// More than a few cells per particle would only make the grid slow to walk.
+// Returns the cells along an edge, at least `range` wide each. More than 8 per particle slow the search down.
 std::int32_t divide(double width, double range, std::size_t particles) {
   const double most = std::max(1.0, std::cbrt(8.0 * static_cast<double>(particles)));
   return static_cast<std::int32_t>(std::max(1.0, std::floor(std::min(width / range, most))));
 }
 
-// Splits a lattice coordinate into whole cells and the rest in [0, 1).
+// Returns the whole part of a lattice coordinate and leaves the rest, which is in [0, 1).
 std::int32_t whole(double& coordinate) {
   const double down = std::floor(coordinate);
   coordinate -= down;

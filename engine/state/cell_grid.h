@@ -1,4 +1,4 @@
-// Cells along the lattice vectors of the periodic cell, for finding what is near.
+// Sorts particles into cells along the lattice vectors of the periodic cell, to find near ones.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace peclet::engine {
 
-// Where particles stand in the cell of the box: position as given = place along the lattice vectors + offset.
+// Coordinates of particles along the lattice vectors H: position = H (fractional + offset).
 struct LatticePlaces {
   std::vector<Vector3> fractional;  // in [0, 1)^3
   std::vector<LatticeShift> offset;
@@ -20,17 +20,18 @@ struct LatticePlaces {
 
 LatticePlaces lattice_places(const VectorField& position, const PeriodicCell& box);
 
-// Some of the particles, sorted into cells.
+// A subset of the particles, sorted into cells.
 class CellGrid {
  public:
-  // `members` in the order in which they are visited. Cells at least `range` wide where the box is wide
-  // enough.
+  // Sorts `members` into cells at least `range` wide, or as wide as the box if it is narrower. Members of a
+  // cell are visited in the given order.
   CellGrid(const LatticePlaces& places, std::span<const std::uint32_t> members, const PeriodicCell& box,
            double range);
 
-  // Calls visit(member, wrap, separation) for every member in every image whose cell is within `range` of the
-  // point at `fractional` coordinates: `separation` leads from there to the image by `wrap` of the member's
-  // place in the cell. Nothing closer than `range` is missed; most visits are of members further away.
+  // Calls visit(member, wrap, separation) for all images of members in cells within `range` of a point, given
+  // by its `fractional` coordinates. These are all images closer than `range` and many further away.
+  // `separation` leads from the point to the image, which lies `wrap` lattice vectors from the member's place
+  // in the cell.
   template <class Visit>
   void visit_near(const Vector3& fractional, double range, Visit&& visit) const {
     const Layers along_x = layers(fractional.x, cells_.x, range * per_length_.x),
@@ -47,7 +48,7 @@ class CellGrid {
         const std::size_t row = (static_cast<std::size_t>(z.cell) * static_cast<std::size_t>(cells_.y) +
                                  static_cast<std::size_t>(y.cell)) *
                                 static_cast<std::size_t>(cells_.x);
-        // Cells that follow each other along x are visited in one go.
+        // Members of neighbouring cells along x are consecutive in memory.
         for (std::int32_t x = along_x.begin; x < along_x.end;) {
           const Wrapped first = wrapped(x, cells_.x);
           const std::int32_t count = std::min(along_x.end - x, cells_.x - first.cell);
@@ -77,7 +78,7 @@ class CellGrid {
   struct Layers {
     std::int32_t begin, end;
   };
-  // Of cells that a range of so many cells touches; the share of it that is added is far beyond rounding.
+  // Returns the layers of cells within `range` [cells] of a point, padded by 1e-9 against rounding.
   static Layers layers(double fractional, std::int32_t cells, double range) {
     const double place = fractional * cells, wider = range * (1 + 1e-9);
     return {static_cast<std::int32_t>(std::floor(place - wider)),
@@ -98,8 +99,8 @@ class CellGrid {
 
   PeriodicCell box_;
   LatticeShift cells_;
-  Vector3 per_length_;                // cells between two parallel planes a unit of length apart
-  std::vector<std::uint32_t> first_;  // counting sort by cell
+  Vector3 per_length_;                // cells per unit of distance between opposite faces
+  std::vector<std::uint32_t> first_;  // first member of each cell, and the end of the last cell
   std::vector<Member> content_;
 };
 

@@ -15,7 +15,7 @@ auto name_of(const HeldContact& contact) {
   return std::make_tuple(contact.first, contact.second, contact.image);
 }
 
-// The name of a listed pair, without springs.
+// Returns the contact of a listed pair, without springs.
 HeldContact contact_of(const NeighbourList& list, const ParticleState& particles, const Pair& pair) {
   return {particles.id[pair.first],
           particles.id[pair.second],
@@ -46,7 +46,7 @@ std::vector<HeldContact> held_contacts(const NeighbourList& list, const Particle
     const std::lock_guard lock(of_held);
     held.insert(held.end(), part.begin(), part.end());
   });
-  sort_contacts(held);  // so it does not matter which part came first
+  sort_contacts(held);  // threads add their parts in any order
   return held;
 }
 
@@ -54,7 +54,7 @@ SpringField placed_contacts(const NeighbourList& list, const ParticleState& part
                             const std::vector<HeldContact>& held, SpringKinds kinds, int threads) {
   SpringField springs(kinds, list.pairs().size());
   if (held.empty()) return springs;
-  // Where the contacts of each first particle begin.
+  // The index in `held` of the first contact of each first particle.
   std::vector<std::uint32_t> begin(particles.count() + 1);
   for (const HeldContact& contact : held) ++begin[contact.first + 1];
   for (std::size_t i = 0; i < particles.count(); ++i) begin[i + 1] += begin[i];

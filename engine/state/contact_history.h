@@ -1,4 +1,4 @@
-// Springs of touching pairs, and how they survive a rebuild of the neighbour list.
+// Keeps the springs of touching pairs when the neighbour list is rebuilt.
 #pragma once
 
 #include <array>
@@ -8,14 +8,13 @@
 
 namespace peclet::engine {
 
-// Tangential and rolling spring of a pair; zero without contact.
+// The tangential and the rolling spring of a pair; both are zero without contact.
 struct ContactSprings {
   Vector3 tangential, rolling;
-  double slides = 0;  // 1: the contact slides; of kinds that remember it
+  double slides = 0;  // 1 if the contact slides, else 0; used by kinds that remember sliding
 };
 
-// Which springs a scene needs, and whether contacts remember that they slide; the others take no memory. Each
-// has a bit.
+// The springs that a scene needs, and whether contacts remember that they slide, as bits.
 enum class SpringKinds : std::uint8_t {
   none = 0,
   tangential = 1,
@@ -33,12 +32,12 @@ constexpr SpringKinds that_slide(SpringKinds kinds) {
   return include(kinds, SpringKinds::tangential_and_rolling) ? SpringKinds::tangential_and_rolling_that_slide
                                                              : SpringKinds::tangential_that_slide;
 }
-// Three of each spring.
+// Returns the number of components of the springs, three each.
 constexpr std::size_t components_of_springs(SpringKinds kinds) {
   return kinds == SpringKinds::none ? 0 : include(kinds, SpringKinds::tangential_and_rolling) ? 6 : 3;
 }
 
-// The springs of each pair of a list, component by component.
+// The springs of all pairs of a list, stored component by component.
 class SpringField {
  public:
   SpringField() = default;
@@ -59,7 +58,7 @@ class SpringField {
     if (remembers_sliding()) springs.slides = component_[components() - 1][pair];
     return springs;
   }
-  // Springs of a kind that the field does not have are dropped.
+  // Ignores springs of kinds that the field does not have.
   void set(std::size_t pair, const ContactSprings& springs) {
     const std::array<double, 6> values = {springs.tangential.x, springs.tangential.y, springs.tangential.z,
                                           springs.rolling.x,    springs.rolling.y,    springs.rolling.z};
@@ -68,7 +67,7 @@ class SpringField {
   }
   bool remembers_sliding() const { return remember_sliding(kinds_); }
 
-  // Tangential x, y, z, rolling x, y, z, slides; as many as the kinds have.
+  // Returns how many components the kinds have, in this order: tangential x, y, z; rolling x, y, z; slides.
   std::size_t components() const { return components_of_springs(kinds_) + (remembers_sliding() ? 1 : 0); }
   double* component(std::size_t c) { return component_[c].data(); }
   const std::vector<double>& values(std::size_t c) const { return component_[c]; }
@@ -80,24 +79,24 @@ class SpringField {
   std::array<std::vector<double>, 7> component_;
 };
 
-// The springs of one contact under a name that outlives the list: the ids of the two particles and the shift
-// between their unwrapped places, which wrapping does not change.
+// The springs of one contact, identified independently of the list: by the ids of its two particles and the
+// shift between their unwrapped positions, which wrapping does not change.
 struct HeldContact {
   std::uint32_t first, second;
   LatticeShift image;
   ContactSprings springs;
 };
 
-// Into the order of first id, second id and image.
+// Sorts contacts by first id, second id and image.
 void sort_contacts(std::vector<HeldContact>& contacts);
 
-// All springs that are not zero or slide, sorted.
+// Returns the contacts that have a spring other than zero or slide, sorted.
 std::vector<HeldContact> held_contacts(const NeighbourList& list, const ParticleState& particles,
                                        const SpringField& springs, int threads = 1);
 
-// Springs of each pair of a new list. The image counters of `particles` are as they are now, in the same
-// basis as `held`, which is sorted. A contact that is not listed any more has opened: its springs are
-// forgotten.
+// Returns the springs of each pair of a new list from the sorted contacts `held`. The image counters of
+// `particles` must be in the same basis as `held`. Contacts that are no longer listed have opened; their
+// springs are dropped.
 SpringField placed_contacts(const NeighbourList& list, const ParticleState& particles,
                             const std::vector<HeldContact>& held, SpringKinds kinds, int threads = 1);
 

@@ -1,4 +1,8 @@
-// Between the engine's vectors and Eigen's. Not for the kernels (tests/engine/isolation.py).
+// Converts between the engine's vectors and Eigen's.
+//
+// Stands apart from vector3.h, matrix3.h and vector_field.h because kernels must not include Eigen: the
+// linker may keep the copy of an Eigen function that was compiled for a newer processor
+// (tests/engine/isolation.py).
 #pragma once
 
 #include <Eigen/Core>
@@ -16,10 +20,8 @@ inline Eigen::Matrix3d to_eigen(const Matrix3& m) {
 }
 inline Vector3 from_eigen(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-// Vectors of all particles as one array of Eigen's, for expressions over them.
-//
-// A column for each particle: x, y, z and the row's fourth, which is zero and must stay so. Expressions by
-// element give the same bits as a loop over rows; sums over particles may be taken in another order.
+// A view of a VectorField as an Eigen array with a column x, y, z, 0 for each particle. The 0 must stay 0.
+// Element-wise expressions give the bits of a loop; sums over particles may be added in another order.
 using FieldArray = Eigen::Map<Eigen::Array4Xd, Eigen::Aligned32>;
 using ConstFieldArray = Eigen::Map<const Eigen::Array4Xd, Eigen::Aligned32>;
 

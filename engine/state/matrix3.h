@@ -1,4 +1,4 @@
-// Three-by-three matrices, by value. What needs more than sums and products takes Eigen (eigen_vector.h).
+// Three-by-three matrices with sums, products and the inverse. Decompositions use Eigen (eigen_arrays.h).
 #pragma once
 
 #include <array>
@@ -32,7 +32,7 @@ struct Matrix3 {
 inline Matrix3 identity() { return {Vector3{1, 0, 0}, Vector3{0, 1, 0}, Vector3{0, 0, 1}}; }
 inline double determinant(const Matrix3& a) { return dot(a.column[0], cross(a.column[1], a.column[2])); }
 
-// Of a matrix whose columns are linearly independent.
+// Requires linearly independent columns.
 inline Matrix3 inverse(const Matrix3& a) {
   const double over = 1 / determinant(a);
   const Vector3 x = over * cross(a.column[1], a.column[2]), y = over * cross(a.column[2], a.column[0]),
@@ -40,14 +40,14 @@ inline Matrix3 inverse(const Matrix3& a) {
   return {Vector3{x.x, y.x, z.x}, Vector3{x.y, y.y, z.y}, Vector3{x.z, y.z, z.z}};
 }
 
-// The root of the sum of squares, which is at least the factor by which a vector is stretched.
+// Returns the Frobenius norm, an upper bound of the factor by which a vector is stretched.
 inline double norm(const Matrix3& a) {
   return std::sqrt(dot(a.column[0], a.column[0]) + dot(a.column[1], a.column[1]) +
                    dot(a.column[2], a.column[2]));
 }
 
-// x moves along with y: of a flow (rate y, 0, 0) the velocity gradient, and after a strain the gradient of
-// the displacement.
+// Returns the matrix with `amount` at xy and 0 elsewhere: the velocity gradient of a flow (rate y, 0, 0), or
+// the displacement gradient after a strain.
 inline Matrix3 simple_shear(double amount) { return {Vector3{}, Vector3{amount, 0, 0}, Vector3{}}; }
 
 }  // namespace peclet::engine

@@ -14,7 +14,7 @@
 namespace peclet::engine {
 namespace {
 
-// Smallest singular value of 1 + D. That of [[1, g], [0, 1]] is sqrt(1 + g^2/4) - |g|/2.
+// Returns the smallest singular value of 1 + D; in simple shear by g it is sqrt(1 + g^2/4) - |g|/2.
 double smallest_stretch(const Matrix3& displacement_gradient) {
   const double strain = displacement_gradient.column[1].x;
   if (displacement_gradient == simple_shear(strain)) {
@@ -23,7 +23,7 @@ double smallest_stretch(const Matrix3& displacement_gradient) {
   return Eigen::JacobiSVD<Eigen::Matrix3d>(to_eigen(identity() + displacement_gradient)).singularValues()[2];
 }
 
-// Displacement gradient of the cell since then: D' - D seen from the cell as it was.
+// Returns the displacement gradient since then, relative to the cell as it was: (D' - D) (1 + D)^-1.
 Matrix3 change_since(const ListMoment& then, const PeriodicCell& box) {
   return (box.displacement_gradient() - then.displacement_gradient) *
          inverse(identity() + then.displacement_gradient);
@@ -50,17 +50,17 @@ double largest_displacement(const ListMoment& then, const ParticleState& particl
 
 // Finds and arranges the pairs of a neighbour list.
 //
-// Every size class has a grid of its own, with cells as wide as the reach of two of its spheres; of more than
-// four classes those share a grid, a band, whose ranges are within a factor of 1.3. A particle looks into the
-// grids of its own band and of larger ones: small spheres never pay for the reach of large ones, and large
-// ones never walk through the fine grids of small ones.
+// Each size class has a grid of its own, with cells as wide as the reach of two of its spheres. If there are
+// more than four classes, those whose ranges are within a factor of 1.3 share a grid and form a band. A
+// particle searches the grids of its own band and of larger ones: small spheres do not pay for the reach of
+// large ones, and large ones do not search the fine grids of small ones.
 class ListBuilder {
  public:
-  // At the list's moment: blocks, and pairs of the particles, are those of the list.
+  // `box` is the cell at the moment of the positions that are searched.
   ListBuilder(NeighbourList& list, const ParticleState& particles, const PeriodicCell& box, int threads)
       : list_(list), particles_(particles), box_(box), threads_(threads) {}
 
-  // Returns the pairs of each block that at these places are closer than their reach with this skin.
+  // Sets the blocks, and returns the pairs of each that are closer than their reach with this skin.
   std::vector<std::vector<FoundPair>> find(const VectorField& position, double skin) {
     skin_ = skin;
     set_grids(position);
@@ -85,7 +85,7 @@ class ListBuilder {
     runs_.resize(found.size());
     std::uint32_t pairs = 0;
     for (std::size_t b = 0; b < found.size(); ++b) {
-      list_.blocks_[b].runs_begin = pairs;  // until the runs are made
+      list_.blocks_[b].runs_begin = pairs;  // the first pair, until collect_incoming() sets the first run
       pairs += static_cast<std::uint32_t>(found[b].size());
     }
     list_.pairs_.resize(pairs);
@@ -93,9 +93,9 @@ class ListBuilder {
     collect_incoming();
   }
 
-  // Returns the candidates that are closer than their reach at the list's places.
+  // Returns the candidates that are closer than their reach at the positions of the list.
   std::vector<std::vector<FoundPair>> near_ones(const std::vector<std::vector<FoundPair>>& candidates) const {
-    std::vector<double> squared_reach;  // of each kind
+    std::vector<double> squared_reach;  // for each kind
     const std::size_t classes = list_.ranges_.classes();
     for (std::size_t kind = 0; kind < classes * classes; ++kind) {
       const double reach = list_.reach(list_.ranges_.at(kind / classes, kind % classes), list_.skin_);
@@ -118,14 +118,14 @@ class ListBuilder {
   using Found = FoundPair;
   using Away = FoundPair::Away;
 
-  // Few sizes have a grid each; of many those share one that are alike in range.
+  // Assigns the size classes to bands and sets their reaches.
   void set_bands() {
     constexpr std::size_t few = 4;
     constexpr double alike = 1.3;
     const RangeTable& ranges = list_.ranges_;
     const std::size_t classes = ranges.classes();
     band_of_.clear();
-    std::size_t first = 0, bands = 0;  // of the present band
+    std::size_t first = 0, bands = 0;  // `first`: the first class of the last band
     for (std::size_t c = 0; c < classes; ++c) {
       const bool joins = c > 0 && classes > few && ranges.at(c, c) <= alike * ranges.at(first, first);
       if (!joins) {
@@ -179,7 +179,7 @@ class ListBuilder {
                                [&](std::uint32_t j, LatticeShift wrap, const Vector3& separation) {
                                  const std::size_t other = particles_.size_class[j];
                                  if (other < own || (other == own && j < i)) {
-                                   return;  // found from there
+                                   return;  // found from j
                                  }
                                  const double squared = dot(separation, separation);
                                  const double reach = reach_[own * classes + other];
@@ -209,13 +209,13 @@ class ListBuilder {
   std::uint32_t block_of(std::uint32_t particle) const {
     const std::size_t blocks = list_.blocks_.size();
     if (blocks == 1) return 0;
-    // Blocks begin at count b / blocks rounded down; the estimate is right or one too small.
+    // Block b begins at count b / blocks, rounded down: the estimate is right or one too small.
     std::size_t block = particle * blocks / particles_.count();
     while (particle >= list_.blocks_[block].end) ++block;
     return static_cast<std::uint32_t>(block);
   }
 
-  // Pairs that were found from their particle in the earlier block go to the later one.
+  // Moves crossing pairs that were found from the earlier block to the later one.
   void deliver_strays() {
     if (found_.size() == 1) return;
     std::vector<std::vector<Found>> strays(found_.size());
@@ -249,7 +249,7 @@ class ListBuilder {
                                       list_.images_.begin());
   }
 
-  // A counting sort: pairs of one run keep the order in which they were found.
+  // Sorts the pairs of a block into runs by counting. Pairs of a run keep the order in which they were found.
   void arrange(std::size_t block, const std::vector<Found>& found) {
     const std::size_t part = 2 * list_.ranges_.classes() * list_.ranges_.classes(), buckets = 3 * part;
     std::vector<std::uint32_t> next(buckets + 1);
@@ -316,11 +316,11 @@ class ListBuilder {
   int threads_;
   double skin_ = 0;
   LatticePlaces places_;
-  std::vector<std::size_t> band_of_;  // of each class
+  std::vector<std::size_t> band_of_;  // for each class
   std::vector<double> reach_,
-      widest_reach_;  // of a class with larger ones, and with the larger ones of a band
-  std::vector<std::optional<CellGrid>> grids_;  // of each band; none without members
-  std::vector<std::vector<Found>> found_;       // of each block
+      widest_reach_;  // for each class with each larger one; the largest one with those of each band
+  std::vector<std::optional<CellGrid>> grids_;  // for each band; empty without members
+  std::vector<std::vector<Found>> found_;       // for each block
   std::vector<std::vector<PairRun>> runs_;
   std::atomic<bool> meets_itself_ = false;  // exceptions must not leave a thread of the loop
 };
@@ -377,7 +377,7 @@ double NeighbourList::reach(double range, double skin) const {
 double NeighbourList::allowed_displacement(const ListMoment& then, double skin, double inner_skin,
                                            const PeriodicCell& box) const {
   const double stretch = smallest_stretch(change_since(then, box));
-  // Linear in the range: the smallest or the largest one decides.
+  // The result is linear in the range: the smallest or the largest range decides.
   const auto left = [&](double range) {
     return 0.5 * (stretch * reach(range, skin) - reach(range, inner_skin));
   };

@@ -64,7 +64,7 @@ namespace {
 
 constexpr double cells_per_edge = 1 << 10;
 
-// Ten bits, two zeros between each and the next.
+// Returns the ten bits of `x` with two zeros after each.
 std::uint32_t spread_bits(std::uint32_t x) {
   x = (x | x << 16) & 0x030000ffU;
   x = (x | x << 8) & 0x0300f00fU;

@@ -5,7 +5,7 @@
 namespace peclet::engine {
 namespace {
 
-// Exact where all but one component are zero: sqrt(x x) is |x|.
+// Returns v / length, which is exact if only one component is not zero: sqrt(x x) is |x|.
 Vector3 over(const Vector3& v, double length) { return {v.x / length, v.y / length, v.z / length}; }
 
 CellFrame frame_of(const Matrix3& edges) {
@@ -33,7 +33,7 @@ Matrix3 in_basis(const Matrix3& edges, const BasisChange& basis) {
 
 std::int32_t nearest(double ratio) { return static_cast<std::int32_t>(std::floor(ratio + 0.5)); }
 
-// Takes back the tilt of the second lattice vector, then those of the third.
+// Returns the basis with the smallest tilt of the second lattice vector, then of the third.
 BasisChange straightened(const Matrix3& edges, BasisChange basis) {
   basis.column[1] = basis.column[1] - [&] {
     const CellFrame frame = frame_of(in_basis(edges, basis));
@@ -53,14 +53,14 @@ bool is_thin(const Matrix3& edges) {
   return std::min({w.x, w.y, w.z}) < thin * shortest;
 }
 
-// Changes places with the next vector, one of both reversed: the basis stays right-handed.
+// Swaps two neighbouring lattice vectors and reverses one of them: the basis stays right-handed.
 void turn(LatticeShift& first, LatticeShift& second) {
   std::swap(first, second);
   second = -1 * second;
 }
 
-// Lovasz's condition: of two neighbours in the basis the second is not much shorter than the first, both
-// taken across those before them.
+// Returns a basis that meets Lovasz's condition: of two neighbouring vectors the second is not much shorter
+// than the first, both taken perpendicular to the vectors before the pair.
 BasisChange reduced(const Matrix3& edges) {
   constexpr double much = 0.75;
   BasisChange basis;
@@ -92,7 +92,7 @@ LatticeShift BasisChange::after(LatticeShift k) const {
 }
 
 Vector3 CellFrame::widths() const {
-  // One over the lengths of the rows of R^-1.
+  // A width is one over the length of a row of R^-1.
   const double xy = tilt_xy / lengths.y;
   const double along_z = (xy * yz - xz) / lengths.z, yz_slope = yz / lengths.z;
   return {lengths.x / std::sqrt(1 + xy * xy + along_z * along_z),

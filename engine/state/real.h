@@ -1,13 +1,13 @@
-// What the formulas of a pair need of a number besides arithmetic, for a single double.
+// The functions of a double that pair formulas need besides arithmetic.
 //
-// The terms are templates on the number: `double`, or the Lanes of an instruction set, which hold several
-// pairs side by side and bring functions of the same names (kernels/lanes.h). A comparison gives bool or a
+// Pair formulas are templates on the number: `double`, or the Lanes of an instruction set, which hold several
+// pairs side by side and have functions of the same names (kernels/lanes.h). A comparison gives bool or a
 // mask.
 #pragma once
 
 #include <cmath>
 
-// The loop over pairs is one function with everything in it, or its lanes would travel through memory.
+// Everything in the loop over pairs is inlined: calls would pass lanes through memory.
 #define PECLET_ALWAYS_INLINE [[gnu::always_inline]] inline
 #define PECLET_INLINE_LAMBDA __attribute__((always_inline))
 

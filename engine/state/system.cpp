@@ -8,9 +8,9 @@
 namespace peclet::engine {
 namespace {
 
-// Throws ArchiveError unless the cell has a volume, few images of it are within `range` and all spheres are
-// so near that whole cells between them can be counted: lists of neighbours take all three for granted. No
-// sphere of a run meets its own image, so its cell is about as wide as the range at least.
+// Throws ArchiveError unless the cell has a volume, few images of it lie within `range`, and the cells
+// between spheres can be counted. Neighbour lists require all three. No sphere of a run meets its own image,
+// so its cell is at least about as wide as the range.
 void require_places(const VectorField& position, const PeriodicCell& box, double range) {
   constexpr double most_cells = 1e6, most_images = 8;
   const CellFrame cell = box.frame();
@@ -27,7 +27,7 @@ void require_places(const VectorField& position, const PeriodicCell& box, double
   }
   if (is_good) return;
   throw ArchiveError(
-      "has a cell without volume or too thin for its spheres, or a sphere that is not near it");
+      "has a cell that has no volume or is too thin for its spheres, or a sphere far outside its cell");
 }
 
 }  // namespace

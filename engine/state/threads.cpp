@@ -8,7 +8,7 @@
 namespace peclet::engine {
 namespace {
 
-// Some microseconds: longer than members that have a processor each wait for one another.
+// A few microseconds, longer than the usual wait of members that have a processor each.
 constexpr int turns_before_yielding = 100;
 
 void pause() {
@@ -17,7 +17,7 @@ void pause() {
 #endif
 }
 
-// What libgomp itself gives to threads beyond the number of processors: some microseconds.
+// The value that libgomp itself uses if there are more threads than processors: a few microseconds.
 constexpr const char* turns = "1000";
 
 }  // namespace
@@ -40,7 +40,7 @@ void Team::arrive() {
 void Team::wait() {
   for (const Arrivals& other : arrivals_) {
     for (int turn = 0; other.count.load(std::memory_order_acquire) < arrived_; ++turn) {
-      // The processor may be the one that the other member needs.
+      // The other member may need this processor.
       turn < turns_before_yielding ? pause() : std::this_thread::yield();
     }
   }
@@ -53,7 +53,7 @@ void Team::meet() {
 
 void let_waiting_threads_sleep(char** arguments) {
   if (std::getenv("OMP_WAIT_POLICY") != nullptr || std::getenv("GOMP_SPINCOUNT") != nullptr) return;
-  // Set, it also tells the program that starts now to go on.
+  // The variable also keeps the new process from starting itself again.
   if (setenv("GOMP_SPINCOUNT", turns, 0) == 0) execv("/proc/self/exe", arguments);
 }
 

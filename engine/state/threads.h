@@ -1,4 +1,4 @@
-// Threads: loops over independent indices, teams with barriers, and how threads wait.
+// Runs loops and teams of threads, and sets how threads wait.
 #pragma once
 
 #include <omp.h>
@@ -15,9 +15,9 @@
 
 namespace peclet::engine {
 
-// OpenMP's library is not compiled with the thread sanitizer, which has to be told where one thread hands its
-// work to another: it releases here and acquires there. (What OpenMP itself passes on is written after that,
-// which is why in_parallel() is not checked; the bodies are.) Nothing in other builds.
+// Tell the thread sanitizer that one thread hands its work to another, because OpenMP's library is not
+// compiled with it. OpenMP writes what it passes on after release_work(), so in_parallel() is not checked;
+// the bodies are. Other builds do nothing here.
 inline char handed_over = 0;
 inline void release_work() {
 #ifdef __SANITIZE_THREAD__
@@ -30,7 +30,7 @@ inline void acquire_work() {
 #endif
 }
 
-// Calls body(part, parts) on each of some threads: `threads` of them, or fewer where OpenMP has no more.
+// Calls body(part, parts) on each of `threads` threads, or on fewer if OpenMP provides fewer.
 template <class Body>
 [[gnu::no_sanitize("thread")]] void in_parallel(int threads, Body&& body) {
   release_work();
@@ -57,7 +57,7 @@ template <class Body>
   });
 }
 
-// Calls body(i) for every index i in [0, count), as for_each_range().
+// Calls body(i) for every index i in [0, count), shared out as by for_each_range().
 template <class Body>
 void for_each_index(std::size_t count, int threads, const Body& body) {
   for_each_range(count, threads, [&](std::size_t begin, std::size_t end) {
@@ -65,16 +65,16 @@ void for_each_index(std::size_t count, int threads, const Body& body) {
   });
 }
 
-// A team of threads that do one piece of work together, as one of its members sees it. Nothing is defined
-// here, because this is shared with files that are compiled for one processor only.
+// One member's view of a team of threads that work together. Its functions are not defined here because files
+// that are compiled for one processor only include this header.
 class Team {
  public:
-  // How often each member has arrived, far enough apart for none to disturb another's.
+  // The number of times that a member has arrived, in a cache line of its own.
   struct alignas(64) Arrivals {
     std::atomic<std::uint64_t> count = 0;
   };
 
-  Team();  // of one
+  Team();  // a team of one
   Team(std::span<Arrivals> arrivals, std::size_t member);
 
   bool is_first() const;
@@ -82,13 +82,13 @@ class Team {
   struct Part {
     std::size_t begin, end;
   };
-  // This member's part of [0, count): consecutive, about as large as the others'.
+  // Returns this member's part of [0, count): consecutive, about as large as the others'.
   Part part_of(std::size_t count) const;
 
-  // Whoever waits for this arrival sees what this member has done before it.
+  // Counts an arrival. Members that wait for it see all that this member wrote before.
   void arrive();
-  // Until every member has arrived as often as this one. Between arrival and wait there may be work: then
-  // members seldom wait, though their parts take different times.
+  // Waits until every member has arrived as often as this one. Work between arrive() and wait() hides that
+  // parts take different times.
   void wait();
   void meet();  // arrives and waits
 
@@ -98,7 +98,7 @@ class Team {
   std::uint64_t arrived_ = 0;
 };
 
-// Calls body(team) as each of the members of a team of that many threads. One thread never enters OpenMP.
+// Calls body(team) on each thread of a team. One thread never enters OpenMP.
 template <class Body>
 void run_team(int threads, Body&& body) {
   if (threads <= 1) {
@@ -113,16 +113,14 @@ void run_team(int threads, Body&& body) {
   });
 }
 
-// Lets threads that wait for each other sleep.
+// Makes waiting threads sleep soon, unless the environment sets OMP_WAIT_POLICY or GOMP_SPINCOUNT.
 //
-// libgomp's threads spin while they wait, for milliseconds as long as there are no more of them than
-// processors. Where other work has the processors, a thread that spins takes the time of the one it waits
-// for. This has them sleep much sooner, unless the environment says how they are to wait (OMP_WAIT_POLICY,
-// GOMP_SPINCOUNT).
+// By default libgomp's threads spin for milliseconds if there are no more of them than processors. If other
+// work uses the processors, a spinning thread takes time from the one that it waits for.
 //
-// libgomp reads the environment before main(), so this starts the program once more with the same process
-// number, arguments and open files. Call it first of all. Where that cannot be done threads wait as libgomp
-// has them: it costs time and changes no result.
+// libgomp reads the environment before main(), so this starts the program once more with the same process id,
+// arguments and open files. Call it first of all. If that fails, threads spin as before: it costs time and
+// changes no result.
 void let_waiting_threads_sleep(char** arguments);
 
 }  // namespace peclet::engine

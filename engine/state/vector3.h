@@ -1,4 +1,4 @@
-// Three-vectors and symmetric tensors, by value, of one number or of several side by side.
+// Three-vectors and symmetric tensors of doubles or of lanes of doubles.
 #pragma once
 
 #include "engine/state/real.h"
@@ -36,19 +36,19 @@ Real norm(const Vector3Of<Real>& a) {
   return square_root(dot(a, a));
 }
 
-// The part of `a` across the unit vector `n`.
+// Returns the part of `a` perpendicular to the unit vector `n`.
 template <class Real>
 Vector3Of<Real> across(const Vector3Of<Real>& a, const Vector3Of<Real>& n) {
   return a - dot(a, n) * n;
 }
 
-// `a` where the condition holds, zero elsewhere.
+// Returns `a` where the condition holds, zero elsewhere.
 template <class Mask, class Real>
 Vector3Of<Real> where(const Mask& condition, const Vector3Of<Real>& a) {
   return {select(condition, a.x, Real{}), select(condition, a.y, Real{}), select(condition, a.z, Real{})};
 }
 
-// Components in the order in which every tensor of this program is written: xx, yy, zz, xy, xz, yz.
+// A symmetric tensor; all files of this program have its components in this order.
 template <class Real>
 struct SymmetricTensorOf {
   Real xx{}, yy{}, zz{}, xy{}, xz{}, yz{};
@@ -63,7 +63,7 @@ struct SymmetricTensorOf {
   }
 };
 
-// (r F + F r) / 2, the symmetric part of the dyad of a pair's separation and force.
+// Returns (r F + F r) / 2, the symmetric part of the dyad of a pair's separation and force.
 template <class Real>
 SymmetricTensorOf<Real> symmetric_dyad(const Vector3Of<Real>& r, const Vector3Of<Real>& f) {
   const Real half{0.5};

@@ -1,4 +1,4 @@
-// One vector per particle.
+// Stores one vector for each particle.
 #pragma once
 
 #include <cstddef>
@@ -12,13 +12,12 @@
 
 namespace peclet::engine {
 
-// Rows of four doubles: a vector is one aligned load, and the three vectors that a pair needs of a particle
-// lie in as many cache lines.
+// A vector for each particle, in rows of four doubles: a vector is one aligned load from one cache line.
 class VectorField {
  public:
   VectorField() = default;
-  // Zero. A page of memory lies near the processor that writes to it first: `threads` share the rows as every
-  // loop over blocks does.
+  // Makes vectors of zero. `threads` threads write them, shared out as in loops over blocks: a page of memory
+  // lies near the processor that writes to it first.
   explicit VectorField(std::size_t count, int threads = 1) : rows_(count) {
     for_each_index(count, threads, [&](std::size_t i) { rows_[i].v = Row{}; });
   }
@@ -30,7 +29,7 @@ class VectorField {
 
   Row& row(std::size_t i) { return rows_[i].v; }
   const Row& row(std::size_t i) const { return rows_[i].v; }
-  // Rows one after the other.
+  // Returns the rows, one after the other.
   double* data() { return reinterpret_cast<double*>(rows_.data()); }
   const double* data() const { return reinterpret_cast<const double*>(rows_.data()); }
 
@@ -44,11 +43,11 @@ class VectorField {
   }
 
  private:
-  // Where the processor has no such registers, the compiler would align a bare row less.
+  // Without registers of 32 bytes the compiler would align a bare row less.
   struct alignas(32) AlignedRow {
     Row v;
   };
-  // Leaves new rows as they are.
+  // Leaves new rows uninitialised.
   struct Allocator : std::allocator<AlignedRow> {
     template <class>
     struct rebind {

@@ -7,7 +7,7 @@
 #include "contract/durable_file.h"
 #include "contract/json.h"
 #include "contract/sha256.h"
-#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/checkpoint.h"
 #include "engine/realisation/schedule.h"
 #include "tests/fuzz/fuzz_target.h"

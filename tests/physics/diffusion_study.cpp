@@ -14,7 +14,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/simulation.h"
 #include "tests/physics/estimates.h"
 

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <span>
 
-#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/simulation.h"
 #include "engine/scene/scene.h"
 #include "tests/physics/estimates.h"

@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/driver.h"
 #include "engine/realisation/simulation.h"
 

@@ -8,7 +8,7 @@
 #include <iterator>
 
 #include "contract/errors.h"
-#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 
 namespace peclet::engine {
 namespace {

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "engine/flow/shear.h"
-#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/scene/scene.h"
 #include "tests/engine/small_scene.h"
 

@@ -7,7 +7,7 @@
 #include "engine/integrators/noisy_midpoint.h"
 #include "engine/integrators/stability.h"
 #include "engine/integrators/velocity_verlet.h"
-#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/simulation.h"
 #include "tests/engine/dense_suspension.h"
 #include "tests/engine/small_scene.h"

@@ -8,7 +8,7 @@
 #include "contract/errors.h"
 #include "engine/integrators/derived_groups.h"
 #include "engine/integrators/stability.h"
-#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/simulation.h"
 #include "tests/engine/small_scene.h"
 

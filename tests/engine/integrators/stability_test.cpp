@@ -7,7 +7,7 @@
 
 #include "contract/errors.h"
 #include "engine/integrators/velocity_verlet.h"
-#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/observables/structure.h"
 #include "engine/realisation/packing.h"
 #include "tests/engine/draws.h"

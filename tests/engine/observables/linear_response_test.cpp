@@ -14,7 +14,7 @@
 #include <numbers>
 #include <random>
 
-#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "tests/engine/observables/loose_spheres.h"
 
 namespace peclet::engine {

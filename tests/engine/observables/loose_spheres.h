@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/scene/scene.h"
 #include "tests/engine/draws.h"
 #include "tests/engine/small_scene.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/simulation.h"
 #include "engine/realisation/stress_means.h"
 #include "tests/engine/observables/loose_spheres.h"

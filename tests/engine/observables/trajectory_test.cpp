@@ -8,6 +8,7 @@
 
 #include "contract/errors.h"
 #include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/simulation.h"
 #include "engine/terms/drag.h"
 #include "tests/engine/small_scene.h"

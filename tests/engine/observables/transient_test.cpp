@@ -1,7 +1,7 @@
 // Transients of stresses that are known.
 #include <gtest/gtest.h>
 
-#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/simulation.h"
 #include "tests/engine/observables/loose_spheres.h"
 

@@ -8,6 +8,7 @@
 #include "contract/errors.h"
 #include "contract/sha256.h"
 #include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/job.h"
 #include "engine/realisation/placed_spheres.h"
 #include "engine/realisation/schedule.h"

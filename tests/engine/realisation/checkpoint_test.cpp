@@ -8,7 +8,7 @@
 
 #include "contract/durable_file.h"
 #include "contract/sha256.h"
-#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/job.h"
 #include "tests/engine/small_scene.h"
 #include "tests/engine/temporary_folder.h"
@@ -139,12 +139,12 @@ TEST_F(Checkpoint, PayloadsWithoutPlacesAreRefused) {
     std::string bytes = payload();
     const std::string known = bytes_of(place);
     bytes.replace(bytes.find(known), known.size(), bytes_of(Vector3{place.x, bad, place.z}));
-    expect_refused(with_payload(bytes), "a sphere that is not near it");
+    expect_refused(with_payload(bytes), "a sphere far outside its cell");
     bytes = payload();
     const std::string cell = bytes_of(gradient);
     bytes.replace(bytes.find(cell), cell.size(),
                   bytes_of(Matrix3{Vector3{-1, 0, 0}, Vector3{bad, 0, 0}, Vector3{}}));
-    expect_refused(with_payload(bytes), "has a cell without volume");
+    expect_refused(with_payload(bytes), "has a cell that has no volume");
   }
   // Flat, and tilted by a hundred edges: in both a hundred images are as near as one in a cube.
   for (const Matrix3& thin : {Matrix3{Vector3{}, Vector3{0, -0.99, 0}, Vector3{}},

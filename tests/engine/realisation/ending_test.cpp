@@ -4,7 +4,7 @@
 #include "contract/durable_file.h"
 #include "contract/provenance.h"
 #include "contract/sha256.h"
-#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/job.h"
 #include "tests/engine/small_scene.h"
 #include "tests/engine/temporary_folder.h"
@@ -87,7 +87,7 @@ TEST_F(EndingOfAJob, NonFinite) {
     expect_saved_state(result, patch);
     ADD_FAILURE() << "it was read";
   } catch (const CheckpointError& error) {
-    EXPECT_NE(std::string(error.what()).find("a sphere that is not near it"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("a sphere far outside its cell"), std::string::npos)
         << error.what();
   }
 }

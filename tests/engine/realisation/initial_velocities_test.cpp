@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/simulation.h"
 #include "tests/engine/small_scene.h"
 

@@ -4,7 +4,7 @@
 
 #include "engine/integrators/stability.h"
 #include "engine/kernels/pair_recipes.h"
-#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/packing.h"
 #include "engine/realisation/simulation.h"
 #include "tests/engine/small_scene.h"

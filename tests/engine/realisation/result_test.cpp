@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "engine/forces/configuration.h"
-#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "tests/engine/every_image.h"
 #include "tests/engine/realisation/small_result.h"
 #include "tests/engine/small_scene.h"

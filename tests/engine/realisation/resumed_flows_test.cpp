@@ -2,7 +2,7 @@
 // threads.
 #include <gtest/gtest.h>
 
-#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/simulation.h"
 #include "tests/engine/small_scene.h"
 

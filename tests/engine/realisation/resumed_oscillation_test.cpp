@@ -1,7 +1,7 @@
 // A run of an oscillating shear that was cut and resumed ends in the same bits as one that was not.
 #include <gtest/gtest.h>
 
-#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/simulation.h"
 #include "tests/engine/small_scene.h"
 

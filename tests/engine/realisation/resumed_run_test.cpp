@@ -4,7 +4,7 @@
 #include <map>
 #include <memory>
 
-#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/checkpoint.h"
 #include "engine/realisation/job.h"
 #include "tests/engine/small_scene.h"

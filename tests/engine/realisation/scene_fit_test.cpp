@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "contract/errors.h"
-#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/job.h"
 #include "engine/realisation/packing.h"
 #include "engine/realisation/schedule.h"

@@ -5,7 +5,7 @@
 #include "contract/durable_file.h"
 #include "contract/errors.h"
 #include "contract/sha256.h"
-#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/growing_file.h"
 #include "engine/realisation/job.h"
 #include "engine/realisation/packing.h"

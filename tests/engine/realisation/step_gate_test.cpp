@@ -4,7 +4,7 @@
 
 #include "engine/integrators/stability.h"
 #include "engine/integrators/velocity_verlet.h"
-#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/job.h"
 #include "tests/engine/small_scene.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "engine/integrators/integrator.h"
-#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/driver.h"
 #include "engine/terms/keyed_random.h"
 #include "tests/engine/small_scene.h"

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/driver.h"
 #include "engine/realisation/result.h"
 #include "engine/realisation/simulation.h"

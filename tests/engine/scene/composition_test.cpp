@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "engine/integrators/derived_groups.h"
-#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/packing.h"
 #include "engine/scene/scene.h"
 

@@ -5,7 +5,7 @@
 
 #include "engine/flow/controlled_shear.h"
 #include "engine/integrators/derived_groups.h"
-#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/schedule.h"
 #include "engine/scene/scene.h"
 #include "tests/engine/small_scene.h"

@@ -5,7 +5,7 @@
 
 #include "contract/errors.h"
 #include "engine/flow/flow_kind.h"
-#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/scene/scene.h"
 #include "tests/engine/small_scene.h"
 

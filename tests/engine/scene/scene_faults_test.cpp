@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "contract/errors.h"
-#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/scene/scene.h"
 
 namespace peclet::engine {

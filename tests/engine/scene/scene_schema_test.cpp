@@ -4,7 +4,7 @@
 #include "contract/durable_file.h"
 #include "contract/errors.h"
 #include "engine/forces/configuration.h"
-#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/scene/scene.h"
 
 namespace peclet::engine {

@@ -8,7 +8,7 @@
 #include "contract/durable_file.h"
 #include "contract/errors.h"
 #include "contract/json.h"
-#include "engine/observables/observable.h"
+#include "engine/observables/scene_reading.h"
 #include "engine/realisation/schedule.h"
 #include "engine/scene/measured_sizes.h"
 #include "tests/engine/small_scene.h"

@@ -126,7 +126,7 @@ TEST_F(GsdSnapshot, OfWhatTheSchemaForbidsIsRefused) {
            frames.add("log/bonds/normal_force", std::vector<float>{3});
            frames.add("log/bonds/tangential_force", std::vector<float>{4});
          }),
-         "contact of 0 and 2: forces 3 and 4: must be of two spheres below 2");
+         "contact of 0 and 2: forces 3 and 4: must be of two different spheres below 2");
   expect(
       [](Frames& frames, int) {
         frames.add("configuration/box", std::vector<float>{10, -20, 40, 0, 0, 0});
