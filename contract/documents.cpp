@@ -81,9 +81,10 @@ constexpr const char* result_rows = R"(
 /gate/largest_stability_share? | number >= 0 | Largest share of the method's range of stable steps that the
     step used, over all checks; unstable from 1 on.
 /gate/energy_imbalance? | number or null | Energy error of the finite step over the work of the flow; null
-    without flow and with noise.
+    without steady flow and with noise.
 /gate/half_step_difference? | number or null | Pair stress with whole steps over the one with half steps, less
-    1, on samples; null without flow, with noise and in windows below 10000 explicit or 100 implicit steps.
+    1, on samples; null without steady flow, with noise and in windows below 10000 explicit or 100 implicit
+    steps.
 /gate/solver? | object or null | Accuracy of the solver of implicit steps; null with explicit steps.
 /gate/solver/iterations_per_step | number >= 0 | Mean number of conjugate-gradient iterations in the
     production window.
