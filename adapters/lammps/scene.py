@@ -26,7 +26,7 @@ class Chunk:
 
 @dataclasses.dataclass(frozen=True)
 class Observable:
-    """Where the value of an observable comes from."""
+    """Source of the value of an observable."""
 
     column: str  # of the thermo output
     take: str  # "mean" over the production window, or "last"

@@ -46,11 +46,11 @@ class Law:
     """A fitted law. Pairs are a number and its standard error, which is 0 for given numbers."""
 
     phi_m: tuple
-    interval: tuple  # of 95 %
+    interval: tuple  # 95 % interval of phi_m
     exponent: tuple  # beta
     prefactor: tuple  # A
     chi_squared: float
-    degrees: int  # of freedom: points less parameters
+    degrees: int  # degrees of freedom: points less parameters
 
 
 @dataclasses.dataclass
@@ -93,7 +93,7 @@ def weights_of(points):
 def lowest(function, low, high):
     """Returns place and value of the minimum, between low and high (rows,), of a function of arrays (rows, places)."""
     rows = np.arange(len(low))
-    for _ in range(6):  # each a tenth as wide
+    for _ in range(6):  # each round has a tenth of the width
         places = np.linspace(low, high, 21, axis=-1)
         values = function(places)
         at = np.argmin(values, axis=-1)
@@ -106,7 +106,7 @@ def crossing(function, inside, outside, bound):
 
     The function must exceed the bound at `outside`.
     """
-    for _ in range(8):  # each a twentieth as wide
+    for _ in range(8):  # each round has a twentieth of the width
         places = np.linspace(inside, outside, 21)
         beyond = np.argmax(function(places) > bound)
         inside, outside = places[max(beyond - 1, 0)], places[beyond]
@@ -326,7 +326,7 @@ def is_found(answer):
 class Steepest:
     """The jamming point by the steepest rise of a curve."""
 
-    phi_m: tuple  # middle of the interval of the grid where the slope is largest, and its standard error
+    phi_m: tuple  # middle of the interval with the largest slope, and its standard error
     width: float  # of that interval
     to_jammed: bool = False  # it lies between the last point that flows and the first one that is jammed
 

@@ -310,7 +310,7 @@ class Results:
         axes = axes or pyplot.subplots(figsize=(4.5, 3.4), layout="constrained")[1]
         draw_panel(axes, figure, figure["panels"][0])
         if not figure["x"]["categories"]:
-            axes.autoscale()  # with what else is drawn there
+            axes.autoscale()  # includes other curves in these axes
         handles = legend_of(figure)
         for handle in handles:
             axes.add_line(handle)
