@@ -24,8 +24,7 @@ class Descriptor {
   ~Descriptor();
 
   int number() const { return number_; }
-  // Closes the descriptor now and returns the result of close(2), which on some file systems reports late
-  // write errors.
+  // Returns the result of close(2), which on some file systems reports late write errors.
   int close();
   // Hands the descriptor over to the caller, who closes it.
   int take() { return std::exchange(number_, -1); }
@@ -89,12 +88,10 @@ void write_durably(const std::filesystem::path& path, const std::function<std::s
 // memory. Throws as write_durably().
 void copy_durably(int from, std::uint64_t bytes, const std::filesystem::path& path);
 
-// Renames a file that another program has written, after its bytes are on disk. Throws std::system_error
-// naming the path.
+// Renames a file of another program after its bytes are on disk. Throws std::system_error naming the path.
 void rename_durably(const std::filesystem::path& from, const std::filesystem::path& to);
 
-// Makes a folder and its missing parents, which survive a power cut. Throws NoRoomError, or std::system_error
-// naming the path.
+// Makes a folder and its missing parents durably. Throws NoRoomError, or std::system_error naming the path.
 void create_folders_durably(const std::filesystem::path& path);
 
 // Returns the first of PATH, PATH.1, PATH.2 ... that does not exist, not even as a dangling link.

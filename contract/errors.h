@@ -32,8 +32,7 @@ class InputError : public std::runtime_error {
   const std::string& value() const { return parts_.value; }
   const std::string& allowed() const { return parts_.allowed; }
 
-  // Returns this fault as seen from `file`, which embeds the document at `prefix`: the pointer of the fault
-  // begins with `prefix`.
+  // Returns this fault for a `file` that embeds the document at the JSON pointer `prefix`.
   InputError within(const std::string& file, const std::string& prefix) const;
 
  private:
@@ -42,8 +41,7 @@ class InputError : public std::runtime_error {
   Parts parts_;
 };
 
-// Stored data, or an engine's answer about them, are damaged or inconsistent. Programs print what() and leave
-// with exit code 6.
+// Stored data, or an engine's answer about them, are damaged or inconsistent. Programs leave with code 6.
 class IntegrityError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

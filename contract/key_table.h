@@ -1,5 +1,4 @@
-// A typed table of the keys of a JSON document. It validates the document, fills in its defaults, and prints
-// its JSON Schema and its table in the manual.
+// A typed table of the keys of a JSON document: validates it, fills in defaults, prints its JSON Schema.
 //
 // A table is text with a row for each key: pointer, allowed values, meaning. Indented lines continue a row.
 //

@@ -94,8 +94,7 @@ void drop_part_of_word(std::vector<std::string>& shown) {
   if (blank != shown.rbegin() + most) shown.erase(blank.base(), shown.end());
 }
 
-// Returns the optimal string alignment distance: Levenshtein's distance, in which two swapped neighbours are
-// one mistake.
+// Returns the optimal string alignment distance: Levenshtein's, with a swap of neighbours as one mistake.
 std::size_t mistakes_between(std::string_view one, std::string_view other) {
   std::vector<std::size_t> before_last, last(other.size() + 1), now(other.size() + 1);
   for (std::size_t j = 0; j <= other.size(); ++j) last[j] = j;

@@ -79,8 +79,7 @@ std::string superfluous(const std::string& word) {
   return word.starts_with("-") ? word + ": there is no such option" : word + ": is one word too many";
 }
 
-// Returns what is wrong, by the parser's class of fault. Other classes keep the parser's text, which names
-// what is allowed.
+// Returns what is wrong, by the parser's class of fault; for other classes the parser's text.
 std::string reason(const CLI::App& verb, const CLI::ParseError& fault) {
   std::string said = fault.what();
   if (dynamic_cast<const CLI::RequiredError*>(&fault) != nullptr)

@@ -47,8 +47,7 @@ struct RunOptions {
   bool quiet = false;
 };
 
-// Returns a check for whole numbers. The parser's own would read "-1" as the largest number, and its message
-// does not say what is allowed.
+// Returns a check for whole numbers; the parser's own would read "-1" as the largest number.
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
   return {[least, most](const std::string& text) {
             std::uint64_t number = 0;

@@ -75,7 +75,6 @@ def summaries():
 
 
 def table(studies):
-    """Returns the list as text."""
     rows = [("study", "verdict", "statements that hold", "checks passed", "CPU h", "made", "older than")]
     for study in studies:
         numbers = ["-"] * 4

@@ -83,7 +83,6 @@ class Realisation:
         self.folder = folder
 
     def steps(self, phase=None):
-        """Returns the number of steps made, in all or in one phase."""
         return sum(chunk.steps for chunk in self.chunks[: self.number] if phase in (None, chunk.phase))
 
     def cost(self):
@@ -116,7 +115,6 @@ class Realisation:
             print(f"{self.job['checkpoint']}: {error}; the realisation starts from the beginning", flush=True)
 
     def save(self):
-        """Writes the checkpoint durably."""
         heading = {
             "point": self.job["point"],
             "seed": self.job["seed"],
@@ -213,8 +211,6 @@ def take_restart(folder, name):
 
 
 class NoSuchColumn(lammps.LammpsError):
-    """The thermo output lacks the column of an observable."""
-
     def __init__(self, name, column, columns):
         self.name, self.column, self.columns = name, column, columns
         super().__init__(f"observable {name}: no column {column} in the thermo output; there are {', '.join(columns)}")

@@ -26,8 +26,6 @@ class Chunk:
 
 @dataclasses.dataclass(frozen=True)
 class Observable:
-    """Source of the value of an observable."""
-
     column: str  # of the thermo output
     take: str  # "mean" over the production window, or "last"
 
@@ -102,7 +100,6 @@ def read_variables(variables):
 
 
 def read_observables(observables):
-    """Returns the observables by name. Raises Refused."""
     if not isinstance(observables, dict) or not observables:
         refuse("/observables", observables, "must be an object with one observable or more")
     read = {}

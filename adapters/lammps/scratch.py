@@ -40,7 +40,6 @@ def folder_with(files):
 
 
 def remove_left_folders():
-    """Removes the folders that dead processes have left."""
     parent = tempfile.gettempdir()
     for name in os.listdir(parent):
         path = os.path.join(parent, name)

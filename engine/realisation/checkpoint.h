@@ -27,8 +27,7 @@ struct CheckpointIdentity {
   friend bool operator==(const CheckpointIdentity&, const CheckpointIdentity&) = default;
 };
 
-// Returns the SHA-256 of everything that steps depend on: the size of the step, and the scene without
-// durations, observables and files.
+// Returns the SHA-256 of the scene without durations, observables and files, and of the size of the step.
 std::string motion_of(const Scene& scene, const Schedule& schedule);
 
 // The file is not a checkpoint, truncated, altered, or of another version, scene, seed or binary.
@@ -37,7 +36,6 @@ class CheckpointError : public IntegrityError {
   using IntegrityError::IntegrityError;
 };
 
-// Time spent on a realisation.
 struct Spent {
   double processor_seconds = 0, wall_seconds = 0;
 };
@@ -62,8 +60,7 @@ struct Progressed {
 Progressed read_progress(const std::filesystem::path& path, const CheckpointIdentity& identity,
                          std::size_t particles);
 
-// Restores the motion from a checkpoint as in read_progress(), without its measurements. Throws
-// CheckpointError naming the file and the fault.
+// Restores the motion from such a checkpoint, without its measurements. Throws as read_progress().
 void extend_checkpoint(const std::filesystem::path& path, const CheckpointIdentity& identity,
                        Simulation& simulation);
 

@@ -143,8 +143,7 @@ void StressControl::find_inertia(Integrator& integrator, System& system) {
   inertia_ = response_ * (slope_ + solvent_);
 }
 
-// Friction of pairs and solvent acts half at the old and half at the new rate. The slope gives the pair
-// stress at the new rate.
+// Friction acts half at the old and half at the new rate; the slope gives the pair stress at the new rate.
 StepReport StressControl::advance_with_inertia(Integrator& integrator, System& system, PairWatcher* watcher) {
   if (inertia_ == 0 || std::has_single_bit(system.step)) find_inertia(integrator, system);
   const double volume = system.box.volume();

@@ -30,7 +30,6 @@ class Driver {
   }
   // Counts the strain of the production window from here on.
   virtual void begin_window(const System& /*system*/) {}
-  // Returns the strains up to now.
   virtual Strains strains(const System& system, const Schedule& schedule) const = 0;
 
   virtual void save(ArchiveWriter& /*archive*/) const {}
@@ -60,8 +59,8 @@ std::unique_ptr<Driver> make_driver(Scene& scene, double timestep, std::uint64_t
 // periodic cell. The response time t_r is the time of a strain of 0.05, at least 5 and at most 20 steps. M is
 // measured before the first step and at the steps 1, 2, 4, 8 ...
 //
-// When the rate changes, the spheres change their velocities with the flow (integrators/integrator.h), so
-// that forces do not depend on the origin.
+// When the rate changes, velocities of spheres change with the flow (integrators/integrator.h): forces do not
+// depend on the origin.
 class StressControl final : public Driver {
  public:
   // `shear` must be the flow of the integrator's physics.
@@ -71,8 +70,7 @@ class StressControl final : public Driver {
   void start(const System& system) override { wait_from(system); }
   // Makes one step and completes it.
   StepReport advance(Integrator& integrator, System& system, PairWatcher* watcher) override;
-  // Moves the window to the present step if the system jams before it; ends the realisation if the system
-  // jams in the window.
+  // If the system jams before the window, the window begins now; if in the window, the realisation ends.
   std::optional<Ending> ending(const System& system, Schedule& schedule) override;
   void begin_window(const System& system) override { strain_at_window_ = system.box.strain(); }
   // Returns net strains.
@@ -92,10 +90,8 @@ class StressControl final : public Driver {
   bool has_jammed(const System& system);
   // Restarts the waiting time for `least_strain`.
   void wait_from(const System& system);
-  // Makes one step at this rate.
   StepReport step(Integrator& integrator, System& system, double rate);
-  // Returns the stress sigma_xy of a step without solvent and stresslets: the sum of the reported terms, and
-  // with noise the stress that acts on the strain.
+  // Returns sigma_xy of a step without solvent and stresslets; with noise the stress that acts on the strain.
   double stress_of_pairs(const StepReport& report, const System& system) const;
 
   std::shared_ptr<ControlledShear> shear_;

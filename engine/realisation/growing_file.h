@@ -30,8 +30,7 @@ class GrowingFile {
   // Waits until all written bytes are on disk.
   void synchronise() const;
 
-  // Replaces `target` by the whole file, durably. Throws NoRoomError, std::system_error, and IntegrityError
-  // if a frame is absent or altered.
+  // Replaces `target` by the whole file, durably. Throws NoRoomError, std::system_error, IntegrityError.
   void finish(const gsd::Frames& frames, const std::filesystem::path& target) const;
 
  private:

@@ -26,8 +26,7 @@ namespace fs = std::filesystem;
 
 using Clock = std::chrono::steady_clock;
 
-// With fewer particles per thread, threads lose more by waiting than they gain. The result does not depend on
-// the number of threads.
+// With fewer particles per thread, threads lose more by waiting than they gain; results do not change.
 constexpr std::size_t fewest_particles_per_thread = 4000;
 
 // Delay before a checkpoint that did not fit onto the disk is tried again [s].
@@ -298,8 +297,7 @@ class Job {
     return write_patiently([&] { put_checkpoint(path); });
   }
 
-  // Saves the last state of a realisation that broke off as `name` in the folder of failures, for people to
-  // inspect. Returns false as write_patiently().
+  // Saves the last state of a realisation that broke off as `name`. Returns false as write_patiently().
   bool save_state(const Ending& ending, std::string& name) {
     if (is_measured(ending.cause) || job_.failures.empty()) return true;
     name = job_.header.point.substr(0, 12) + "-" + std::to_string(job_.header.seed) + ".state";

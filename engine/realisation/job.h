@@ -11,7 +11,7 @@
 
 namespace peclet::engine {
 
-// What to run, and where its files are.
+// Scene, seed, settings and files of a job.
 struct JobSpecification {
   ResultHeader header;
   Json scene;
@@ -52,8 +52,7 @@ struct JobEvents {
 // full, the previous one. Throws InputError, CheckpointError, std::system_error.
 std::optional<Json> run_job(const JobSpecification& job, const JobEvents& events);
 
-// Answers frames on `descriptor` until the peer closes it or sends drain or stop. Returns the exit code.
-// schema/README.md lists the messages.
+// Answers frames (schema/README.md) until the peer leaves or sends drain or stop. Returns the exit code.
 int serve(int descriptor);
 
 }  // namespace peclet::engine

@@ -20,8 +20,7 @@
 namespace peclet::engine {
 namespace {
 
-// Relative tolerance of lengths: half of the sixth digit of a number that begins with 1, because files of
-// other programs have six digits.
+// Relative tolerance of lengths in files with six digits: half of the sixth digit of 1.00000.
 constexpr double rounding = 5e-6;
 
 bool is_near(double a, double b, double scale) { return std::abs(a - b) <= rounding * scale; }

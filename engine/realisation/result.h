@@ -17,8 +17,8 @@ struct ResultHeader {
 };
 
 // Returns the result: means over the production window and over its blocks. Stresses are in units of
-// viscosity * shear_rate, or in the scene's units if the rate is zero. "mean" and "blocks" are null unless
-// the window is complete or the flow has jammed.
+// viscosity * shear_rate, or of the scene if the rate is zero. Unless the window is complete or the flow has
+// jammed, "mean" and "blocks" are null.
 Json make_result(const ResultHeader& header, const Scene& scene, const Simulation& simulation,
                  const Ending& ending, const std::string& saved_state, const Spent& spent);
 
@@ -30,8 +30,8 @@ Json make_unpacked_result(const ResultHeader& header, const Scene& scene, const 
 // undefined in a configuration, such as friction without a contact.
 std::vector<std::string> names_of_targets(const Scene& scene, const Schedule& schedule);
 
-// Returns advice about targets that the results do not have: by name, valid also for names below it, the rest
-// of a sentence that begins with the name.
+// Returns advice about targets that results do not have, by name. Each is the rest of a sentence that begins
+// with the name, and is also valid for names below it.
 Json target_hints(const Scene& scene);
 
 // Returns the provenance of this engine, with the instruction set that its results depend on.

@@ -24,8 +24,7 @@ constexpr double least_steps_of_cycle = 128;
 // Largest number of steps of a phase: thousands of years of computing. Step counters hold far more.
 constexpr double most_steps = 1e15;
 
-// Returns the number of steps of the phase called `name`, which begins at time `from`. Throws InputError if
-// it has too many.
+// Returns the steps of the phase `name`, which begins at time `from`. Throws InputError if they are too many.
 std::uint64_t steps_of(const Duration& duration, double from, const char* name, const Scene& scene,
                        double timestep, const std::string& file) {
   // A duration that is a whole number of steps must not gain one by rounding.

@@ -41,9 +41,8 @@ inline bool is_measured(Ending::Cause cause) { return has_results(name_of(cause)
 std::optional<Ending> ending_of(const StepReport& report, const System& system, const Guard& guard,
                                 double smallest_radius);
 
-// Checks that spheres, box and observables of a scene are compatible, without placing a sphere; takes
-// milliseconds. Throws InputError if a species has no sphere, the box is smaller than the range of the
-// forces, or an observable does not fit.
+// Checks a scene in milliseconds, without placing spheres. Throws InputError if a species has no sphere, the
+// box is smaller than the range of the forces, or an observable does not fit.
 void check_fit(const Scene& scene, const Schedule& schedule, const std::string& file);
 
 }  // namespace peclet::engine

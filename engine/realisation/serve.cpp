@@ -40,7 +40,6 @@ void log_line(const std::string& text) {
   std::fflush(stderr);
 }
 
-// Answers the messages of one runner.
 class Worker {
  public:
   explicit Worker(int descriptor) : channel_(descriptor) {}
@@ -146,8 +145,7 @@ class Worker {
     leave_ = leave_ || abandoned_;
   }
 
-  // Writes the result and reports it. Returns false if the disk was full until the engine had to leave; the
-  // seed will be run again.
+  // Writes and reports the result. Returns false if the disk was full until the engine had to leave.
   bool deliver(const Json& id, const Json& result, const std::string& spool) {
     const std::string text = result_text(result);
     for (;;) {

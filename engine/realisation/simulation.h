@@ -42,8 +42,7 @@ class Simulation {
   // std::invalid_argument if the number of particles differs.
   void start(const System& placed, bool in_motion = true);
 
-  // Makes up to `steps` steps. Returns the ending once the realisation has ended, also if the packing has
-  // become too stiff for the step.
+  // Makes up to `steps` steps; returns the ending once the realisation has ended.
   std::optional<Ending> advance(std::uint64_t steps);
 
   const System& system() const { return system_; }
@@ -72,8 +71,7 @@ class Simulation {
   void begin();
   void load_system(ArchiveReader& archive);
   PairWatcher* watchers_of_step();
-  // Called before each step. Returns the ending if the packing has become too stiff for the step. Checks this
-  // at the first step and every few thousand.
+  // Returns the ending if the packing is too stiff for the step; checks at the first and every few thousand.
   std::optional<Ending> check_stability();
   void observe(const StepReport& report);
   // Returns the interval, shortened to a block of the production window, so that each block has samples.

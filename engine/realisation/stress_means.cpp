@@ -102,8 +102,7 @@ void StressMeans::add_scalars() {
 
 // Adds the quantities of a flow at a given stress. The rate of a jammed suspension is 0, even if it strained
 // before. The mean of `flowing` over seeds is the share that flows to the end; it is null if the window is
-// too short to detect a jam. Over seeds a viscosity is stress over mean rate, never a mean of stress over
-// rate.
+// too short to detect a jam. Over seeds a viscosity is stress over mean rate.
 void StressMeans::add_flow(double stress, bool notices_jams) {
   const auto rate = [](const Measured& of) {
     return of.has_jammed ? 0 : of.sums.shear_rate / static_cast<double>(of.sums.planned);

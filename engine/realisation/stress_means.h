@@ -12,25 +12,21 @@
 
 namespace peclet::engine {
 
-// The quantities that every result has.
 class StressMeans {
  public:
   explicit StressMeans(const Scene& scene);
   StressMeans(const StressMeans&) = delete;
   StressMeans& operator=(const StressMeans&) = delete;
 
-  // Returns descriptions of the numbers of means().
   std::vector<Quantity> quantities() const;
 
   // Returns the means of these sums. Stresses are in units of viscosity * shear_rate, or of the scene at
   // rest. `has_jammed`: the suspension has jammed at a given stress.
   Json means(const System& system, const BlockSums& sums, bool has_jammed = false) const;
-  // Returns the block means in five digits: 32 for scalars and for xy of every stress that fluctuates, the
-  // four quarters of the window for tensors.
+  // Returns block means in five digits: 32 of scalars and of xy of fluctuating stresses, quarters of tensors.
   Json blocks(const System& system, const Production& production) const;
 
  private:
-  // Input of the means.
   struct Measured {
     const BlockSums& sums;
     double volume, volume_fraction, particles;

@@ -127,8 +127,6 @@ def measure(program):
 
 
 class Tables:
-    """The tables of this study."""
-
     def __init__(self):
         self.flows = {r["flow"]: r for r in read_rows(HERE / "flows.csv")}
         self.uniform = read_rows(HERE / "uniform.csv")

@@ -62,7 +62,6 @@ class Point(dict):
         return len(self["realisations"]) - len(self.results)
 
     def by_seed(self, quantity="relative_viscosity"):
-        """Returns the values of a quantity by seed."""
         return {result["seed"]: result["mean"][quantity] for result in self.results}
 
     def measured(self, quantity, *element):

@@ -14,7 +14,6 @@ from studies.verdicts import rewrite, tables_of, verdict
 
 
 def processor():
-    """Returns the name of the processor."""
     with open("/proc/cpuinfo") as f:
         names = [line.split(":", 1)[1].strip() for line in f if line.startswith("model name")]
     return names[0] if names else platform.processor()

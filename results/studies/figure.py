@@ -206,7 +206,6 @@ class Figure:
         return panel
 
     def draw(self):
-        """Writes the figure."""
         for panel in self._panels:
             panel.finish()
         self._figure.savefig(self._path, dpi=DPI, metadata={"Software": None})

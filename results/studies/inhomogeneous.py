@@ -32,7 +32,6 @@ SCENE = merged(
 
 
 def wave(sine, periods=1, cosine=0):
-    """Returns a wave as scenes have it."""
     return {"periods": periods, "sine": sine, "cosine": cosine}
 
 
@@ -87,7 +86,6 @@ class Driving:
         return self.driving(fine).reshape(self.bins, 20).mean(axis=1)
 
     def largest_rate(self):
-        """Returns the largest shear rate of the driving flow."""
         y = np.linspace(0, self.height, 2001)
         return float(np.max(np.abs(np.gradient(self.driving(y), y))))
 
@@ -134,7 +132,6 @@ class Flow(Driving):
         self.count = round(fraction * width**2 * height / MEAN_VOLUME)
 
     def settings(self):
-        """Returns the settings of a campaign, values by JSON pointer."""
         rate = self.largest_rate()
         return {
             "/particles/count": self.count,
@@ -186,7 +183,6 @@ FLOWS = FIGURE + TRAINING + PUBLISHED + UNSEEN + OTHER + BEYOND
 
 
 def heights(flow):
-    """Returns the heights y of the middles of the bins."""
     return (np.arange(flow.bins) + 0.5) * flow.height / flow.bins
 
 

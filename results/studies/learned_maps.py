@@ -37,7 +37,6 @@ def bins_by_flow(path):
 
 
 def joined(*tables):
-    """Returns one table with the rows of several."""
     return {name: np.concatenate([table[name] for table in tables]) for name in NAMES}
 
 
@@ -155,7 +154,6 @@ ERRORS += ["outside", *(f"{what} floor" for what in (*TESTED, "left out"))]
 
 
 def fitted(tables, method, inputs, output):
-    """Returns a method fitted to the training flows."""
     return METHODS[method](inputs, output).fit(together(tables, TRAINING))
 
 

@@ -24,7 +24,6 @@ SEED = 1
 
 
 def columns_of_rows(rows, names):
-    """Returns the table of these columns of rows."""
     return {name: np.array([row[name] for row in rows], float) for name in names}
 
 
@@ -165,13 +164,11 @@ class OfStressAlone(Method):
 
 
 def gaussian_process(count):
-    """Returns a Gaussian process of `count` inputs."""
     kernel = ConstantKernel(1.0) * RBF(np.ones(count), (0.05, 50)) + WhiteKernel(1e-2, (1e-6, 1))
     return GaussianProcessRegressor(kernel, random_state=SEED)
 
 
 def boosted(**settings):
-    """Returns an XGBoost regressor with our settings, some replaced."""
     chosen = {"n_estimators": 300, "max_depth": 3, "learning_rate": 0.05, "subsample": 0.8, "reg_lambda": 5.0}
     return XGBRegressor(objective="reg:squarederror", random_state=SEED, n_jobs=1, **{**chosen, **settings})
 

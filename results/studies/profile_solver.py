@@ -41,7 +41,6 @@ def velocity_of(driving, fraction, viscosity, width):
 
 
 def rates_of(velocity, width):
-    """Returns du/dy by central differences."""
     return (np.roll(velocity, -1) - np.roll(velocity, 1)) / (2 * width)
 
 

@@ -51,7 +51,6 @@ def write_numbers(path, numbers):
 
 
 def read_numbers(path):
-    """Returns what write_numbers() has written."""
     return {r["name"]: (r["value"], r["standard_error"], r["degrees"]) for r in read_rows(path)}
 
 

@@ -89,8 +89,6 @@ class Row:
 
 
 class Finding(Row):
-    """A number without a bound."""
-
     kind = "finding"
 
 
@@ -181,7 +179,6 @@ def with_failed_checks(text, rows):
 
 
 def verdict(rows):
-    """Returns the verdict of a study, with failed checks."""
     return with_failed_checks(verdict_of_statements(rows), rows)
 
 

@@ -104,7 +104,6 @@ def scattered(source):
 
 
 def sql_elsewhere(source):
-    """Yields lines with SQL outside of runner/store."""
     for path in sources(source, "runner"):
         if os.path.dirname(path) != "runner/store":
             for number, line in enumerate(read(source, path).splitlines(), 1):
@@ -113,7 +112,6 @@ def sql_elsewhere(source):
 
 
 def long_files(source):
-    """Yields remarks about files of more than LONG lines."""
     for top in ("contract", *PROGRAMS):
         for path in sources(source, top):
             lines = read(source, path).count("\n")

@@ -17,7 +17,6 @@ CHECKS = "--checks=-bugprone-suspicious-include"
 
 
 def look_through(build, path):
-    """Returns the exit code and the output of clang-tidy for one file."""
     done = subprocess.run(
         ["clang-tidy", "--quiet", CHECKS, "-p", build, path], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )

@@ -28,7 +28,6 @@ FORM = "cmake --preset release && ctest --preset release -R Format.OfCxx --no-te
 
 
 def test(body):
-    """Returns the source of a test with this body."""
     return "\n#include <cassert>\nTEST(Violation, IsSeen) {\n" + body + "\n}\n"
 
 
@@ -55,7 +54,6 @@ VIOLATIONS = {
 
 
 def run(command, folder):
-    """Returns the exit code and the output of a shell command in a folder."""
     done = subprocess.run(
         ["bash", "-c", command], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False
     )
