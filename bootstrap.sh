@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Sets the project up on Debian 12 and shows it at work. Asks nothing; may be repeated at any time.
+# Sets the project up on Debian 12 and runs it. Asks no questions; may be repeated at any time.
 #
-#   ./bootstrap.sh demo     install what building needs, build, run the demonstration campaign, print its table
-#   ./bootstrap.sh package  the same, and make a .tar.gz for any Linux and a .deb of it
-#   ./bootstrap.sh test     install the packages, build, run every test but the slow ones
-#   ./bootstrap.sh sanitize run the tests of contract/ and runner/, and what reads files of spheres, with sanitizers
-#   ./bootstrap.sh tidy     look through the whole source with clang-tidy; with --programs leave out the tests
-#   ./bootstrap.sh lint     the same, after the form of C++ and Python
+#   ./bootstrap.sh demo     install the packages, build, run the demonstration campaign, print its table
+#   ./bootstrap.sh package  install the packages, build, make a .tar.gz for any Linux and a .deb
+#   ./bootstrap.sh test     install the packages, build, run all tests except the slow ones
+#   ./bootstrap.sh sanitize run the tests of contract/ and runner/, and the reader of sphere files, with sanitizers
+#   ./bootstrap.sh tidy     run clang-tidy on the whole source; with --programs leave out the tests
+#   ./bootstrap.sh lint     check the format of C++ and Python, then run clang-tidy
 #   ./bootstrap.sh deps     install the packages only
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
@@ -19,15 +19,15 @@ to_build=(
 to_package=(help2man)  # manual pages
 to_test=(
   libgtest-dev python3 python3-jsonschema sqlite3 libfaketime
-  groff-base systemd                                                      # read manual pages and the unit
-  lammps openmpi-bin                                                      # another engine, which tests run, also with MPI
-  slurm-wlm munge                                                         # a Slurm to be tested with
+  groff-base systemd                                                      # check manual pages and the unit
+  lammps openmpi-bin                                                      # another engine, also with MPI
+  slurm-wlm munge                                                         # a batch system
   chromium                                                                # opens the page of a report
-  python3-numpy python3-scipy python3-matplotlib                          # numbers and pictures of the studies
+  python3-numpy python3-scipy python3-matplotlib                          # numbers and figures of the studies
   python3-xgboost python3-sklearn                                         # maps between local quantities
   python3-pandas python3-pip python3-setuptools python3-wheel             # the Python package
-  python3-gsd python3-pil                                                 # other readers of trajectories and of pictures
-  clang-format black flake8                                               # the form of the sources
+  python3-gsd python3-pil                                                 # read trajectories and pictures
+  clang-format black flake8                                               # the format of the sources
 )
 to_lint=(clang-tidy)
 
@@ -44,7 +44,7 @@ deps() {
   fi
   local root=()
   if [ "$(id -u)" -ne 0 ]; then
-    # Without a terminal to ask on, sudo must be allowed already.
+    # sudo must work without a password, because there may be no terminal.
     command -v sudo >/dev/null && sudo -n true 2>/dev/null || {
       echo "bootstrap.sh: these packages are missing and need root or passwordless sudo: ${missing[*]}" >&2
       exit 1
@@ -62,18 +62,18 @@ build() {
   shift
   say "Building the release programs into build/release"
   local options=(-DBUILD_TESTING="$tests")
-  [ "$tests" = OFF ] || options+=(-DPECLET_EVERY_TEST=ON)  # all that tests need is installed
+  [ "$tests" = OFF ] || options+=(-DPECLET_EVERY_TEST=ON)  # the packages for all tests are installed
   cmake --preset release "${options[@]}" >/dev/null
   cmake --build --preset release "$@"
 }
 
 demo() {
   build OFF --target peclet peclet-engine
-  # A campaign belongs to the engine that computed it: another build starts another one.
+  # A campaign belongs to its engine, so that another build has another campaign.
   local folder
   folder=build/demo-$(sha256sum build/release/bin/peclet-engine | cut -c1-12).peclet
   say "Running results/demo/campaign.json into $folder (three Péclet numbers, ten seeds or more each; seconds)"
-  echo "   Stop it with Ctrl-C and start again: it goes on where it was."
+  echo "   Stop it with Ctrl-C and start it again: it continues."
   build/release/bin/peclet run results/demo/campaign.json --directory "$folder"
 }
 
@@ -92,10 +92,10 @@ run_tests() {
   ctest --preset release --parallel 2 -LE slow
 }
 
-# Sanitizers see what release builds do not. The engine's loops would take hours with a check at each access.
+# The tests of the engine are left out: with sanitizers its loops would take hours.
 sanitize() {
   say "Building contract/ and runner/ with sanitizers into build/asan-ubsan"
-  # Lines are all that a report needs; more take half as long again to compile.
+  # Reports need line numbers only; full debug information takes 1.5 times as long to compile.
   cmake --preset asan-ubsan -DBUILD_TESTING=ON -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1" \
     -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=10 >/dev/null
   cmake --build --preset asan-ubsan --target contract_tests runner_tests fuzz_spheres
@@ -107,7 +107,7 @@ sanitize() {
 
 tidy() {
   say "clang-tidy"
-  # A folder of its own: it may run beside a build. Sources that are generated are made first.
+  # In its own folder, so that it may run beside a build. Generates sources first.
   cmake --preset release -B build/tidy -DBUILD_TESTING=ON >/dev/null
   cmake --build build/tidy --target provenance_facts
   /usr/bin/python3 tests/house/tidy.py build/tidy "$@"
@@ -115,7 +115,7 @@ tidy() {
 
 lint() {
   build ON --target provenance_facts
-  say "Form"
+  say "Format"
   ctest --preset release -L format
   tidy
 }

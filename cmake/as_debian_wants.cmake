@@ -1,4 +1,4 @@
-# Run by CPack on what it is about to pack: names and compression that Debian's policy asks for (12.1, 12.5, 12.7).
+# CPack runs this before packing: sets names and compression according to Debian's policy (12.1, 12.5, 12.7).
 if(CPACK_GENERATOR STREQUAL "DEB")
   set(share ${CPACK_TEMPORARY_DIRECTORY}/usr/share)
   file(RENAME ${share}/doc/peclet/LICENSE ${share}/doc/peclet/copyright)

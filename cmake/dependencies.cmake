@@ -1,9 +1,8 @@
-# Everything that building and testing needs, found here and nowhere else. What is missing is named at once, with the
-# Debian package that has it.
+# Finds all dependencies of building and testing. Lists all that are missing at once, with their Debian packages.
 
 set(missing "")
 
-# package(NAME PACKAGE [ARGUMENT...]): find_package(NAME ARGUMENT...), which Debian has in PACKAGE.
+# package(NAME PACKAGE [ARGUMENT...]): calls find_package(NAME ARGUMENT...); PACKAGE is the Debian package.
 macro(package name debian)
   find_package(${name} QUIET ${ARGN})
   if(NOT ${name}_FOUND)
@@ -12,10 +11,9 @@ macro(package name debian)
 endmacro()
 
 if(PECLET_STATIC)
-  # Archives only, of the C library, too: the programs then run wherever Linux does, and their mathematical functions
-  # are the same everywhere.
+  # Only archives, also of the C library: the programs run on any Linux, with the same mathematical functions.
   set(CMAKE_FIND_LIBRARY_SUFFIXES .a)
-  # g++ keeps its archive of OpenMP where only g++ looks.
+  # The archive of OpenMP is in a folder that only g++ knows.
   execute_process(COMMAND ${CMAKE_CXX_COMPILER} -print-file-name=libgomp.a
     OUTPUT_VARIABLE libgomp OUTPUT_STRIP_TRAILING_WHITESPACE)
   set(OpenMP_gomp_LIBRARY ${libgomp} CACHE FILEPATH "libgomp as an archive")
@@ -51,18 +49,17 @@ if(missing)
   list(JOIN missing "\n  " list)
   set(cure "`./bootstrap.sh deps` installs what Debian has.")
   if(BUILD_TESTING)
-    string(APPEND cure " The tests need GTest and Python: -DBUILD_TESTING=OFF does without.")
+    string(APPEND cure " Only the tests need GTest and Python; -DBUILD_TESTING=OFF leaves them out.")
   endif()
   message(FATAL_ERROR "Not found (Debian's package):\n  ${list}\n${cure}")
 endif()
 
-# Eigen would share large products among OpenMP's threads, unasked; and files of it under another licence than the MPL
-# are refused.
+# Eigen must not divide large products among OpenMP threads, nor include files with other licences than the MPL.
 target_compile_definitions(Eigen3::Eigen INTERFACE EIGEN_DONT_PARALLELIZE EIGEN_MPL2_ONLY
   $<$<CONFIG:Release>:EIGEN_NO_DEBUG>)
 
-# Debian has fmt and spdlog as shared libraries only. Their archives are compiled here, from the headers, which hold the
-# sources; everything else is compiled as it is for the shared ones.
+# Debian has fmt and spdlog as shared libraries only. Their archives are compiled here from their headers, which have
+# the sources. All other code is compiled as for the shared libraries.
 if(PECLET_STATIC)
   foreach(library fmt spdlog)
     add_library(${library}_archive STATIC cmake/archives/${library}.cpp)

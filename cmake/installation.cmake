@@ -1,6 +1,5 @@
-# Files installed beside the programs: those that the programs look for relative to themselves
-# (own_file() in runner/store/campaign_directory.h), and those that people read. Below share/peclet everything lies as
-# it does in the source, so that links between the texts hold.
+# Installs files that the programs find relative to themselves (own_file() in runner/store/campaign_directory.h), and
+# pages. share/peclet has the structure of the source, so that links between pages work.
 
 set(own ${CMAKE_INSTALL_DATADIR}/peclet)
 set(unwanted PATTERN __pycache__ EXCLUDE PATTERN "*.peclet" EXCLUDE)
@@ -8,9 +7,9 @@ set(unwanted PATTERN __pycache__ EXCLUDE PATTERN "*.peclet" EXCLUDE)
 install(DIRECTORY adapters results templates DESTINATION ${own} USE_SOURCE_PERMISSIONS ${unwanted})
 install(DIRECTORY schema DESTINATION ${own} FILES_MATCHING PATTERN "*.json" PATTERN "*.sql" PATTERN "*.md")
 install(DIRECTORY docs DESTINATION ${own})
-# Where Debian's python3 looks when the prefix is /usr.
+# With the prefix /usr this is in the path of Debian's python3.
 install(DIRECTORY python/peclet DESTINATION lib/python3/dist-packages ${unwanted})
-# The other pages that these lead to; tests/pages/links.py is shown what was installed.
+# Further pages that these pages link to; tests/pages/links.py checks the installed ones.
 foreach(page README.md CHANGELOG.md LICENSE CITATION.cff engine/PHYSICS.md runner/HANDOVER.md tests/bench/README.md
     tests/end_to_end/README.md tests/end_to_end/MISTAKES.md tests/mutations/mutations.md tests/physics/README.md
     tests/reference/README.md tests/reference/forces/README.md)
@@ -20,7 +19,7 @@ endforeach()
 
 install(FILES CHANGELOG.md LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
-# Programs that carry libraries in them carry these libraries' licences with them.
+# Licences of the libraries that static programs contain.
 if(PECLET_STATIC)
   foreach(library libboost-dev libc6-dev libcli11-dev libeigen3-dev libfmt-dev librandom123-dev libsodium-dev libspdlog-dev libsqlite3-dev
       libstdc++-12-dev nlohmann-json3-dev zlib1g-dev)

@@ -1,5 +1,5 @@
-# `cpack --preset package` makes a .tar.gz for any Linux and a .deb, with the same programs byte by byte: results of
-# one and the other belong to the same engine. Programs that need the libraries of the machine that built them are not packed.
+# `cpack --preset package` makes a .tar.gz for any Linux and a .deb with identical programs, so that their results
+# belong to the same engine. Only statically linked programs are packed.
 
 set(CPACK_PACKAGE_NAME peclet)
 set(CPACK_PACKAGE_VENDOR "the peclet authors")
@@ -20,8 +20,8 @@ set(CPACK_GENERATOR TGZ DEB)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
-# No `Depends`: the programs are linked statically.
-# The fits of `peclet jamming`, the studies, the adapter of LAMMPS and what draws pictures are Python; all else needs none.
+# No `Depends`: the programs are linked statically. Python is needed for `peclet jamming`, the studies, the adapter of
+# LAMMPS, and figures.
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3, python3-numpy")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "lammps, python3-matplotlib, python3-scipy")
 set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/as_debian_wants.cmake)

@@ -1,6 +1,6 @@
-# add_rooms(PREFIX "LIBRARY..." ROOM...): a static library PREFIX_ROOM of each folder, from below to above. A room may
-# include those before it and has the libraries in quotes; tests/house/layering.py reads the same list. Sources that end
-# in _avx2.cpp or _avx512.cpp are added with flags of their own.
+# add_rooms(PREFIX "LIBRARY..." ROOM...): adds a static library PREFIX_ROOM for each folder, from bottom to top. A
+# folder may include those before it, and links the libraries in quotes; tests/house/layering.py reads the same list.
+# Sources that end in _avx2.cpp or _avx512.cpp are added elsewhere, with their own flags.
 function(add_rooms prefix libraries)
   set(below ${libraries})
   foreach(room ${ARGN})
@@ -13,8 +13,8 @@ function(add_rooms prefix libraries)
   endforeach()
 endfunction()
 
-# embed(LIBRARY TEMPLATE FILE...): TEMPLATE.cpp.in, in which @NAME_ENDING@ stands for the text of the file name.ending,
-# becomes part of the library.
+# embed(LIBRARY TEMPLATE FILE...): adds TEMPLATE.cpp.in to the library, with the text of the file name.ending in the
+# place of @NAME_ENDING@.
 function(embed library template)
   foreach(path ${ARGN})
     cmake_path(GET path FILENAME name)

@@ -1,6 +1,6 @@
-# Writes the header with what the build knows about itself; run at every build, touches it only when it changes.
+# Writes the header with the provenance of the build. Runs at every build, and writes the file only if it changes.
 #   cmake -DSOURCE=DIR -DOUTPUT=FILE -DVERSION=.. -DCOMPILER=.. -DFLAGS=.. -DBUILD_TYPE=.. -P this
-# Without git, or when SOURCE is no checkout of its own, the commit is empty.
+# The commit is empty without git, or if SOURCE is not the top of a checkout.
 
 function(git output)
   execute_process(COMMAND git -C ${SOURCE} ${ARGN} OUTPUT_VARIABLE text ERROR_QUIET RESULT_VARIABLE failure
@@ -13,7 +13,7 @@ endfunction()
 
 set(commit "")
 set(dirty false)
-git(prefix rev-parse --show-prefix)  # empty at the top of a checkout; not in a folder of somebody else's
+git(prefix rev-parse --show-prefix)  # empty at the top of a checkout, not in a folder of another one
 if(prefix STREQUAL "")
   git(commit rev-parse HEAD)
   git(changes status --porcelain --untracked-files=no)

@@ -1,5 +1,4 @@
-// What programs say to each other: the frames between runner and engine, and the result that an engine
-// leaves.
+// Tables of keys of what programs exchange: the frames between runner and engine, and an engine's result.
 #pragma once
 
 #include <array>
@@ -10,21 +9,22 @@
 
 namespace peclet {
 
-// Seeds of a point are 0 to most_realisations - 1.
+// Seeds of a point lie in [0, most_realisations).
 constexpr int most_realisations = 1'000'000;
-// No number of a result is larger, so that no sum, square or cube of a campaign's values overflows.
+// Bound on the magnitude of every number in a result: sums, squares and cubes of such values do not overflow.
 constexpr double largest_number = 1e100;
+// Bounds on the number of files beside a result, and on the size of each [bytes].
 constexpr std::size_t most_left_files = 16;
 constexpr std::uint64_t largest_left_file = std::uint64_t{1} << 32;
-// The phases of a job, in their order.
+// Phases of a job, in their order.
 constexpr std::array<const char*, 3> job_phases{"packing", "equilibration", "production"};
 
-// Keys of a result. Receivers ignore members that they do not know, here and in frames.
+// Returns the keys of a result. Unknown members of results and frames are ignored.
 const KeyTable& result_keys();
 
-// Keys of frames, by their "type".
+// Returns the keys of frames, one table for each "type".
 const KindTables& frame_keys();
-// Returns the frame with its defaults. Throws FrameError if it does not match its keys.
+// Returns the frame with its defaults filled in. Throws FrameError if it does not match its keys.
 Json checked_frame(Json message);
 
 }  // namespace peclet

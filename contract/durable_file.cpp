@@ -74,8 +74,8 @@ void fail_to(const char* action, const std::filesystem::path& path) {
 
 namespace {
 
-// A name that no other writer uses: the process's number and a count, and O_EXCL against what an earlier
-// process of the same number left behind.
+// Creates a temporary file beside `path`. Its name has the process number and a count; O_EXCL avoids files
+// that an earlier process of the same number left behind.
 Descriptor create_temporary(const std::filesystem::path& path, std::filesystem::path& temporary) {
   static std::atomic<unsigned> count{0};
   for (;;) {
@@ -83,7 +83,7 @@ Descriptor create_temporary(const std::filesystem::path& path, std::filesystem::
     temporary += fmt::format(".{}.{}.tmp", ::getpid(), count++);
     Descriptor descriptor = open_file(temporary, O_WRONLY | O_CREAT | O_EXCL);
     if (descriptor.number() >= 0) return descriptor;
-    if (errno != EEXIST) fail_to("cannot create", path);  // whose name people know
+    if (errno != EEXIST) fail_to("cannot create", path);  // the name that the user knows
   }
 }
 
@@ -94,7 +94,7 @@ void synchronise_folder(const std::filesystem::path& path) {
   synchronise(descriptor.number(), folder);
 }
 
-// `write` fills the new file, of `bytes` bytes.
+// Replaces `path` by a file of `bytes` bytes that write(descriptor) fills.
 template <typename Write>
 void replace_durably(const std::filesystem::path& path, std::uint64_t bytes, const Write& write) {
   std::filesystem::path temporary;

@@ -1,4 +1,4 @@
-// Open files, and files that are either whole or not there.
+// Opens, reads and writes files; replaces files so that they are either whole or absent.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace peclet {
 
-// An open file that is closed when its owner goes.
+// Owner of a file descriptor, which its destructor closes.
 class Descriptor {
  public:
   explicit Descriptor(int number) : number_(number) {}
@@ -24,43 +24,44 @@ class Descriptor {
   ~Descriptor();
 
   int number() const { return number_; }
-  // Closing reports late write errors on some file systems; afterwards the destructor has nothing to do.
+  // Returns the result of close(2), which on some file systems reports late write errors.
   int close();
-  // Leaves it to the caller.
+  // Hands the descriptor over to the caller, who closes it.
   int take() { return std::exchange(number_, -1); }
 
  private:
   int number_;
 };
 
-// As open(2) with O_CLOEXEC, again after a signal; a number below 0 with errno when it cannot be opened.
+// Opens a file with open(2) and O_CLOEXEC, again after a signal. If this fails, the number is below 0 and
+// errno says why.
 Descriptor open_file(const std::filesystem::path& path, int flags, unsigned mode = 0666);
 
 // Writes every byte. Throws std::system_error naming the path.
 void write_all(int descriptor, std::string_view bytes, const std::filesystem::path& path);
 
-// Takes what is left to read of an open file, piece by piece. Throws std::system_error naming the path.
+// Calls take() with every piece of the rest of an open file. Throws std::system_error naming the path.
 void read_pieces(int descriptor, const std::filesystem::path& path,
                  const std::function<void(std::string_view)>& take, const char* action = "cannot read");
 
-// Reads bytes at a place of an open file; returns their number, which is less only where the file ends.
-// Throws std::system_error naming the path.
+// Reads bytes at offset `place` [bytes] of an open file. Returns their number, smaller than requested only at
+// the end of the file. Throws std::system_error naming the path.
 std::size_t read_at(int descriptor, std::uint64_t place, std::span<std::byte> bytes,
                     const std::filesystem::path& path);
 
-// Has what was written on disk. Throws std::system_error naming the path.
+// Waits until what was written to an open file is on disk. Throws std::system_error naming the path.
 void synchronise(int descriptor, const std::filesystem::path& path);
 
-// Throws what errno says: "cannot open /the/path: ...".
+// Throws std::system_error for errno: "cannot open /the/path: ...".
 [[noreturn]] void fail_to(const char* action, const std::filesystem::path& path);
 
-// The file system is full, or the user's quota of it: what could not be written may be tried again later.
+// The file system or the user's quota is full; the write may be tried again later.
 class NoRoomError : public std::system_error {
  public:
   NoRoomError(int error, const std::string& doing, std::filesystem::path path, std::uint64_t bytes)
       : std::system_error(error, std::generic_category(), doing), path_(std::move(path)), bytes_(bytes) {}
   const std::filesystem::path& path() const { return path_; }
-  // How much was to be written.
+  // Returns the size of the write that failed [bytes]; 0 if not known.
   std::uint64_t bytes() const { return bytes_; }
 
  private:
@@ -68,36 +69,35 @@ class NoRoomError : public std::system_error {
   std::uint64_t bytes_;
 };
 
-// Whether an errno says that there is no room: ENOSPC or EDQUOT.
+// Returns true if an errno says that the disk or the quota is full: ENOSPC or EDQUOT.
 bool means_no_room(int error);
 
-// Whether an errno says that the machine failed and the file may be sound: no room, an I/O error, no memory,
-// no descriptor left, a file system that is away.
+// Returns true if an errno says that the machine failed while the file may be sound: a full disk, an I/O
+// error, no memory, no descriptor left, a file system that does not answer.
 bool means_machine_fault(int error);
 
-// Replaces `path` by `bytes` so that a crash at any moment leaves the old content or the new one.
+// Replaces the content of `path` by `bytes`; a crash at any moment leaves the old content or the new one.
 // Throws NoRoomError, or std::system_error naming the path; the temporary file is then removed.
 void write_durably(const std::filesystem::path& path, std::string_view bytes);
 
-// The same with the texts that `next` hands out one after the other, up to an empty one, which together need
-// not fit into memory. What `next` throws leaves the old content.
+// Replaces the content of `path` by the texts that next() returns up to an empty one. They need not fit into
+// memory together. If next() throws, the old content stays. Throws as above.
 void write_durably(const std::filesystem::path& path, const std::function<std::string()>& next);
 
-// The same with what is left to read of an open file of `bytes` bytes, which need not fit into memory.
+// Replaces the content of `path` by the rest of an open file of `bytes` bytes, which need not fit into
+// memory. Throws as write_durably().
 void copy_durably(int from, std::uint64_t bytes, const std::filesystem::path& path);
 
-// Gives a file that somebody else has written its final name: its bytes are on disk before the name is.
-// Throws std::system_error naming the path.
+// Renames a file of another program after its bytes are on disk. Throws std::system_error naming the path.
 void rename_durably(const std::filesystem::path& from, const std::filesystem::path& to);
 
-// Makes a folder and those above it that are not there; what is made stays after a power cut.
-// Throws NoRoomError, or std::system_error naming the path.
+// Makes a folder and its missing parents durably. Throws NoRoomError, or std::system_error naming the path.
 void create_folders_durably(const std::filesystem::path& path);
 
-// The first of PATH, PATH.1, PATH.2 ... that is not there, not even as a link to nothing.
+// Returns the first of PATH, PATH.1, PATH.2 ... that does not exist, not even as a dangling link.
 std::filesystem::path free_name(const std::filesystem::path& path);
 
-// The whole content. Throws std::system_error naming the path.
+// Returns the whole content of a file. Throws std::system_error naming the path.
 std::string read_file(const std::filesystem::path& path);
 
 }  // namespace peclet

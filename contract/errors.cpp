@@ -9,10 +9,11 @@
 namespace peclet {
 namespace {
 
-// Of what is quoted. What is allowed has the room that is left, which may name files, too.
+// Longest quoted parts of a message [characters]. The text of what is allowed gets the rest of the message.
 constexpr std::size_t longest_file = 160, longest_pointer = 100, longest_value = 60;
 constexpr std::size_t separators = 6;  // three times ": "
 
+// Shortens `allowed` to what is left of a message whose other parts have `used` characters.
 std::string fitting(const std::string& allowed, std::size_t used) {
   constexpr std::size_t least = longest_message - longest_file - longest_pointer - longest_value - separators;
   return printable(

@@ -1,4 +1,4 @@
-// Errors of both programs, and the exit codes with which they leave.
+// Exceptions of both programs, and their exit codes.
 #pragma once
 
 #include <cstddef>
@@ -8,15 +8,13 @@
 
 namespace peclet {
 
-// A message is one line of at most so many characters, whatever was given.
+// Longest message of an InputError [characters]; longer ones are shortened.
 constexpr std::size_t longest_message = 480;
 
-// What is wrong with something that a person gave: the file, the JSON pointer inside it, the offending value
-// and what is allowed instead. Programs print what() and leave with exit code 2; nothing has been written by
-// then.
+// A fault in what a person gave: the file, the JSON pointer inside it, the offending value and what is
+// allowed. Programs print what() and leave with exit code 2; nothing has been written by then.
 //
-// Here, and nowhere else, what is quoted becomes printable and short (printable.h): whoever throws hands over
-// what was given, as it is.
+// The constructor makes the parts printable and short (text.h). Callers pass them unchanged.
 class InputError : public std::runtime_error {
  public:
   // Any of the four may be empty and is then left out of the message:
@@ -25,7 +23,7 @@ class InputError : public std::runtime_error {
   InputError(const std::string& file, const std::string& pointer, const std::string& value,
              const std::string& allowed);
 
-  // As they stand in the message.
+  // The parts of the message, printable and shortened.
   struct Parts {
     std::string file, pointer, value, allowed;
   };
@@ -34,7 +32,7 @@ class InputError : public std::runtime_error {
   const std::string& value() const { return parts_.value; }
   const std::string& allowed() const { return parts_.allowed; }
 
-  // The same fault seen from a document that embeds the first one: `prefix` is put before the pointer.
+  // Returns this fault for a `file` that embeds the document at the JSON pointer `prefix`.
   InputError within(const std::string& file, const std::string& prefix) const;
 
  private:
@@ -43,29 +41,28 @@ class InputError : public std::runtime_error {
   Parts parts_;
 };
 
-// What is stored, or what an engine says about it, is not what this program may go on with. Programs print
-// what() and leave with exit code 6.
+// Stored data, or an engine's answer about them, are damaged or inconsistent. Programs leave with code 6.
 class IntegrityError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-// How both programs leave.
+// Exit codes of both programs.
 struct ExitCode {
   enum : int {
-    done = 0,  // of a run: every point converged, or has all its seeds
+    done = 0,  // success; for a run: every point converged, or has all its seeds
     error = 1,
-    usage = 2,        // or faulty input; nothing has been written
+    usage = 2,        // faulty command line or input; nothing has been written
     unconverged = 3,  // finished, but some points are capped, failed, cancelled or lost seeds
-    unfinished = 4,   // of a request: asked for, and not carried out yet
+    unfinished = 4,   // a request was made and has not been carried out yet
     owned = 5,        // another process owns the campaign
     integrity = 6,    // the database is damaged, or a seed gave two different results
-    stopped = 75,     // by a signal, a time limit or a budget; the same command goes on
+    stopped = 75,     // stopped by a signal, a time limit or a budget; the same command continues
   };
 };
 
-// Whether an error is about a name that no file can have, too long or a loop of links: only a person gives
-// such names, so that it is one of usage.
+// Returns true if the error is about a name that is too long or a loop of links. Only users give such names,
+// so that it is an error of usage.
 bool is_impossible_name(const std::exception& error);
 
 }  // namespace peclet

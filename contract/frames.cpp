@@ -25,7 +25,7 @@ bool is_message(const Json& message) {
   return message.is_object() && message.contains("type") && message.at("type").is_string();
 }
 
-// write() to a closed pipe raises SIGPIPE: it is held back for this thread, and taken off if it came.
+// Calls write(2) without SIGPIPE for a closed pipe: blocks the signal in this thread, removes it if it came.
 ssize_t write_without_signal(int descriptor, const char* bytes, std::size_t count) {
   sigset_t pipe_signal;
   sigset_t before;
@@ -57,7 +57,7 @@ void wait_until_writable(int descriptor) {
   ::poll(&waiting, 1, -1);
 }
 
-// Waits for bytes until the deadline; false when there were none. Without a deadline it waits for ever.
+// Waits for bytes; returns false if none came before the deadline, if there is one.
 bool wait_until_readable(int descriptor,
                          const std::optional<std::chrono::steady_clock::time_point>& deadline) {
   using std::chrono::milliseconds;
@@ -155,7 +155,7 @@ FrameChannel::Status FrameChannel::receive(Json& message, std::chrono::milliseco
     if (count > 0) {
       decoder_.feed(chunk.data(), static_cast<std::size_t>(count));
     } else if (count == 0 || errno == ECONNRESET) {
-      return Status::closed;  // also in the middle of a frame: its sender is gone
+      return Status::closed;  // even within a frame: its sender is gone
     } else if (errno != EINTR && errno != EAGAIN) {
       throw std::system_error(errno, std::generic_category(), "cannot receive a frame");
     }

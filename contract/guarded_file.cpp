@@ -48,8 +48,8 @@ void require_regular(const fs::path& path) {
   if (lstat(path.c_str(), &about) == 0 && !S_ISREG(about.st_mode)) refuse(path, kind_of(about.st_mode));
 }
 
-// StopTestMade at before it is opened, because opening a device may do something; looked at again afterwards,
-// because it may have been replaced in between.
+// The kind is checked before opening, because opening a device may have an effect, and again afterwards,
+// because the file may have been replaced in between.
 Descriptor open_regular(const fs::path& path, int flags, unsigned mode) {
   require_regular(path);
   Descriptor file = open_file(path, flags | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY, mode);
@@ -75,7 +75,7 @@ std::string read_regular(const fs::path& path, std::uint64_t most) {
   content.reserve(size);
   read_pieces(file.number(), path, [&](std::string_view piece) {
     content += piece;
-    if (content.size() > most) refuse_size(path, most);  // it grew meanwhile
+    if (content.size() > most) refuse_size(path, most);  // it has grown
   });
   return content;
 }
@@ -89,7 +89,7 @@ void copy_regular(const fs::path& from, const fs::path& to, std::uint64_t most) 
 
 void require_own_folder(const fs::path& path, bool may_be_link, uid_t self) {
   struct stat about {};
-  if (lstat(path.c_str(), &about) != 0) return;  // whoever needs it makes it, or says why that fails
+  if (lstat(path.c_str(), &about) != 0) return;  // the caller makes the folder, or reports why that fails
   if (S_ISLNK(about.st_mode) && may_be_link && stat(path.c_str(), &about) != 0)
     fail_to("cannot follow", path);
   if (!S_ISDIR(about.st_mode)) {
@@ -99,13 +99,12 @@ void require_own_folder(const fs::path& path, bool may_be_link, uid_t self) {
   if (about.st_uid == self || about.st_uid == 0) return;
   throw UnsuitableFile(
       path.string(), "", fmt::format("belongs to the user {}", user_name(about.st_uid)),
-      fmt::format("must be your own, because whoever owns it can make it lead elsewhere: run as that user, "
+      fmt::format("must be your own, because its owner can make it lead elsewhere: run as that user, "
                   "or make it yours with `sudo chown -R {} {}`",
                   user_name(self), path.string()));
 }
 
-// As commands take it: the number of a user whom /etc/passwd does not know. getpwuid(3) would ask directories
-// of a network, too, through libraries that a statically linked program cannot load.
+// getpwuid(3) would also ask network directories, through libraries that a static program cannot load.
 std::string user_name(uid_t user) {
   std::ifstream users("/etc/passwd");
   std::string number = std::to_string(user);

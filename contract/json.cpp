@@ -23,11 +23,11 @@ namespace peclet {
 
 namespace {
 
-// Deeper documents are refused: everything that walks a document recurses, and nothing of ours is deep.
+// Largest depth of a document: functions that walk a document recurse.
 constexpr std::size_t deepest_nesting = 200;
 
-// Walks over the text and remembers how far the parser has come, so that faults that only the callback sees
-// (it is told no position) can be placed too.
+// Iterator over the text that records how far the parser has come: the place of faults that the callbacks
+// find, which get no position.
 class TrackedIterator {
  public:
   using iterator_category = std::input_iterator_tag;
@@ -50,7 +50,7 @@ class TrackedIterator {
   const char** furthest_;
 };
 
-// "line 3, column 5" of the character at `offset`, both counted from 1, columns in characters, not bytes.
+// Returns "line 3, column 5" for the character at byte `offset`. Lines and columns [characters] count from 1.
 std::string place(std::string_view text, std::size_t offset) {
   std::size_t line = 1;
   std::size_t column = 1;
@@ -65,9 +65,9 @@ std::string place(std::string_view text, std::size_t offset) {
   return fmt::format("line {}, column {}", line, column);
 }
 
-// The parser's message without its own name and the place: "[json.exception.parse_error.101] parse error at
-// line 1, column 2: syntax error while parsing value - unexpected ..." ends as "must be JSON: unexpected
-// ...". What it read last may be a part of a character, which no terminal can show.
+// Returns the parser's message without the exception's name and place: "[json.exception.parse_error.101]
+// parse error at line 1, column 2: syntax error while parsing value - unexpected ..." becomes "must be JSON:
+// unexpected ...". Drops "last read" if that is not ASCII, because it may end inside a character.
 std::string reason(std::string_view message) {
   const auto skip_past = [&](std::string_view mark) {
     const auto found = message.find(mark);
@@ -83,11 +83,11 @@ std::string reason(std::string_view message) {
          std::string(is_plain ? message : message.substr(0, message.find("; last read")));
 }
 
-// What people type who write JSON by hand or paste it from a document: the usual faults, named.
+// Returns an explanation of a usual fault of JSON written by hand at byte `offset`; "" for other faults.
 std::string usual_fault(std::string_view text, std::size_t offset) {
   const std::string_view from_here = text.substr(std::min(offset, text.size()));
   for (const std::string_view quote : {"\u201c", "\u201d", "\u201e", "\u2018", "\u2019"}) {
-    // The parser stops inside of it, or behind.
+    // The parser stops inside the mark, or behind it.
     for (std::size_t back = 0; back < quote.size(); ++back) {
       if (offset >= back && text.substr(offset - back).starts_with(quote)) {
         return "; a typographic quotation mark: JSON has straight ones, \"";
@@ -104,8 +104,8 @@ std::string usual_fault(std::string_view text, std::size_t offset) {
   return "";
 }
 
-// Builds the document from what the parser meets, and refuses on the way what would take memory or say
-// something twice. What it throws has no place yet.
+// Builds the document from the parser's callbacks. Throws Fault, without a place, for too many values,
+// duplicate keys and too deep nesting.
 class Builder {
  public:
   struct Fault {
@@ -116,7 +116,7 @@ class Builder {
 
   Json take() { return std::move(root_); }
 
-  // What the parser asks for.
+  // Callbacks of the parser.
   // NOLINTBEGIN(readability-identifier-naming)
   bool null() { return add(nullptr); }
   bool boolean(bool value) { return add(value); }
@@ -171,7 +171,7 @@ class Builder {
   std::size_t most_values_, values_ = 0;
   Json root_;
   std::vector<Json*> open_;  // the innermost object or array last
-  Json* member_ = nullptr;   // of an open object: what the key before names
+  Json* member_ = nullptr;   // of the innermost open object, named by the last key
 };
 
 void write_number(double number, std::string& out) {
@@ -231,7 +231,7 @@ Json parse_json_input(std::string_view text, const std::string& file, std::size_
     return read == 0 ? 0 : read - 1;
   };
 
-  // The parser takes it for the end of the text.
+  // The parser would take a NUL for the end of the text.
   if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos) {
     throw fault(nul, "a NUL character; JSON is plain text in UTF-8");
   }
@@ -243,7 +243,7 @@ Json parse_json_input(std::string_view text, const std::string& file, std::size_
   } catch (const Json::parse_error& error) {
     const std::size_t offset = std::min(text.size(), error.byte == 0 ? 0 : error.byte - 1);
     const std::string why = reason(error.what()), usual = usual_fault(text, offset);
-    // Where the fault is known, what the parser read last and expected instead says less.
+    // The explanation of a usual fault replaces what the parser read last and expected.
     throw fault(offset, usual.empty() ? why : why.substr(0, why.find("; ")) + usual);
   } catch (const Builder::Fault& refused) {
     throw fault(here(), refused.what);

@@ -19,7 +19,7 @@ std::string_view name_of(const Key& key) {
   return std::string_view(key.pointer).substr(key.pointer.rfind('/') + 1);
 }
 
-// Returns which of the keys of one object may be given instead of `key`; null if none may.
+// Returns the one of `keys` that may be given instead of `key`, or null.
 const Key* alternative_to(const std::vector<const Key*>& keys, const Key& key) {
   const auto found = std::ranges::find(keys, name_of(key), &Key::instead_of);
   return found == keys.end() ? nullptr : *found;
@@ -43,7 +43,7 @@ bool is_word(std::string_view text) {
          text.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-") == std::string::npos;
 }
 
-// Whether the value itself is allowed, whatever may be wrong below it.
+// Returns true if the value is of this kind and within the key's bounds; what is below it is not checked.
 bool is_of_kind(KeyKind kind, const Key& key, const Json& value) {
   switch (kind) {
     case KeyKind::null:
@@ -81,8 +81,8 @@ bool is_allowed(const Key& key, const Json& value) {
          std::ranges::any_of(key.others, [&](KeyKind kind) { return is_of_kind(kind, key, value); });
 }
 
-// Returns whether the key may be given in this object. A missing word that decides counts as one that allows
-// it: its own absence is the fault.
+// Returns true if the key may be given in this object. If the word that decides is missing, the key may be
+// given: the fault is the missing word.
 bool may_be_given(const Key& key, const Json& object) {
   if (key.only_if.empty()) return true;
   const auto other = object.find(key.only_if);
@@ -90,7 +90,7 @@ bool may_be_given(const Key& key, const Json& object) {
   return other == object.end() || std::ranges::count(key.if_words, other->get<std::string>()) > 0;
 }
 
-// A share that was given in per cent, as 5 for 5 %.
+// Returns a hint if a share in [0, 1] was given in per cent, as 5 for 5 %; else "".
 std::string hint_at_percent(const Key& key, const Json& value) {
   const bool is_share = key.kind == KeyKind::number && key.minimum >= 0 && key.maximum <= 1;
   if (!is_share || !value.is_number()) return "";
@@ -99,7 +99,7 @@ std::string hint_at_percent(const Key& key, const Json& value) {
   return fmt::format("; {:g} % is written {:g}", percent, percent / 100);
 }
 
-// Where a value stands in a document. Its JSON pointer is written only where a message needs it.
+// Place of a value in a document. pointer() makes the text only for messages.
 struct Place {
   const Place* above = nullptr;
   std::string_view name = {};             // of a member
@@ -111,7 +111,7 @@ struct Place {
   }
 };
 
-// One pass over a document. `pattern` is the pointer of an object's key in the table.
+// Validates one document. `pattern` is the pointer of an object's key in the table.
 class Validation {
  public:
   Validation(const KeyTable& table, const std::string& file) : table_(table), file_(file) {}
@@ -158,7 +158,7 @@ class Validation {
   }
 
  private:
-  // Returns what a missing key must be, with the keys that an object needs, and why it must be given.
+  // Returns what a missing key must be, the keys that an object requires, and why the key must be given.
   std::string wanted(const Key& key, const Json& object) const {
     std::vector<std::string> members;
     const std::vector<const Key*> keys = table_.below(key.same_as.empty() ? key.pointer : key.same_as);
@@ -245,7 +245,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(' ') + 1 - begin);
 }
 
-// Takes what is before the first `mark` out of the text, and the mark.
+// Removes the text before the first `mark` and the mark itself; returns what was before it, trimmed.
 std::string_view cut(std::string_view& text, std::string_view mark) {
   const std::size_t end = text.find(mark);
   const std::string_view part = trimmed(text.substr(0, end));
@@ -265,7 +265,7 @@ bool cut_end(std::string_view& text, std::string_view end) {
   return true;
 }
 
-// "> 0 and <= 1", "= 1", "of 3", "of 1 to 64"
+// Reads bounds: "> 0 and <= 1", "= 1", "of 3", "of 1 to 64", "of 1 or more".
 void read_bounds(Key& key, std::string_view text) {
   const bool is_open = cut_end(text, " or more");
   std::istringstream words{std::string(text)};
@@ -298,7 +298,7 @@ void read_kind(Key& key, std::string_view text) {
   }
   const auto* const found =
       std::ranges::find_if(kind_texts, [&](const KindText& kind) { return text.starts_with(kind.row); });
-  if (found == std::end(kind_texts)) throw std::logic_error("there is no such kind");
+  if (found == std::end(kind_texts)) throw std::logic_error("the kind is not known");
   key.kind = found->kind;
   text.remove_prefix(found->row.size());
   if (key.kind == KeyKind::choice) {
@@ -345,7 +345,7 @@ void read_row(std::string_view row, std::vector<Key>& keys) {
   }
 }
 
-// Returns the rows, each in one line, and the lines that begin a kind.
+// Returns the rows and the lines that begin a kind, each joined into one line.
 std::vector<std::string> rows_in(std::string_view text) {
   std::vector<std::string> rows;
   while (!text.empty()) {
@@ -375,7 +375,7 @@ std::string bounds_in_words(const Key& key) {
   return words;
 }
 
-// A bound as people and canonical JSON write it: 1, not 1.0.
+// Returns a bound as canonical JSON has it: 1, not 1.0.
 Json bound(double number) { return Json::parse(canonical_json(number)); }
 
 void add_range(const Key& key, Json& schema) {
@@ -453,7 +453,7 @@ void add_members(const KeyTable& table, const std::string& pointer, Json& schema
   }
 }
 
-// A cell of a Markdown table.
+// Returns the text as a cell of a Markdown table.
 std::string cell(const std::string& text) {
   std::string escaped;
   for (const char c : text) {
@@ -476,7 +476,6 @@ KeyTable::KeyTable(std::string title, std::vector<Key> keys, Unknown unknown)
 
 const Key* KeyTable::find(std::string_view pointer) const {
   const std::size_t end = pointer.rfind('/');
-  // The pointer of the document itself is empty.
   return end == std::string_view::npos ? find(pointer, pointer)
                                        : find(pointer.substr(0, end), pointer.substr(end + 1));
 }
@@ -508,7 +507,7 @@ Json KeyTable::validate(Json document, const std::string& file, const std::strin
 }
 
 Json KindTables::validate(Json document, const std::string& file) const {
-  // What tells it apart comes first: it decides what else there is.
+  // The key that tells the kinds apart is checked first.
   document = kind_.validate(std::move(document), file);
   const std::string name = document[name_of(key_)];
   const auto found = std::ranges::find(key_.choices, name);
@@ -537,7 +536,7 @@ std::vector<Key> keys_of(std::string_view rows) {
     try {
       read_row(row, keys);
     } catch (const std::exception& error) {
-      throw std::logic_error(fmt::format("no row of a table of keys: {}: {}", row, error.what()));
+      throw std::logic_error(fmt::format("faulty row of a table of keys: {}: {}", row, error.what()));
     }
   }
   return keys;

@@ -28,11 +28,12 @@ namespace fs = std::filesystem;
                    fmt::format("cannot be read: {}", std::generic_category().message(error)));
 }
 
-constexpr int most_links = 40;  // as the kernel
+constexpr int most_links = 40;  // as in the kernel
 
+// Where a name leads after all links.
 struct Target {
-  fs::path path;                  // no link any more
-  std::optional<int> descriptor;  // of this process, where the name stands for one
+  fs::path path;
+  std::optional<int> descriptor;  // of this process, if the name stands for one
   bool exists = false;
   mode_t mode = 0;
 };
@@ -47,8 +48,9 @@ struct Target {
 
 fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : "."; }
 
-// /dev/stdout is a link to /proc/self/fd/1. Opening that again would begin at the start of a file to which a
-// shell appends, and a socket cannot be opened at all: what is open already is what is meant.
+// Returns the descriptor of this process that the path stands for, if any: /dev/stdout is a link to
+// /proc/self/fd/1. Opening that path would begin at the start of a file to which a shell appends, and would
+// fail for a socket.
 std::optional<int> descriptor_named(const fs::path& path) {
   std::error_code absent, without_proc;
   const fs::path folder = fs::canonical(folder_of(path), absent);
@@ -85,8 +87,7 @@ void check(const fs::path& given, const Target& target) {
     if (status < 0 || (status & O_ACCMODE) == O_RDONLY) refuse_output(given, EBADF);
     return;
   }
-  if (!target.path.has_filename())
-    refuse_output(given, "must be the name of a file, and is that of a folder");
+  if (!target.path.has_filename()) refuse_output(given, "must be the name of a file, not of a folder");
   if (!target.exists || S_ISREG(target.mode)) {
     const fs::path folder = folder_of(target.path);
     struct stat about {};
@@ -101,7 +102,7 @@ void check(const fs::path& given, const Target& target) {
   if (access(target.path.c_str(), W_OK) != 0) refuse_output(given, errno);
 }
 
-// `replace` makes a regular file anew, `write_to` writes to what is open.
+// Calls replace(path) for a regular or absent file, write_to(descriptor) for anything else.
 template <class Replace, class WriteTo>
 void write(const fs::path& path, const Replace& replace, const WriteTo& write_to) {
   const Target target = follow(path);

@@ -1,4 +1,4 @@
-// Where a program comes from: what is needed to build it again.
+// Provenance of the running program: what is needed to build it again.
 #pragma once
 
 #include <string>
@@ -7,11 +7,11 @@
 
 namespace peclet {
 
-// "0.2.0"
+// Returns the version, such as "0.2.0".
 std::string version();
 
-// {"version", "git_commit", "git_dirty", "binary_sha256", "compiler", "flags", "build_type", "cpu"} of the
-// running program. binary_sha256 is of /proc/self/exe as it was at the first call.
+// Returns {"version", "git_commit", "git_dirty", "binary_sha256", "compiler", "flags", "build_type", "cpu"}
+// of the running program. binary_sha256 is the hash of /proc/self/exe at the first call.
 const Json& provenance();
 
 }  // namespace peclet

@@ -27,7 +27,7 @@ Digest digest_of(std::string_view bytes) {
 }
 
 std::string hexadecimal(const Digest& digest) {
-  std::string text(2 * digest.size() + 1, '\0');  // sodium ends it with a zero
+  std::string text(2 * digest.size() + 1, '\0');  // sodium appends a zero
   sodium_bin2hex(text.data(), text.size(), digest.data(), digest.size());
   text.pop_back();
   return text;
@@ -40,7 +40,8 @@ std::string sha256(std::string_view bytes) { return hexadecimal(digest_of(bytes)
 std::string sha256_base64(std::string_view bytes) {
   const Digest digest = digest_of(bytes);
   constexpr int variant = sodium_base64_VARIANT_ORIGINAL;
-  std::string text(sodium_base64_ENCODED_LEN(digest.size(), variant), '\0');  // with the zero at its end
+  std::string text(sodium_base64_ENCODED_LEN(digest.size(), variant),
+                   '\0');  // the length includes a final zero
   sodium_bin2base64(text.data(), text.size(), digest.data(), digest.size(), variant);
   text.pop_back();
   return text;

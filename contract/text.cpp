@@ -11,12 +11,12 @@ namespace {
 
 struct Character {
   char32_t code = 0;
-  std::size_t bytes = 0;  // 0: no UTF-8 begins here
+  std::size_t bytes = 0;  // 0: not UTF-8
 };
 
 bool continues(char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U; }
 
-// The character at the beginning of `text`, which is not empty (RFC 3629: the shortest form, no surrogates).
+// Returns the first character of `text`, which must not be empty (RFC 3629: shortest form, no surrogates).
 Character first_of(std::string_view text) {
   const auto lead = static_cast<unsigned char>(text.front());
   if (lead < 0x80U) return {lead, 1};
@@ -32,7 +32,7 @@ Character first_of(std::string_view text) {
   return code < smallest.at(bytes) || is_surrogate || code > 0x10FFFF ? Character{} : Character{code, bytes};
 }
 
-// Controls, separators of lines, and marks that turn or hide what stands beside them.
+// Returns false for controls, separators of lines, and marks that turn or hide the text beside them.
 bool can_be_shown(char32_t code) {
   constexpr std::array<std::pair<char32_t, char32_t>, 8> hidden{{{0x00, 0x1F},
                                                                  {0x7F, 0x9F},
@@ -53,7 +53,7 @@ std::string escape(char32_t code) {
   return fmt::format("\\u{:04x}", static_cast<unsigned>(code));
 }
 
-// One entry for each character or escape.
+// Returns the characters of the text, or the escapes that replace them.
 std::vector<std::string> shown_characters(std::string_view text) {
   std::vector<std::string> shown;
   while (!text.empty()) {
@@ -74,7 +74,7 @@ std::size_t width(const std::string& shown) {
       std::count_if(shown.begin(), shown.end(), [](char c) { return !continues(c); }));
 }
 
-// As many of the range's first entries as fit into `room`.
+// Returns the first entries of the range that fit into `room` characters.
 template <class Iterator>
 std::vector<std::string> fitting(Iterator begin, Iterator end, std::size_t room) {
   std::vector<std::string> taken;
@@ -85,7 +85,8 @@ std::vector<std::string> fitting(Iterator begin, Iterator end, std::size_t room)
   return taken;
 }
 
-// Drops the part of a word at the cut, so that a list ends with a whole name. Longer words are cut.
+// Removes the part of a word at the end, so that a list ends with a whole name. Parts beyond 36 characters,
+// or half of the text, stay.
 void drop_part_of_word(std::vector<std::string>& shown) {
   constexpr std::ptrdiff_t longest_word = 36;
   const auto most = std::min(longest_word, std::ssize(shown) / 2);
@@ -93,7 +94,7 @@ void drop_part_of_word(std::vector<std::string>& shown) {
   if (blank != shown.rbegin() + most) shown.erase(blank.base(), shown.end());
 }
 
-// Optimal string alignment: Levenshtein's distance with neighbouring letters that are swapped as one mistake.
+// Returns the optimal string alignment distance: Levenshtein's, with a swap of neighbours as one mistake.
 std::size_t mistakes_between(std::string_view one, std::string_view other) {
   std::vector<std::size_t> before_last, last(other.size() + 1), now(other.size() + 1);
   for (std::size_t j = 0; j <= other.size(); ++j) last[j] = j;
@@ -115,7 +116,7 @@ std::size_t mistakes_between(std::string_view one, std::string_view other) {
 
 std::string printable(std::string_view text, std::size_t longest) {
   constexpr std::string_view gap = "...";
-  constexpr std::size_t most_bytes = 4;  // of a character: what lies further inside than this is never shown
+  constexpr std::size_t most_bytes = 4;  // of a character: bytes further inside are never shown
   const bool is_vast = longest < text.size() / (2 * most_bytes);
   std::vector<std::string> head = shown_characters(is_vast ? text.substr(0, most_bytes * longest) : text);
   std::size_t all = 0;
@@ -154,7 +155,7 @@ std::string nearest_name(std::string_view typed, const std::vector<std::string>&
   std::size_t fewest = 0;
   for (const std::string& name : names) {
     const std::size_t most = std::max<std::size_t>(1, name.size() / 3);
-    // Each letter more or less is a mistake: nobody need count those of a name that is far too long.
+    // The difference in length is a lower bound of the mistakes.
     const auto [shorter, longer] = std::minmax({typed.size(), name.size()});
     if (longer - shorter > most) continue;
     const std::size_t mistakes = mistakes_between(typed, name);

@@ -1,4 +1,4 @@
-// Texts from outside: fit to be shown, split into lines and words, compared with known names.
+// Makes foreign texts printable, splits them into lines and words, and finds the known name that is nearest.
 #pragma once
 
 #include <charconv>
@@ -12,36 +12,34 @@
 
 namespace peclet {
 
-// Returns `text` with what cannot be shown on one line written as an escape: control characters (\n, \u001b),
-// marks that turn the direction of writing (\u202e), and bytes that are no UTF-8 (\xff). Beyond `longest`
-// characters its middle becomes "...", between words where it can, so that both ends can be recognised.
+// Returns `text` on one line, with escapes for control characters (\n, \u001b), marks that turn the direction
+// of writing (\u202e), and bytes that are not UTF-8 (\xff). Of a text beyond `longest` characters the middle
+// becomes "...", if possible between words.
 std::string printable(std::string_view text, std::size_t longest = std::string_view::npos);
 
-// The same of every line of `text`, which stays a line of its own.
+// Returns printable() of every line of `text`; line ends stay.
 std::string printable_lines(std::string_view text);
 
-// Returns the name that `typed` becomes with the fewest wrong, missing, added or swapped letters, the first
-// of several; "" when each needs more of them than a third of its letters (at least one), so that nothing
-// far-fetched is offered.
+// Returns the first of the names that differ from `typed` by the fewest wrong, missing, added or swapped
+// letters. Returns "" if these are more than a third of the name's letters (or one letter, for short names).
 std::string nearest_name(std::string_view typed, const std::vector<std::string>& names);
 
-// "; did you mean NAME?", or nothing when there is no such name.
+// Returns "; did you mean NAME?" with the nearest name, or "" if none is near.
 std::string suggestion(std::string_view typed, const std::vector<std::string>& names);
 
-// Returns the text without the byte-order mark of UTF-8 that it may begin with.
+// Returns the text without a byte-order mark of UTF-8 at its beginning.
 std::string_view without_byte_order_mark(std::string_view text);
 
-// Takes the first line off `text` and returns it without its end, "\n" or "\r\n".
+// Removes the first line from `text` and returns it without its end, "\n" or "\r\n".
 std::string_view take_line(std::string_view& text);
 
-// Takes the first word off `line`; words are parted by blanks and tabs. Returns an empty word if none is
-// left.
+// Removes the first word, up to a blank or tab, from `line` and returns it; "" if no word is left.
 std::string_view take_word(std::string_view& line);
 
-// Whether nothing but blanks and ends of lines is left.
+// Returns true if the text has only blanks, tabs and ends of lines.
 bool is_blank(std::string_view text);
 
-// Returns the number that `word` is, as a whole, or nothing if it is none or is not finite.
+// Returns the number that the whole word spells, or nothing if it is not a number or not finite.
 template <class Number>
 requires std::integral<Number> || std::floating_point<Number> std::optional<Number> number_in(
     std::string_view word) {

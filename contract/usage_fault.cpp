@@ -29,17 +29,17 @@ std::vector<std::string> option_names(const CLI::App& verb) {
   return names;
 }
 
-// A word that begins as an option does; "-1" is a number.
+// Returns true if the word begins as an option does; "-1" is a number.
 bool looks_like_option(const std::string& word) {
   return word.size() > 1 && word.front() == '-' && (word[1] < '0' || word[1] > '9') && word[1] != '.';
 }
 
-// The first word that looks like an option and is none of the verb's; "" when there is none.
+// Returns the first word that looks like an option and is not one of the verb's, or "".
 std::string unknown_option(const CLI::App& verb, const std::vector<std::string>& words) {
   bool is_value = false;
   for (const std::string& word : words) {
     const std::string name = word.substr(0, word.find('='));
-    if (name == "--") return "";  // what follows is taken as it is
+    if (name == "--") return "";  // ends the options
     if (std::exchange(is_value, false) || !looks_like_option(name)) continue;
     const CLI::Option* const known =
         verb.get_option_no_throw(name.starts_with("--") ? name : name.substr(0, 2));
@@ -49,7 +49,8 @@ std::string unknown_option(const CLI::App& verb, const std::vector<std::string>&
   return "";
 }
 
-// Other programs have short options: -j for workers as make has, or the first letter of a name.
+// Returns a suggestion for an unknown option. A short option may stand for one of that first letter, and -j,
+// as in make, for --workers.
 std::string meant_by(const std::string& unknown, const std::vector<std::string>& names) {
   if (unknown.starts_with("--")) return suggestion(unknown, names);
   const char letter = unknown[1] == 'j' ? 'w' : unknown[1];
@@ -59,7 +60,7 @@ std::string meant_by(const std::string& unknown, const std::vector<std::string>&
   return is_only_one ? "; did you mean " + *found + "?" : "";
 }
 
-// What precedes `mark`: the parser begins with the name of the option.
+// Returns the text before `mark`: the name of the option in the parser's messages.
 std::string before(const std::string& said, std::string_view mark) { return said.substr(0, said.find(mark)); }
 
 std::string after(const std::string& said, std::string_view mark) {
@@ -78,7 +79,7 @@ std::string superfluous(const std::string& word) {
   return word.starts_with("-") ? word + ": there is no such option" : word + ": is one word too many";
 }
 
-// The parser's classes of faults in our words; what it says itself where it says what is allowed.
+// Returns what is wrong, by the parser's class of fault; for other classes the parser's text.
 std::string reason(const CLI::App& verb, const CLI::ParseError& fault) {
   std::string said = fault.what();
   if (dynamic_cast<const CLI::RequiredError*>(&fault) != nullptr)
@@ -91,7 +92,7 @@ std::string reason(const CLI::App& verb, const CLI::ParseError& fault) {
   if (dynamic_cast<const CLI::RequiresError*>(&fault) != nullptr)
     return fmt::format("{}: needs {}", before(said, " requires "), after(said, " requires "));
   if (dynamic_cast<const CLI::ConversionError*>(&fault) != nullptr)
-    return before(after(said, "Could not convert: "), " = ") + ": has a value that it cannot have";
+    return before(after(said, "Could not convert: "), " = ") + ": has a value of the wrong kind";
   return said;
 }
 

@@ -1,4 +1,4 @@
-// What is wrong with a command line, said once and with what to do: the parser's own words name no verb.
+// Describes faults of a command line: the verb, the fault, what to do. The parser's own text lacks the verb.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -7,11 +7,10 @@
 
 namespace peclet {
 
-// The verb that the words, those after the program's name, begin with; null when there is none of that name.
+// Returns the verb that the words after the program's name begin with, or null.
 const CLI::App* verb_called(const CLI::App& app, const std::vector<std::string>& words);
 
-// One line without the program's name: "run: --wrokers: there is no such option; ...". The app has the
-// program's name.
+// Returns one line, "run: --wrokers: there is no such option; ...". The name of `app` must be the program's.
 std::string usage_fault(const CLI::App& app, const std::vector<std::string>& words,
                         const CLI::ParseError& fault);
 

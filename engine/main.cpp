@@ -1,4 +1,4 @@
-// peclet-engine: one realisation, a worker or a single evaluation.
+// The program peclet-engine: its command line and exit codes.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <omp.h>
@@ -34,10 +34,10 @@ volatile std::sig_atomic_t stop_requested = 0;
 
 void request_stop(int signal) {
   stop_requested = 1;
-  std::signal(signal, SIG_DFL);  // the second one stops at once
+  std::signal(signal, SIG_DFL);  // a second signal ends the process at once
 }
 
-// A sphere is some 13 values and 200 bytes of a configuration: 100 000 of them.
+// Limits of a configuration: some 100000 spheres, each with about 13 values and 200 bytes.
 constexpr InputLimits configuration_limits{std::size_t{32} << 20, 1'300'000};
 
 struct RunOptions {
@@ -47,7 +47,7 @@ struct RunOptions {
   bool quiet = false;
 };
 
-// The parser would read "-1" as the largest number there is, and says nothing that names what is allowed.
+// Returns a check for whole numbers; the parser's own would read "-1" as the largest number.
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
   return {[least, most](const std::string& text) {
             std::uint64_t number = 0;
@@ -70,14 +70,13 @@ CLI::Validator one_of(const std::vector<std::string>& names) {
           fmt::format("{{{}}}", fmt::join(names, ","))};
 }
 
-// What the names of files begin with that a realisation leaves: "out." beside out.json. None beside what is
-// no file.
+// Returns the prefix of the names of files beside the result: "out." for out.json, "" for a device or a pipe.
 std::string files_beside(const std::filesystem::path& output) {
   const bool is_file = std::filesystem::is_regular_file(output) || !std::filesystem::exists(output);
   return output.empty() || !is_file ? "" : std::filesystem::path(output).replace_extension("").string() + '.';
 }
 
-// A person may name a link to the checkpoint; what is replaced is what it leads to.
+// Returns the file that a link leads to, so that a checkpoint replaces this file and not the link.
 std::filesystem::path target_of(const std::filesystem::path& path) {
   std::error_code leads_nowhere;
   const std::filesystem::path target = std::filesystem::canonical(path, leads_nowhere);
@@ -91,8 +90,7 @@ int run(const RunOptions& options) {
   job.header.seed = options.seed;
   job.scene = read_json_input(options.scene);
   if (job.scene.is_object() && job.scene.contains("scene")) {
-    throw InputError(options.scene, "", "",
-                     "is a campaign, and a scene is asked for; `peclet run` runs campaigns");
+    throw InputError(options.scene, "", "", "is a campaign, not a scene; `peclet run` runs campaigns");
   }
   job.scene_name = options.scene;
   job.threads = options.threads;
@@ -107,7 +105,7 @@ int run(const RunOptions& options) {
   }
   const std::optional<Json> finished = run_job(job, events);
   if (!finished) {
-    fmt::print(stderr, "peclet-engine: stopped; the same command goes on from {}\n", options.checkpoint);
+    fmt::print(stderr, "peclet-engine: stopped; the same command continues from {}\n", options.checkpoint);
     return ExitCode::stopped;
   }
   const Json& result = *finished;
@@ -153,30 +151,31 @@ int main(int argc, char** argv) {
 
   RunOptions options;
   CLI::App* run_command = app.add_subcommand(
-      "run", "One realisation of a scene: the result as JSON, and a summary on standard error");
+      "run", "Run one realisation of a scene: the result as JSON, and a summary on standard error");
   run_command->add_option("scene", options.scene, "Scene, a JSON file")->required();
   run_command->add_option("--seed", options.seed, "Seed of packing and noise")
       ->capture_default_str()
       ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()));
   run_command
       ->add_option("--threads", options.threads,
-                   "Threads, of which each has 4000 particles or more and a processor")
+                   "Largest number of threads; each gets at least 4000 particles and a processor")
       ->capture_default_str()
       ->check(whole_number(1, 1024));
   run_command->add_option("--output", options.output, "File for the result instead of standard output");
   run_command->add_option("--checkpoint", options.checkpoint,
-                          "File that is written every five minutes and resumed from when it exists");
-  run_command->add_option("--extend", options.extended,
-                          "Checkpoint of a shorter run, final.checkpoint, from which this one goes on");
+                          "Checkpoint, written every five minutes; the run resumes from it if it exists");
+  run_command->add_option(
+      "--extend", options.extended,
+      "Checkpoint of a shorter run (its final.checkpoint), from which this run continues");
   run_command->add_flag("--quiet", options.quiet, "No summary on standard error");
   CLI::App* serve_command = app.add_subcommand("serve", "Work for `peclet run`: frames on standard input");
   std::string configuration;
   CLI::App* forces_command =
-      app.add_subcommand("forces", "Forces, torques and stress of one configuration, term by term");
+      app.add_subcommand("forces", "Compute forces, torques and stress of one configuration, term by term");
   forces_command->add_option("configuration", configuration, "Configuration, a JSON file")->required();
   ConversionOptions conversion;
   CLI::App* trajectory_command =
-      app.add_subcommand("trajectory", "Frames of a realisation as a text for other programs");
+      app.add_subcommand("trajectory", "Convert frames of a realisation to a text for other programs");
   trajectory_command->add_option("file", conversion.file, "GSD file or extended XYZ")->required();
   trajectory_command
       ->add_option("--format", conversion.format, "lammps (dump) or xyz; else by the output's name")
@@ -188,36 +187,37 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   PictureOptions picture;
   picture.threads = std::min(omp_get_num_procs(), 8);
-  CLI::App* snapshot_command = app.add_subcommand("snapshot", "A frame as a picture");
+  CLI::App* snapshot_command = app.add_subcommand("snapshot", "Draw a frame as a picture");
   snapshot_command->add_option("file", picture.file, "GSD file or extended XYZ")->required();
   snapshot_command->add_option("--output", picture.output, "PNG file")->required();
   snapshot_command->add_option("--frame", picture.frame, "Number of the frame; -1 is the last one")
       ->capture_default_str();
-  snapshot_command->add_option("--colour", picture.colour, "What the colours of spheres mean")
+  snapshot_command->add_option("--colour", picture.colour, "Quantity that the colours of spheres show")
       ->capture_default_str()
       ->check(one_of(names_of_colourings()));
   snapshot_command->add_flag("--chains", picture.chains,
-                             "Contacts, as wide as their normal force, in glass spheres");
+                             "Draw contacts, as wide as their normal force, in transparent spheres");
   snapshot_command
       ->add_option("--view", picture.view, "corner; x, y or z to look along; or AZIMUTH,ELEVATION in degrees")
       ->capture_default_str();
   snapshot_command->add_option("--size", picture.size, "WIDTHxHEIGHT in pixels")->capture_default_str();
   SizesOptions sizes;
   CLI::App* sizes_command = app.add_subcommand(
-      "sizes", "Species of a scene from a measured size distribution, and how many spheres they take");
+      "sizes",
+      "Choose the species of a scene from a measured size distribution; tells how many spheres they take");
   sizes_command->add_option("file", sizes.file, "Table of sizes and shares, as an instrument saves it")
       ->required();
-  sizes_command->add_option("--sizes", sizes.sizes, "What the sizes are: radius or diameter")
+  sizes_command->add_option("--sizes", sizes.sizes, "Meaning of the sizes: radius or diameter")
       ->required()
       ->check(one_of({"radius", "diameter"}));
-  sizes_command->add_option("--shares", sizes.shares, "What the shares are of: volume or number")
+  sizes_command->add_option("--shares", sizes.shares, "Meaning of the shares: volume or number")
       ->required()
       ->check(one_of({"volume", "number"}));
   sizes_command->add_option("--columns", sizes.columns,
-                            "Columns of size and share, such as 1,3, where there are more");
+                            "Columns of size and share, such as 1,3, if there are more than two");
   sizes_command
       ->add_option("--count", sizes.count,
-                   "Spheres of the scene: thin sizes are merged until each has one of them")
+                   "Number of spheres of the scene: rare sizes are merged until each has one sphere")
       ->check(whole_number(1, most_particles));
   std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
   if (words == std::vector<std::string>{"version"}) words.front() = "--version";

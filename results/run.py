@@ -1,18 +1,18 @@
 #!/usr/bin/python3
-"""Lists the studies of published statements, makes one again, or all of them.
+"""Lists the studies of published statements, or repeats one or all of them.
 
-run.py                             all of them, with their verdicts
-run.py NAME --quick                half a minute of one, which fails where the physics is broken
-run.py NAME --folder FOLDER        one, whole: hours, which may be interrupted
-run.py --overnight [NAME ...]      every one, or these and those that they read, cheap ones first
+run.py                             lists all studies with their verdicts
+run.py NAME --quick                runs half a minute of one; fails if the physics is wrong
+run.py NAME --folder FOLDER        runs one completely: hours, which may be interrupted
+run.py --overnight [NAME ...]      runs all, or these and the studies whose tables they read, cheap ones first
 
-A study remakes published figures with error bars and answers each published statement with a number and a criterion
-that can fail. The list shows what was found, when and at what cost, and which studies read tables that are newer than
-their own.
+A study reproduces published figures with error bars, and tests each published statement by a number and a criterion
+that can fail. The list shows the result of each study, its date and its cost, and the studies with older tables than
+those that they read.
 
-With --overnight the campaigns of a study are in FOLDER/NAME; FOLDER/NAME/made says that it ended well, so that the next
-call leaves it. Points that take hours are among them. Ends with 0 when all ended well, with 1 when one did not, with
-130 when it was interrupted; says then what remains.
+With --overnight the campaigns of a study are in FOLDER/NAME. The file FOLDER/NAME/made marks a finished study, which
+the next call skips. Points that take hours are included. Exits with 0 if all studies succeed, 1 if one fails, 130 if
+interrupted, and then lists what remains.
 """
 import argparse
 import json
@@ -25,8 +25,8 @@ import sys
 from pathlib import Path
 
 RESULTS = Path(__file__).resolve().parent
-# Studies whose rows read tables of others, which are made before.
-# flow-curve reads at-rest, too, and that one it: `flow-curve/study.py --from-table` judges it again afterwards.
+# Studies, and the studies whose tables they read and which run before them. flow-curve also reads at-rest, which reads
+# flow-curve: `flow-curve/study.py --from-table` judges it again afterwards.
 READ = {
     "at-rest": ("flow-curve",),
     "divergence": ("at-rest", "flow-curve", "zero-shear"),
@@ -39,7 +39,7 @@ READ = {
 
 
 def found_by(name):
-    """What study.json of a study has; nothing before it was made."""
+    """Returns the content of a study's study.json, or {} if there is none. Exits if the file lacks a key."""
     path = RESULTS / name / "study.json"
     if not path.exists():
         return {}
@@ -53,7 +53,7 @@ def found_by(name):
 
 
 def summaries():
-    """Of each study, in alphabetical order, what the list has."""
+    """Yields the entries of the list, a dictionary for each study, in alphabetical order."""
     found = {path.parent.name: found_by(path.parent.name) for path in sorted(RESULTS.glob("*/study.py"))}
     for name, study in found.items():
         rows = study.get("statements", [])
@@ -89,7 +89,7 @@ def table(studies):
 
 
 def programs_of(chosen):
-    """The folder of the programs: as given; of the installation or the source that this file is part of; of PATH."""
+    """Returns the folder of the programs: the chosen one, or that of this installation or source tree, or of PATH."""
     in_path = shutil.which("peclet")
     found = [chosen] if chosen else [RESULTS.parents[2] / "bin", RESULTS.parent / "build" / "release" / "bin"]
     if in_path and not chosen:
@@ -101,10 +101,10 @@ def programs_of(chosen):
 
 
 def in_turn(hours):
-    """Returns names and hours, the cheapest first, but after those that they read."""
+    """Returns names and hours, the cheapest first, but each after the studies that it reads."""
 
     def place(name):
-        """The longest of those that it stands over and its own, and how many storeys these are."""
+        """Returns the longest hours among the study and those that it reads, and the depth of its reading."""
         own = math.inf if hours.get(name) is None else hours[name]
         below = [place(read) for read in READ.get(name, ()) if read in hours]
         return max([own, *(longest for longest, _ in below)]), max((1 + storeys for _, storeys in below), default=0)
@@ -113,6 +113,7 @@ def in_turn(hours):
 
 
 def with_those_they_read(names):
+    """Returns the names, and those of all studies that they read, directly or indirectly."""
     return {*names, *(read for name in names for read in with_those_they_read(READ.get(name, ())))}
 
 
@@ -130,7 +131,7 @@ def say_what_remains(left):
 
 
 def make(programs, folder, name):
-    """The exit code of the study's driver. An interruption reaches all of its processes, which keep checkpoints."""
+    """Runs a study and returns its exit code. An interrupt is sent to all of its processes, which write checkpoints."""
     place = folder / name
     place.mkdir(parents=True, exist_ok=True)
     command = [sys.executable, str(RESULTS / name / "study.py"), str(programs), str(place), "--long"]
@@ -147,6 +148,7 @@ def make(programs, folder, name):
 
 
 def make_all(hours, programs, folder, names):
+    """Runs the studies that have not been made, by name or all; returns the exit code of this program."""
     wanted = with_those_they_read(names)
     studies = [study for study in in_turn(hours) if not names or study[0] in wanted]
     left = [study for study in studies if not (folder / study[0] / "made").exists()]
@@ -168,7 +170,7 @@ def make_all(hours, programs, folder, names):
 
 
 def become_driver(name, arguments):
-    """This process becomes the driver: signals and exit code are its own."""
+    """Replaces this process by the driver of a study, which then gets its signals and gives the exit code."""
     words = [sys.executable, str(RESULTS / name / "study.py"), str(programs_of(arguments.programs))]
     words += [str(arguments.folder.absolute())] if arguments.folder else []
     words += [f"--{form}" for form in ("quick", "long") if getattr(arguments, form)]
@@ -182,17 +184,18 @@ def interrupted(*_):
 
 def read_arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("studies", help="which; the list unless given", nargs="*", metavar="NAME")
+    parser.add_argument("studies", help="studies to run; by default all are listed", nargs="*", metavar="NAME")
     how = parser.add_mutually_exclusive_group()
-    how.add_argument("--quick", action="store_true", help="half a minute of it")
-    how.add_argument("--long", action="store_true", help="also the points that take hours, where the study has such")
-    how.add_argument("--overnight", action="store_true", help="whole, one after the other; goes on where it was")
-    how.add_argument("--json", action="store_true", help="the list, for programs")
+    how.add_argument("--quick", action="store_true", help="run half a minute of the study")
+    how.add_argument("--long", action="store_true", help="include points that take hours, if the study has any")
+    how.add_argument("--overnight", action="store_true", help="run complete studies in turn; continues earlier calls")
+    how.add_argument("--json", action="store_true", help="print the list as JSON")
     parser.add_argument("--times", type=int, default=1, metavar="N", help="N times as many seeds")
     parser.add_argument(
         "--folder",
         type=Path,
-        help="of the campaigns, with which a second call goes on; temporary unless given, with --overnight studies",
+        help="folder of the campaigns, which a second call continues; a temporary one by default, with --overnight "
+        "studies",
     )
     parser.add_argument("--programs", type=Path, help="folder of peclet and peclet-engine")
     arguments = parser.parse_args()
@@ -201,15 +204,15 @@ def read_arguments():
         if name not in known:
             parser.error(f"{name}: must be one of: {', '.join(known)}")
     if len(arguments.studies) > 1 and not arguments.overnight:
-        parser.error("several studies are made with --overnight")
+        parser.error("several studies need --overnight")
     if arguments.json and arguments.studies:
-        parser.error("--json: is of the list")
+        parser.error("--json: prints the list, and must stand without a study")
     is_list = not arguments.studies and not arguments.overnight
     if is_list and (arguments.quick or arguments.long or arguments.folder or arguments.times != 1):
         parser.error("--quick, --long, --folder and --times must stand with a study")
     if arguments.overnight and not os.access(RESULTS, os.W_OK):
         parser.error(
-            f"{RESULTS}: whole studies write their tables there, and may not; copy the folder, and run COPY/run.py"
+            f"{RESULTS}: cannot be written, and studies write their tables there; copy the folder, and run COPY/run.py"
         )
     return arguments
 

@@ -1,4 +1,4 @@
--- The views: what people read. They show the points that the sweep contains.
+-- Views for people. They show the points that the sweep contains.
 
 CREATE VIEW points AS
 SELECT p.place, p.label, p.hash, p.settings, p.suspect, p.priority, p.cancelled,
@@ -34,7 +34,7 @@ JOIN realisation r USING (point_id, seed)
 LEFT JOIN engine e USING (engine_id)
 WHERE p.place IS NOT NULL ORDER BY p.place, f.seed, f.name;
 
--- The last stop test at each point for the campaign's present target.
+-- The last stop test of each point for the campaign's present target.
 CREATE VIEW estimates AS
 SELECT p.place, p.label, p.hash, t.observable, json_extract(t.criterion, '$.relative_tolerance') AS relative_tolerance,
        json_extract(t.criterion, '$.absolute_tolerance') AS absolute_tolerance, t.confidence, l.seeds, l.lost, l.count,

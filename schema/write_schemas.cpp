@@ -1,5 +1,5 @@
-// write_schemas FOLDER: writes FOLDER/NAME.schema.json of every table of keys, and renews the blocks of
-// FOLDER/README.md that are generated (between <!-- NAME keys, generated --> and <!-- end of NAME keys -->).
+// write_schemas FOLDER: writes FOLDER/NAME.schema.json for every table of keys, and replaces the generated
+// blocks of FOLDER/README.md (between <!-- NAME keys, generated --> and <!-- end of NAME keys -->).
 #include <exception>
 #include <filesystem>
 #include <iostream>

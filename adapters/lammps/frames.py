@@ -1,5 +1,4 @@
-"""Peclet's frames over one end of a socket pair, and files that appear whole or not at all (schema/README.md,
-"Frames")."""
+"""Sends and receives Peclet's frames (schema/README.md, "Frames"), and writes files durably."""
 import json
 import os
 import select
@@ -11,15 +10,15 @@ LARGEST_FRAME = 64 << 20
 
 
 class Gone(Exception):
-    """The runner has closed its end: nobody listens any more."""
+    """The runner has closed its end of the connection."""
 
 
 class FrameError(Exception):
-    """What came is no frame; the stream is of no use after that."""
+    """The received bytes are not a frame; the stream is then unusable."""
 
 
 class Channel:
-    """Whole messages in both directions. Does not own the descriptor."""
+    """Sends and receives whole messages over a socket. Does not own the descriptor."""
 
     def __init__(self, descriptor):
         self.socket = socket.socket(fileno=os.dup(descriptor))
@@ -36,8 +35,10 @@ class Channel:
             raise Gone from None
 
     def receive(self, patience=None):
-        """The next message; None when there is none within `patience` seconds (None waits for ever). Raises Gone,
-        FrameError."""
+        """Returns the next message, or None if none is complete within `patience` [s]; None waits without limit.
+
+        Raises Gone if the runner has closed its end, FrameError if the bytes are not a frame.
+        """
         while (message := self.next_message()) is None:
             if not select.select([self.socket], [], [], patience)[0]:
                 return None
@@ -65,8 +66,8 @@ class Channel:
 
 
 def write_durably(path, content):
-    """Replaces the file at `path` by `content`, so that also after a power cut it is the old one or the new one."""
-    # The runner removes what a dead process has left under such a name: NAME.PROCESS.COUNT.tmp
+    """Replaces the file at `path` by `content` (bytes); after a power cut it is the old file or the new one."""
+    # The runner removes files that a dead process has left under names NAME.PROCESS.COUNT.tmp.
     temporary = f"{path}.{os.getpid()}.0.tmp"
     with open(temporary, "wb") as file:
         file.write(content)

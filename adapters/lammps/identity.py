@@ -1,4 +1,4 @@
-"""What computes: everything that can change a result, as one hash, and where it comes from."""
+"""Identifies the engine: one hash of everything that can change a result, with version and processor."""
 import hashlib
 import json
 import os
@@ -19,7 +19,7 @@ def sha256_of_file(path):
 
 
 def sha256_of_script(path):
-    """Of its commands: another comment computes nothing else."""
+    """Returns the SHA-256 of the script's commands, without comments."""
     with open(path, "rb") as file:
         return hashlib.sha256(commands(file.read())).hexdigest()
 
@@ -31,7 +31,7 @@ def output_of(*command):
 
 
 def libraries_of(program):
-    """LAMMPS itself, where it is a shared library, the mathematical functions, and what adds up over ranks."""
+    """Returns the paths of the shared libraries of LAMMPS, of mathematical functions and of MPI."""
     return [
         line.split()[2]
         for line in output_of("ldd", program).splitlines()
@@ -45,7 +45,7 @@ def own_sources():
 
 
 def processor():
-    """The part of it on which the C library's choice among its mathematical functions depends."""
+    """Returns the properties of the processor by which the C library chooses its mathematical functions."""
     try:
         with open("/proc/cpuinfo") as file:
             flags = next((line.split() for line in file if line.startswith("flags")), [])
@@ -55,8 +55,12 @@ def processor():
 
 
 def engine_identity(lmp, launcher, script, files):
-    """The `engine` of hello and of the results. `launcher`: words, because another number of ranks adds up in another
-    order. `files`: what the script reads, in the order of the command line."""
+    """Returns the `engine` object of hello and of results.
+
+    `lmp` is the path of the program, `script` that of the input script, and `files` are the paths of the files that the
+    script reads, in the order of the command line. `launcher` is a list of words; it counts because another number of
+    ranks adds up in another order.
+    """
     digest = hashlib.sha256()
     for path in (*own_sources(), os.path.realpath(lmp), *libraries_of(lmp), *files):
         digest.update(f"{os.path.basename(path)} {sha256_of_file(path)}\n".encode())

@@ -1,16 +1,18 @@
-"""What LAMMPS reads of an input script: its commands, without comments, blank lines and the way they are broken into
-lines.
+"""Extracts the commands of a LAMMPS input script, without comments, blank lines and continuation lines.
 
-As Input::file() and Input::parse() of LAMMPS do it, in this order: a line whose last printable character is & goes on
-with the next one, also when it is a comment; so does one with an odd number of triple quotes, whose line breaks stay.
-Then a # outside quotes ends the command."""
+Follows Input::file() and Input::parse() of LAMMPS, in this order:
+
+- A line whose last printable character is & continues on the next line, even if it is a comment.
+- A line with an odd number of triple quotes continues on the next line; the line break stays.
+- A # outside quotes ends the command.
+"""
 
 BLANK = b" \t\n\v\f\r"
 TRIPLE = b'"""'
 
 
 def whole_commands(content):
-    """Lines with those that continue them."""
+    """Yields the commands of a script (bytes), each joined from its lines, with comments."""
     command = b""
     for line in content.split(b"\n"):
         command += line + b"\n"
@@ -25,6 +27,7 @@ def whole_commands(content):
 
 
 def without_comment(command):
+    """Returns a command without its comment: the text before the first # outside quotes."""
     quote, place = b"", 0
     while place < len(command):
         if not quote and command[place : place + 1] == b"#":
@@ -39,6 +42,6 @@ def without_comment(command):
 
 
 def commands(content):
-    """The bytes that make the script what it is: one command a line."""
+    """Returns the commands of a script (bytes), one a line, without comments and blank lines."""
     stripped = (without_comment(command).strip(BLANK) for command in whole_commands(content))
     return b"".join(command + b"\n" for command in stripped if command)

@@ -1,4 +1,4 @@
-"""One LAMMPS process: started with a script and variables, heard while it runs, and never left behind."""
+"""Runs one LAMMPS process with a script and variables, and reads its thermo output."""
 import collections
 import ctypes
 import math
@@ -11,22 +11,22 @@ import subprocess
 PR_SET_PDEATHSIG = 1
 libc = ctypes.CDLL(None, use_errno=True)
 
-# One thread, because the sums of several are not made in the same order twice; and without the daemon that Open MPI
-# starts beside a program that nobody has started with mpirun.
+# One thread, because several add up in a different order each time. Open MPI must not start its daemon beside a program
+# that runs without mpirun.
 ENVIRONMENT = {**os.environ, "OMP_NUM_THREADS": "1", "OMPI_MCA_ess_singleton_isolated": "1", "LC_ALL": "C"}
 
 
 class LammpsError(Exception):
-    """LAMMPS said ERROR, or did not do what a script has to do."""
+    """LAMMPS reported an error, or the script does not do what the adapter requires."""
 
 
 FROM_OUTSIDE = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
-# A launcher that is asked to leave ends its ranks and removes its files.
+# Time for a launcher to end its ranks and remove its files after SIGTERM [s].
 LAUNCHER_PATIENCE = 5
 
 
 class KilledFromOutside(Exception):
-    """Somebody has ended the process, which says nothing about the simulation."""
+    """Another process or the user has ended LAMMPS; this is not a fault of the simulation."""
 
     def __init__(self, number):
         super().__init__(f"lmp was ended by signal {number}")
@@ -34,34 +34,35 @@ class KilledFromOutside(Exception):
 
 
 def die_with(parent):
-    """In the child, before lmp starts: the kernel kills it as soon as the adapter is gone, however that went."""
+    """Called in the child before lmp starts: has the kernel kill it as soon as the process `parent` has ended."""
     libc.prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
     if os.getppid() != parent:
         os._exit(1)
 
 
 class Thermo:
-    """The thermo output in what LAMMPS prints: the rows of the latest run, as columns.
+    """Reads the thermo output of the latest run from what LAMMPS prints: lists of numbers by column name.
 
-    A row is a line of numbers whose Step is at most `steps` after that of the first row, by a multiple of what the
-    command `thermo` says. LAMMPS prints commands before it executes them (-echo screen).
+    A row is a line of numbers whose Step is at most `steps` after that of the first row, by a multiple of the number in
+    the command `thermo`. LAMMPS prints commands before it executes them (-echo screen).
     """
 
     def __init__(self, steps):
         self.columns, self.heading, self.inside, self.expect_heading = {}, [], False, False
         self.steps = steps
-        self.every = 0  # steps between rows; 0: only both ends of a run, as LAMMPS does unless told; None: unknown
+        self.every = 0  # steps between rows; 0: only at both ends of a run, LAMMPS' default; None: unknown
         self.timestep = self.atoms = self.error = None
         self.last_lines = collections.deque(maxlen=12)
 
     def hear(self, line):
+        """Takes one line of output. Raises LammpsError as hear_row()."""
         self.last_lines.append(line)
         if found := re.match(r"  Time step\s*: (\S+)", line):
             self.timestep = float(found[1])
         elif line.startswith("ERROR"):
             self.error = self.error or line
         elif not self.inside and re.match(r"\s*run\s", line):
-            # A run without a set-up shows its heading at once; others show their memory before.
+            # A run without set-up prints its heading at once; others print their memory before.
             self.columns, self.heading, self.atoms = {}, [], None
             self.expect_heading = re.search(r"\spre\s+no\b", line) is not None
         elif line.startswith("Per MPI rank memory allocation"):
@@ -79,16 +80,16 @@ class Thermo:
             self.every = None
 
     def hear_row(self, line):
-        """Takes in a line of a run. Throws LammpsError if the script prints lines that look like rows."""
+        """Takes one line of a run. Raises LammpsError if the script prints lines that look like rows."""
         try:
             row = dict(zip(self.heading, [float(word) for word in line.split()], strict=True))
         except ValueError:
-            return  # a warning, or what the script prints
+            return  # a warning, or a line that the script prints
         before = self.columns.get("Step")
         if before:
             done = row["Step"] - before[0]
             if not 0 <= done <= self.steps or done % (self.every or self.steps or 1) != 0:
-                return  # what the script prints
+                return  # a line that the script prints
             if row["Step"] <= before[-1]:
                 raise LammpsError(
                     f"the script prints lines that look like rows of thermo output: Step is {row['Step']:.0f} in "
@@ -99,12 +100,12 @@ class Thermo:
             self.columns[name].append(value)
 
     def steps_done(self):
-        """Steps of the latest run so far."""
+        """Returns the number of steps that the latest run has made."""
         steps = self.columns.get("Step")
         return int(steps[-1] - steps[0]) if steps else 0
 
     def check(self):
-        """Throws LammpsError unless the latest run has every row of its steps."""
+        """Raises LammpsError unless the latest run has all rows of its steps."""
         if self.atoms is None or "Step" not in self.heading or self.heading[0].startswith("-"):
             raise LammpsError(
                 "the script has no run whose thermo output has a column Step and one line per sample "
@@ -121,7 +122,7 @@ class Thermo:
             raise LammpsError("the thermo output of the script's last run has no row of plain numbers")
         first = self.columns["Step"][0]
         if self.every and (first % self.every != 0 or self.steps % self.every != 0):
-            # At other steps LAMMPS shows means of fixes that are old, or that have not begun.
+            # At other steps LAMMPS prints means of fixes from an earlier step, or 0.
             raise LammpsError(
                 f"the script's last run has {self.steps} steps from step {first:.0f}, and rows of thermo output every "
                 f"{self.every}: it must begin and end with one"
@@ -139,18 +140,20 @@ class Thermo:
 
 
 class Lammps:
-    """A running `lmp -in script` in `folder`, or what `launcher` (words) makes of it. Use it in a with block, which
-    ends it."""
+    """A process `lmp -in script` in `folder`, started through `launcher` (a list of words; may be empty).
+
+    `variables` are given to the script as -var NAME VALUE. Use it in a with block, which ends the process.
+    """
 
     def __init__(self, program, launcher, script, folder, variables):
-        # stdbuf: without it progress would come in pieces of 4 KiB.
+        # Without stdbuf, progress would arrive in pieces of 4 KiB.
         command = ["stdbuf", "-oL", program, "-in", script, "-log", "none", "-echo", "screen"]
         environment = ENVIRONMENT
         self.is_launched = bool(launcher)
         if launcher:
-            # Ranks are children of the launcher and would outlive one that is killed; so the kernel kills them with it.
+            # Ranks are children of the launcher and would outlive a killed one; setpriv has the kernel kill them.
             command = [*launcher, "setpriv", "--pdeathsig", "KILL", *command]
-            # What a killed launcher leaves goes with the folder.
+            # Files that a killed launcher leaves are removed with the folder.
             environment = {**ENVIRONMENT, "TMPDIR": folder}
         for name, value in variables.items():
             command += ["-var", name, str(value)]
@@ -182,7 +185,7 @@ class Lammps:
         self.process.stdout.close()
 
     def listen(self, also, patience):
-        """Takes in what has been printed. Returns whether it goes on, and whether `also` can be read."""
+        """Reads output for up to `patience` [s]. Returns True while LAMMPS runs, and True if `also` is readable."""
         ready = select.select([self.process.stdout, also], [], [], patience)[0]
         if self.process.stdout not in ready:
             return True, also in ready
@@ -193,9 +196,9 @@ class Lammps:
         return bool(part), also in ready
 
     def finish(self):
-        """Returns its thermo output once it has stopped printing. Throws LammpsError, KilledFromOutside."""
+        """Returns the Thermo of the process once its output has ended. Raises LammpsError, KilledFromOutside."""
         status = self.process.wait()
-        # A launcher leaves as a shell does when one of its ranks was killed: with 128 + the signal.
+        # If a rank was killed, a launcher exits as a shell does: with 128 + the signal.
         killer = status - 128 if self.is_launched and status > 128 else -status
         if killer in FROM_OUTSIDE and not self.thermo.error:
             raise KilledFromOutside(killer)

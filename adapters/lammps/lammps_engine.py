@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """lammps_engine.py SCRIPT [FILE ...] [--lmp PROGRAM] [--launcher COMMAND]
 
-LAMMPS as the engine of a campaign: started by peclet, with whom it speaks over descriptor 0. SCRIPT is a LAMMPS input;
-each FILE is something that it reads (a data file, a molecule, an include) and finds under its name without folders.
-README.md beside this file says what a script has to do. Editing any of these files (comments of SCRIPT apart) makes
-another engine, whose results peclet does not mix with others.
+LAMMPS as the engine of a campaign. Peclet starts this program and exchanges frames with it over descriptor 0. SCRIPT is
+a LAMMPS input. Each FILE is one that SCRIPT reads (a data file, a molecule, an include) by its name without folders.
+README.md beside this program says what a script must do. A change of any of these files, except in comments of SCRIPT,
+makes another engine, whose results Peclet does not mix with others.
 """
 import argparse
 import hashlib
@@ -33,23 +33,25 @@ from realisation import (
 from scene import Refused, escaped, read_scene
 from scratch import folder_with, remove_left_folders
 
-# Peclet waits a minute for an answer about a scene.
+# Longest trial of a script [s]; Peclet waits a minute for an answer about a scene.
 TRIAL_SECONDS = 40
 
 
 class TrialTakesTooLong(Exception):
-    pass
+    """The trial of the script has not ended within TRIAL_SECONDS."""
 
 
 class Stop(Exception):
-    """The runner wants the engine to leave at once."""
+    """The runner has sent stop: exit at once."""
 
 
 class Drain(Exception):
-    """The runner wants the job back."""
+    """The runner has sent drain: write a checkpoint and give the job up."""
 
 
 class Engine:
+    """Answers the runner's messages. Exits the program if LAMMPS or a file of the command line is absent."""
+
     def __init__(self, arguments):
         self.lmp = shutil.which(arguments.lmp)
         if self.lmp is None:
@@ -73,6 +75,7 @@ class Engine:
         self.identity = engine_identity(self.lmp, self.launcher, self.files[0], self.files[1:])
 
     def serve(self):
+        """Answers messages until the runner sends drain or stop. Raises Gone, Stop, Drain, KilledFromOutside."""
         self.channel.send({"type": "hello", "protocol": 1, "program": "lammps", "engine": self.identity})
         while True:
             message = self.channel.receive()
@@ -94,7 +97,7 @@ class Engine:
             return {"type": "refused", "pointer": refused.pointer, "value": refused.value, "allowed": refused.allowed}
 
     def try_scene(self, scene):
-        """The answer about a scene. Throws Refused."""
+        """Tries the script with the scene and returns the answer to validate. Raises Refused."""
         answer = {
             "type": "validated",
             "timestep": None,
@@ -110,7 +113,7 @@ class Engine:
             return {**answer, "timestep": thermo.timestep, "particles": thermo.atoms}
         except TrialTakesTooLong:
             warning = (
-                f"the script makes no run of 0 steps within {TRIAL_SECONDS} s, so nobody knows yet whether it works"
+                f"the script makes no run of 0 steps within {TRIAL_SECONDS} s, so it is not known whether it works"
             )
             return {**answer, "warnings": [{"code": "untried", "message": warning}]}
         except NoSuchColumn as error:
@@ -124,7 +127,10 @@ class Engine:
             return {"type": "refused", "pointer": "", "value": os.path.basename(self.files[0]), "allowed": str(error)}
 
     def try_out(self, scene, folder):
-        """Makes the script do no steps, and again from the restart file of that."""
+        """Runs the script for 0 steps from the beginning, and then from the restart file of that run.
+
+        Returns the thermo output. Raises TrialTakesTooLong, LammpsError, Refused, Gone, Stop, Drain.
+        """
         deadline = time.monotonic() + TRIAL_SECONDS
         last = len(scene.chunks()) - 1
         for number, before in ((0, "none"), (last, BEFORE)):
@@ -146,12 +152,13 @@ class Engine:
         return thermo
 
     def hear_order(self):
-        """While LAMMPS runs. Throws Gone, Stop, Drain."""
+        """Reads a message while LAMMPS runs. Raises Gone, Stop, Drain."""
         message = self.channel.receive(0)
         if message is not None:
             raise {"drain": Drain, "stop": Stop}[message["type"]]
 
     def run(self, job):
+        """Runs a job and sends its answer. Saves a checkpoint if the job is interrupted."""
         try:
             scene = read_scene(job["scene"])
         except Refused as refused:
@@ -174,7 +181,7 @@ class Engine:
         self.channel.send({"job": job["job"], **answer})
 
     def simulate(self, realisation, folder):
-        """Runs what is left of it. Throws Gone, Stop, Drain, KilledFromOutside."""
+        """Runs the remaining chunks and returns the answer. Raises Gone, Stop, Drain, KilledFromOutside."""
         saved = time.monotonic()
         try:
             while not realisation.has_ended():
@@ -194,6 +201,7 @@ class Engine:
         return {"type": "result", "spool": spool, "sha256": hashlib.sha256(text).hexdigest()}
 
     def run_chunk(self, realisation, folder):
+        """Runs the next chunk and reports progress. Raises LammpsError and as simulate()."""
         chunk, done = realisation.chunks[realisation.number], realisation.steps()
         total = sum(each.steps for each in realisation.chunks)
         told, told_step = 0.0, -1
@@ -225,16 +233,16 @@ def main():
     parser.add_argument("files", nargs="*")
     parser.add_argument("--lmp", default="lmp", help="the LAMMPS program (default: lmp)")
     parser.add_argument(
-        "--launcher", default="", help="what starts it with MPI, such as 'mpirun -np 2' (default: nothing)"
+        "--launcher", default="", help="command that starts LAMMPS with MPI, such as 'mpirun -np 2' (default: none)"
     )
-    signal.signal(signal.SIGINT, signal.SIG_DFL)  # a death like those of other signals, instead of an exception
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # ends the process instead of raising KeyboardInterrupt
     remove_left_folders()
     try:
         Engine(parser.parse_args()).serve()
     except (Gone, Stop, Drain):
         pass
     except lammps.KilledFromOutside as killed:
-        # As if it had been this process: then the runner knows that nobody is to blame.
+        # Ends this process by the same signal, so that the runner does not blame the seed.
         os.kill(os.getpid(), killed.signal)
     return 0
 

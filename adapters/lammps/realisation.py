@@ -1,7 +1,7 @@
-"""One seed of one scene: chunk after chunk, each a LAMMPS process that goes on from the restart file of the one before.
+"""Runs one seed of one scene in chunks, each a LAMMPS process that starts from the restart file of the previous one.
 
-LAMMPS is not the same after a restart as without one (random numbers, the order of atoms). So every chunk begins with a
-restart, also when nothing has been interrupted: then it makes no difference whether something has.
+A restart changes the run of LAMMPS (random numbers, order of atoms). Every chunk but the first therefore begins with a
+restart, so that an interrupted realisation gives the same result as an uninterrupted one.
 """
 import hashlib
 import json
@@ -17,25 +17,31 @@ from scene import Refused
 
 BLOCKS = 32
 
-# Restart files, in the folder where LAMMPS runs. (Its command `if` compares words without dots that begin with a
-# letter.)
+# Names of restart files where LAMMPS runs. Its command `if` compares words without dots that begin with a letter.
 BEFORE, AFTER = "before_restart", "after_restart"
 
-# LAMMPS' random numbers take seeds from 1 to 900000000: the largest prime below, and a number that scatters neighbours.
+# The random numbers of LAMMPS take seeds from 1 to 900000000: the largest prime below that, and a factor that scatters
+# neighbouring seeds.
 SEED_PRIME, SEED_FACTOR = 899999963, 387420489
 
-# What LAMMPS says when the simulation, not the script, has failed.
+# Messages of LAMMPS for a failed simulation (not a faulty script), and the cause of the ending.
 ENDINGS = {r"Lost atoms|atoms? .*missing|Out of range atoms": "lost-atoms", r"Non-numeric": "non-finite"}
 
 
 def lammps_seed(point, seed, number, numbers):
-    """A seed for chunk `number` of `numbers`. No two chunks of a point share one, before there are 9e8 of them."""
+    """Returns LAMMPS' seed for chunk `number` of `numbers` of a realisation.
+
+    `point` is the hash of the point, `seed` that of the realisation. Up to 9e8 chunks of a point have different seeds.
+    """
     offset = int(point[:15], 16)
     return ((seed * numbers + number) * SEED_FACTOR + offset) % SEED_PRIME + 1
 
 
 def variables_of(scene, number, seed, before, after, steps=None):
-    """What the script of chunk `number` is given."""
+    """Returns the variables of the script for chunk `number`: name and value.
+
+    `before` and `after` are the names of the restart files to read and to write; `steps` replaces the chunk's steps.
+    """
     chunk = scene.chunks()[number]
     return {
         **scene.variables,
@@ -48,7 +54,7 @@ def variables_of(scene, number, seed, before, after, steps=None):
 
 
 class Stopwatch:
-    """Processor and wall-clock time since it was made, with the time of LAMMPS processes that have ended."""
+    """Measures processor and wall-clock time [s] since its construction, including ended LAMMPS processes."""
 
     def __init__(self):
         self.cpu, self.wall = self.now()
@@ -63,16 +69,16 @@ class Stopwatch:
 
 
 class Realisation:
-    """Its state at the end of a chunk, which is what a checkpoint holds."""
+    """The state of a realisation at the end of a chunk: the content of a checkpoint."""
 
     def __init__(self, job, scene, identity, folder):
         self.job, self.scene, self.identity = job, scene, identity
         self.chunks = scene.chunks()
-        self.number = 0  # of the chunk to come
-        self.restart = b""  # what it begins with; nothing: the script makes the beginning
+        self.number = 0  # number of the next chunk
+        self.restart = b""  # restart file of the next chunk; empty: the script makes the initial state
         self.samples = {name: [] for name in scene.observables}
         self.timestep = None
-        self.spent = (0.0, 0.0)  # by earlier attempts
+        self.spent = (0.0, 0.0)  # processor and wall-clock time of earlier attempts [s]
         self.stopwatch = Stopwatch()
         self.folder = folder
 
@@ -80,11 +86,11 @@ class Realisation:
         return sum(chunk.steps for chunk in self.chunks[: self.number] if phase in (None, chunk.phase))
 
     def cost(self):
+        """Returns processor and wall-clock time of all attempts [s]."""
         return tuple(before + now for before, now in zip(self.spent, self.stopwatch.read()))
 
     def resume(self):
-        """Takes over the checkpoint of an earlier attempt. One that is torn, or another engine's, is as good as
-        none."""
+        """Loads the checkpoint of an earlier attempt. An absent, damaged or foreign checkpoint is ignored."""
         try:
             with open(self.job["checkpoint"], "rb") as file:
                 heading, restart = json.loads(file.readline()), file.read()
@@ -95,7 +101,7 @@ class Realisation:
                 "restart_sha256": hashlib.sha256(restart).hexdigest(),
             }
             if any(heading[key] != value for key, value in mine.items()):
-                raise ValueError("it is of another realisation or engine, or damaged")
+                raise ValueError("it belongs to another realisation or engine, or is damaged")
             self.number, self.samples, self.timestep, self.spent, self.restart = (
                 heading["number"],
                 heading["samples"],
@@ -122,6 +128,7 @@ class Realisation:
         write_durably(self.job["checkpoint"], json.dumps(heading, allow_nan=False).encode() + b"\n" + self.restart)
 
     def next_variables(self):
+        """Writes the restart file of the next chunk, if any, and returns the variables of its script."""
         if self.restart:
             with open(os.path.join(self.folder, BEFORE), "wb") as file:
                 file.write(self.restart)
@@ -129,14 +136,14 @@ class Realisation:
         return variables_of(self.scene, self.number, seed, BEFORE if self.restart else "none", AFTER)
 
     def advance(self, thermo):
-        """Books the chunk whose process has ended well. Throws LammpsError."""
+        """Takes the samples and the restart file of a chunk that has ended. Raises LammpsError."""
         restart = take_restart(self.folder, AFTER)
         check_columns(self.scene, thermo)
         if not thermo.is_finite():
             raise lammps.LammpsError("Non-numeric thermo output")
         if self.chunks[self.number].phase == "production":
             for name, about in self.scene.observables.items():
-                # The first row is the last one of the chunk before.
+                # The first row repeats the last row of the previous chunk.
                 self.samples[name] += thermo.columns[about.column][1:]
         self.number, self.restart, self.timestep = self.number + 1, restart, thermo.timestep
 
@@ -144,6 +151,7 @@ class Realisation:
         return self.number == len(self.chunks)
 
     def mean(self):
+        """Returns the values of the observables, by name. Raises LammpsError if one has no sample."""
         for name, samples in self.samples.items():
             if not samples:
                 raise lammps.LammpsError(f"{name}: no row of thermo output after the first in the production window")
@@ -151,7 +159,7 @@ class Realisation:
         return {name: taken[about.take](self.samples[name]) for name, about in self.scene.observables.items()}
 
     def blocks(self):
-        """Means over consecutive parts of the window, of what is a mean over the window."""
+        """Returns the means over 32 consecutive parts of the window, by name, of observables that are means."""
         blocks = {}
         for name, about in self.scene.observables.items():
             samples = self.samples[name]
@@ -161,6 +169,7 @@ class Realisation:
         return blocks
 
     def result(self, engine, cause="completed", message=""):
+        """Returns the result (schema/result.schema.json); `engine` is the engine's identity."""
         completed = cause == "completed"
         steps = {phase: self.steps(phase) for phase in ("equilibration", "production")}
         time_of = {phase: None if self.timestep is None else count * self.timestep for phase, count in steps.items()}
@@ -190,7 +199,7 @@ class Realisation:
 
 
 def take_restart(folder, name):
-    """Reads it and removes it. Throws LammpsError when the script has not written it."""
+    """Returns the content of a restart file and removes it. Raises LammpsError if the script has not written it."""
     path = os.path.join(folder, name)
     try:
         with open(path, "rb") as file:
@@ -208,13 +217,14 @@ class NoSuchColumn(lammps.LammpsError):
 
 
 def check_columns(scene, thermo):
+    """Raises NoSuchColumn if the thermo output lacks the column of an observable."""
     for name, about in scene.observables.items():
         if about.column not in thermo.columns:
             raise NoSuchColumn(name, about.column, list(thermo.columns))
 
 
 def check_chunks(scene, phase, every):
-    """Throws Refused unless all chunks of a phase end with a row of thermo output, `every` steps apart."""
+    """Raises Refused unless all chunks of a phase end with a row of thermo output; rows are `every` steps apart."""
     for chunk in scene.chunks():
         if chunk.phase == phase and every and chunk.steps % every != 0:
             key = "chunk" if chunk.steps == scene.chunk < getattr(scene, phase) else phase
@@ -226,5 +236,5 @@ def check_chunks(scene, phase, every):
 
 
 def ending_of(error):
-    """The cause of ending that a LammpsError stands for; None: the script's fault, not the simulation's."""
+    """Returns the cause of ending for a LammpsError, or None if the script is at fault, not the simulation."""
     return next((cause for said, cause in ENDINGS.items() if re.search(said, str(error))), None)

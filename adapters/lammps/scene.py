@@ -1,15 +1,15 @@
-"""What a campaign may say under `scene` when LAMMPS is its engine: checked, and cut into chunks."""
+"""Checks the scene of a campaign whose engine is LAMMPS, and divides its steps into chunks."""
 import dataclasses
 import json
 import re
 
-# Set by the adapter for every chunk; README.md says what they mean.
+# Variables that the adapter sets for every chunk; README.md explains them.
 OWN_VARIABLES = ("from", "to", "steps", "phase", "seed")
 MOST_STEPS = 2**31 - 1
 
 
 class Refused(Exception):
-    """A scene that cannot be run: where in it, what stands there, and what may."""
+    """A scene that cannot be run: the JSON pointer of the fault, the value there, and what is allowed."""
 
     def __init__(self, pointer, value, allowed):
         super().__init__(f"{pointer}: {value}: {allowed}")
@@ -18,7 +18,7 @@ class Refused(Exception):
 
 @dataclasses.dataclass(frozen=True)
 class Chunk:
-    """What one LAMMPS process does."""
+    """The steps of one LAMMPS process."""
 
     phase: str
     steps: int
@@ -32,6 +32,8 @@ class Observable:
 
 @dataclasses.dataclass(frozen=True)
 class Scene:
+    """A checked scene: variables of the script by name, steps of the phases and of a chunk, Observables by name."""
+
     variables: dict
     equilibration: int
     production: int
@@ -39,7 +41,7 @@ class Scene:
     observables: dict
 
     def chunks(self):
-        """Follows from the scene alone, because the trajectory depends on where it is cut."""
+        """Returns the chunks, which depend on the scene alone, because the trajectory depends on its division."""
         chunks = []
         for phase, steps in (("equilibration", self.equilibration), ("production", self.production)):
             chunks += [Chunk(phase, min(self.chunk, steps - done)) for done in range(0, steps, self.chunk)]
@@ -51,6 +53,7 @@ def refuse(pointer, value, allowed):
 
 
 def check_object(value, pointer, required=(), optional=()):
+    """Raises Refused unless the value is an object with all required keys and no other but the optional ones."""
     if not isinstance(value, dict):
         refuse(pointer, value, "must be an object")
     for key in value:
@@ -64,19 +67,22 @@ def check_object(value, pointer, required=(), optional=()):
 
 
 def escaped(key):
+    """Returns the key as a part of a JSON pointer."""
     return key.replace("~", "~0").replace("/", "~1")
 
 
 def steps_at(steps, key, least, default=None):
+    """Returns the whole number at /steps/`key`. Raises Refused if it is not one between `least` and MOST_STEPS."""
     value = steps.get(key, default)
     if isinstance(value, float) and value.is_integer():
-        value = int(value)  # 1e5 is a whole number too
+        value = int(value)  # 1e5 is a whole number, too
     if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= MOST_STEPS:
         refuse(f"/steps/{key}", value, f"must be an integer >= {least} and <= {MOST_STEPS}")
     return value
 
 
 def read_variables(variables):
+    """Returns the variables as texts, by name. Raises Refused if LAMMPS could not take one on its command line."""
     check_object(variables, "/variables", optional=variables if isinstance(variables, dict) else ())
     for name, value in variables.items():
         pointer = f"/variables/{escaped(name)}"
@@ -109,7 +115,7 @@ def read_observables(observables):
 
 
 def read_scene(scene):
-    """Throws Refused."""
+    """Returns the Scene of a JSON document. Raises Refused."""
     check_object(scene, "", required=("steps", "observables"), optional=("variables",))
     check_object(scene["steps"], "/steps", required=("production",), optional=("equilibration", "chunk"))
     production = steps_at(scene["steps"], "production", 1)

@@ -1,5 +1,4 @@
-"""Folders for LAMMPS to run in, each locked by the process that uses it, so that those of the killed can be told and
-removed."""
+"""Makes folders for LAMMPS to run in, locked by their processes, so that those of dead processes can be removed."""
 import contextlib
 import fcntl
 import os
@@ -10,8 +9,10 @@ PREFIX = "peclet-lammps-"
 
 
 def lock(path):
-    """A descriptor that holds the folder's lock until it is closed, also by the process's death; None when another one
-    has it."""
+    """Returns a descriptor that holds the lock of a folder until it is closed, or None if another process has the lock.
+
+    The death of the process closes it, too.
+    """
     descriptor = os.open(path, os.O_RDONLY | os.O_DIRECTORY)
     try:
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -23,10 +24,10 @@ def lock(path):
 
 @contextlib.contextmanager
 def folder_with(files):
-    """A fresh folder with links to `files`, which is removed at the end."""
+    """Yields the path of a new folder with links to `files`, and removes the folder at the end."""
     path = tempfile.mkdtemp(prefix="new-" + PREFIX)
     descriptor = lock(path)
-    # Only now has it a name under which others look for what the dead have left.
+    # Only a locked folder gets the name that remove_left_folders() looks for.
     path, unlocked_name = os.path.join(os.path.dirname(path), os.path.basename(path)[len("new-") :]), path
     os.rename(unlocked_name, path)
     try:
@@ -47,7 +48,7 @@ def remove_left_folders():
         try:
             descriptor = lock(path)
         except OSError:
-            continue  # somebody else's, or just gone
+            continue  # of another user, or removed just now
         if descriptor is not None:
             shutil.rmtree(path, ignore_errors=True)
             os.close(descriptor)

@@ -1,4 +1,4 @@
-// fmt's own src/format.cc: the part of the library that is not in its headers alone.
+// The content of fmt's src/format.cc: the part of the library that is not in its headers.
 #include <fmt/format-inl.h>
 
 FMT_BEGIN_NAMESPACE

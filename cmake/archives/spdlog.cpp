@@ -1,4 +1,4 @@
-// What of spdlog's own src/*.cpp the programs need: loggers, patterns, and the sinks of terminals.
+// The parts of spdlog's src/*.cpp that the programs need: loggers, patterns, and sinks for terminals.
 #include <spdlog/common-inl.h>
 #include <spdlog/details/backtracer-inl.h>
 #include <spdlog/details/log_msg-inl.h>

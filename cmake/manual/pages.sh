@@ -1,5 +1,5 @@
 #!/bin/sh
-# pages.sh PECLET FOLDER: writes the manual pages of peclet and of its verbs, which help2man makes of --help.
+# pages.sh PECLET FOLDER: writes the manual pages of peclet and of its verbs, which help2man makes from --help.
 set -eu
 peclet=$1 folder=$2
 here=$(cd "$(dirname "$0")" && pwd)
@@ -7,7 +7,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 version=$("$peclet" --version | cut -d ' ' -f 2)
 
-# page NAME SUMMARY [VERB]: text behind the options gets a heading, examples a prompt, and the page its own name.
+# page NAME SUMMARY [VERB]: writes a page; adds a heading to text behind the options, and a prompt to examples.
 page() {
   "$peclet" ${3:+"$3"} --help | awk '
     /^Options:/ { behind = 1 }

@@ -12,8 +12,8 @@ constexpr std::uint32_t version = 10;
 constexpr std::size_t header_size = 20;
 constexpr std::size_t checksum_size = 64;
 
-// A particle has some 100 bytes and up to some thirty neighbours; blocks and correlations are of the scene.
-// What is larger is not read: it may be a terabyte of nothing.
+// Largest checkpoint that is read [bytes]; a sparse file could be a terabyte. A particle takes some 100 bytes
+// and has up to thirty neighbours; blocks and correlations depend on the scene.
 std::uint64_t largest_checkpoint(std::size_t particles) {
   return (std::uint64_t{64} << 20) + (std::uint64_t{16} << 10) * particles;
 }
@@ -28,7 +28,7 @@ std::string_view checked_payload(std::string_view bytes) {
                           std::to_string(version));
   }
   if (header.get<std::uint64_t>() != bytes.size() - header_size - checksum_size) {
-    throw CheckpointError("is torn: its length is not the one that it states");
+    throw CheckpointError("is torn: its length is not the one in its header");
   }
   const std::string_view payload = bytes.substr(header_size, bytes.size() - header_size - checksum_size);
   if (sha256(payload) != bytes.substr(bytes.size() - checksum_size)) {
@@ -43,7 +43,7 @@ CheckpointIdentity get_identity(ArchiveReader& payload) {
   return found;
 }
 
-// Calls use(payload) with what is in a file. Every fault becomes a CheckpointError that names it.
+// Calls use(payload) with the payload of a file. Every fault becomes a CheckpointError that names the file.
 template <class Use>
 void with_payload(const std::filesystem::path& path, std::size_t particles, const Use& use) {
   try {
@@ -53,8 +53,8 @@ void with_payload(const std::filesystem::path& path, std::size_t particles, cons
   } catch (const UnsuitableFile& error) {
     throw CheckpointError(error.what());
   } catch (const std::bad_alloc&) {
-    throw;                                 // short memory says nothing of the file
-  } catch (const std::exception& error) {  // also of a cell that is smaller than the range of the forces
+    throw;                                 // lack of memory is not a fault of the file
+  } catch (const std::exception& error) {  // includes a cell smaller than the range of the forces
     throw CheckpointError(path.string() + ": " + error.what());
   }
 }
@@ -100,7 +100,7 @@ Spent read_checkpoint(const std::filesystem::path& path, const CheckpointIdentit
     require_same_motion(found, identity);
     spent = payload.get<Spent>();
     simulation.load(payload);
-    if (!payload.at_end()) throw CheckpointError("holds more than belongs there");
+    if (!payload.at_end()) throw CheckpointError("has unexpected bytes at its end");
   });
   return spent;
 }

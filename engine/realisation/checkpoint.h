@@ -1,13 +1,12 @@
-// A realisation cut in the middle, on disk.
+// Writes and reads checkpoints of a realisation.
 //
 //   bytes 0-7    "PCLTCKPT"
 //   bytes 8-11   version of the layout, unsigned, little-endian
 //   bytes 12-19  length of the payload
-//   then         the payload: identity (scene, seed, binary, motion), processor seconds so far, simulation
-//   then         64 letters: SHA-256 of the payload
+//   then         the payload: identity (scene, seed, binary, motion), time spent, simulation
+//   then         64 characters: SHA-256 of the payload in hexadecimal
 //
-// It carries every bit that the rest of the run depends on: a run that was cut and resumed ends as one that
-// was not.
+// A checkpoint holds the whole state of the run: a resumed run gives the same bits as an uninterrupted one.
 #pragma once
 
 #include <filesystem>
@@ -18,7 +17,7 @@
 
 namespace peclet::engine {
 
-// What a checkpoint belongs to. The binary counts: another one may round differently.
+// Identity of the run that a checkpoint belongs to. Another binary may round differently.
 struct CheckpointIdentity {
   std::string scene_sha256;  // of the canonical scene with its defaults
   std::uint64_t seed = 0;
@@ -28,11 +27,10 @@ struct CheckpointIdentity {
   friend bool operator==(const CheckpointIdentity&, const CheckpointIdentity&) = default;
 };
 
-// SHA-256 of all that steps depend on: the scene without durations, observables and files, and the step's
-// size.
+// Returns the SHA-256 of the scene without durations, observables and files, and of the size of the step.
 std::string motion_of(const Scene& scene, const Schedule& schedule);
 
-// The file is no checkpoint, of another version, torn, altered, or of another scene, seed or binary.
+// The file is not a checkpoint, truncated, altered, or of another version, scene, seed or binary.
 class CheckpointError : public IntegrityError {
  public:
   using IntegrityError::IntegrityError;
@@ -42,27 +40,27 @@ struct Spent {
   double processor_seconds = 0, wall_seconds = 0;
 };
 
-// Throws std::system_error when it cannot be written; the old file is then untouched.
+// Writes a checkpoint durably. Throws std::system_error if this fails; the old file then stays.
 void write_checkpoint(const std::filesystem::path& path, const CheckpointIdentity& identity,
                       const Spent& spent, const Simulation& simulation);
 
-// Restores a simulation of the same scene. Throws CheckpointError naming the file and the fault; `simulation`
-// is then to be discarded.
+// Restores a simulation of the same scene and returns the time spent on it. Throws CheckpointError naming the
+// file and the fault; `simulation` is then unusable.
 Spent read_checkpoint(const std::filesystem::path& path, const CheckpointIdentity& identity,
                       Simulation& simulation);
 
-// How far a realisation has come, and what it has cost.
+// Progress of a realisation, and the time spent on it.
 struct Progressed {
   std::uint64_t step = 0;
   Spent spent;
 };
 
-// Of a checkpoint of the same motion, seed and binary: its scene may differ in durations, observables and
-// files. Throws CheckpointError naming the file and the fault.
+// Returns the progress of a checkpoint of the same motion, seed and binary. Its scene may differ in
+// durations, observables and files. Throws CheckpointError naming the file and the fault.
 Progressed read_progress(const std::filesystem::path& path, const CheckpointIdentity& identity,
                          std::size_t particles);
 
-// Goes on from there: what was measured until then is left behind.
+// Restores the motion from such a checkpoint, without its measurements. Throws as read_progress().
 void extend_checkpoint(const std::filesystem::path& path, const CheckpointIdentity& identity,
                        Simulation& simulation);
 

@@ -13,7 +13,7 @@
 namespace peclet::engine {
 namespace {
 
-// Strains are summed over both directions.
+// Steps in the flow of the scene. Strains in both directions count as positive.
 class GivenRate final : public Driver {
  public:
   explicit GivenRate(const ImposedFlow& flow) : flow_(flow) {}
@@ -33,16 +33,15 @@ class GivenRate final : public Driver {
   ImposedFlow flow_;
 };
 
-// Of the stress: a step that misses it by more is made again, so many times at most.
+// Relative error of the stress above which a step is repeated, and the largest number of attempts.
 constexpr double tolerance = 0.01;
 constexpr int most_attempts = 6;
 
-// The time in which the rate follows a stress: in steps, and in strain where steps are long.
+// Response time of the rate: the usual and the shortest one [steps], and as a strain.
 constexpr double usual_response = 20, shortest_response = 5, strain_of_response = 0.05;
 
-// Rate of the step that measures a slope with noise [1/time]. Beside the stress of the noise, kT / a^3, which
-// is rounded to single precision, one of its own must be seen; at high stress it is about the rate of the
-// flow.
+// Returns the rate of the step that measures the slope with noise [1/time]. Its stress must be visible beside
+// the stress of the noise, kT / a^3, which has single precision. At high stress it is the usual rate.
 double trial_rate(const Scene& scene, double usual_rate) {
   const double a = scene.particles.reference_radius;
   return std::max(scene.physics.thermal_energy / (scene.physics.viscosity * a * a * a), usual_rate);
@@ -87,7 +86,6 @@ StepReport StressControl::step(Integrator& integrator, System& system, double ra
   return integrator.advance(system);
 }
 
-// As results have it; with noise as it acts.
 double StressControl::stress_of_pairs(const StepReport& report, const System& system) const {
   double sum = 0;
   if (thermal_energy_ > 0) {
@@ -129,8 +127,8 @@ StepReport StressControl::advance_to_stress(Integrator& integrator, System& syst
   return report;
 }
 
-// The slope of the pairs' stress, by a step at rest and one at the trial rate with the same noise. Where one
-// of them breaks off the slope stays as it is.
+// Measures the slope of the pair stress by a step at rest and one at the trial rate, with the same noise. If
+// one of them breaks off, the slope stays as it is.
 void StressControl::find_inertia(Integrator& integrator, System& system) {
   integrator.mark(system);
   integrator.show_pairs_to(nullptr);
@@ -145,8 +143,7 @@ void StressControl::find_inertia(Integrator& integrator, System& system) {
   inertia_ = response_ * (slope_ + solvent_);
 }
 
-// Friction of the pairs is felt half at the old and half at the new rate, as that of the solvent is: of the
-// pairs' stress at the new rate the slope says as much.
+// Friction acts half at the old and half at the new rate; the slope gives the pair stress at the new rate.
 StepReport StressControl::advance_with_inertia(Integrator& integrator, System& system, PairWatcher* watcher) {
   if (inertia_ == 0 || std::has_single_bit(system.step)) find_inertia(integrator, system);
   const double volume = system.box.volume();

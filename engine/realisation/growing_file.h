@@ -1,4 +1,4 @@
-// Files that a realisation writes beside its result: a growing GSD file and the last configuration.
+// Writes the files beside a result: a growing GSD file and the last configuration.
 #pragma once
 
 #include <filesystem>
@@ -10,47 +10,48 @@
 
 namespace peclet::engine {
 
-// A GSD file that grows beside a checkpoint.
+// A GSD file that grows during a realisation.
 //
-// It lies beside the checkpoint as CHECKPOINT@growing; without one it has no name, and goes with the
-// process. What a checkpoint knows of it (gsd::Frames) is on disk before the checkpoint is; whatever was
-// written after that is written again by the run that goes on. The bytes of a realisation follow from its
-// scene and seed, and each has its place: an engine that lives on for some seconds, while the next one is at
-// work on the same seed, writes what is there.
+// The file is CHECKPOINT@growing. Without a checkpoint it has no name and vanishes with the process. Frames
+// that a checkpoint knows of (gsd::Frames) are on disk before the checkpoint; a resumed run writes later
+// frames again. Every byte and its place follow from scene and seed. So an old engine that lives on for some
+// seconds, beside a new one with the same seed, writes the same bytes.
 class GrowingFile {
  public:
-  // Throws std::system_error, UnsuitableFile.
+  // Opens or creates the file. Throws std::system_error, UnsuitableFile.
   explicit GrowingFile(const std::filesystem::path& path, bool has_name = true);
 
-  // What is behind the frames that were given to it does not count, and is written again. Throws
-  // CheckpointError where one of them is absent or altered.
+  // Checks that the file has the written frames; bytes behind them are overwritten later. Throws
+  // CheckpointError if a frame is absent or altered.
   void go_on(const gsd::Frames& frames) const;
 
-  // Takes what is pending. Throws NoRoomError, std::system_error; everything then is still pending.
+  // Writes the pending bytes of `frames`. Throws NoRoomError, std::system_error; all bytes then stay pending.
   void take(gsd::Frames& frames) const;
-  // What was taken is on disk.
+  // Waits until all written bytes are on disk.
   void synchronise() const;
 
-  // Replaces `target` by the whole file, durably. Throws NoRoomError, std::system_error, IntegrityError where
-  // somebody has altered a frame.
+  // Replaces `target` by the whole file, durably. Throws NoRoomError, std::system_error, IntegrityError.
   void finish(const gsd::Frames& frames, const std::filesystem::path& target) const;
 
  private:
   void write_at(std::uint64_t place, std::string_view bytes) const;
   void cut(std::uint64_t length) const;
   void move_to(std::uint64_t place) const;
-  // The first frame that is not as it was written; empty: none.
+  // Returns a description of the first frame that is absent or altered; "" if all are sound.
   std::string fault(const gsd::Frames& frames) const;
 
   std::filesystem::path path_;
   Descriptor file_;
 };
 
-// Returns the spheres as extended XYZ: the number of spheres; a line with the three lattice vectors of the
-// deformed cell, the columns, time, strain and the columns of the velocity gradient; then of each sphere its
-// number for life, by which they are sorted, the centre, the radius, the velocity and the angular velocity,
-// in the units of the scene. Numbers are read back as they were, bit by bit. A centre may lie outside of the
-// cell; its velocity is that of the image there.
+// Returns the spheres as extended XYZ, in the units of the scene:
+//
+// - the number of spheres;
+// - a line with the lattice vectors of the deformed cell, the names of the columns, time, net strain, and the
+//   columns of the velocity gradient;
+// - for each sphere, sorted by id: id, centre, radius, velocity, angular velocity.
+//
+// Numbers round-trip bit by bit. A centre may lie outside of the cell; its velocity is that of this image.
 std::string extended_xyz(const System& system);
 
 }  // namespace peclet::engine

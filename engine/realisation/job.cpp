@@ -26,11 +26,10 @@ namespace fs = std::filesystem;
 
 using Clock = std::chrono::steady_clock;
 
-// Fewer particles per thread than this lose more by waiting for each other than they gain; so do more threads
-// than processors. The result is the same.
+// With fewer particles per thread, threads lose more by waiting than they gain; results do not change.
 constexpr std::size_t fewest_particles_per_thread = 4000;
 
-// How soon a checkpoint is tried again that did not fit onto the disk.
+// Delay before a checkpoint that did not fit onto the disk is tried again [s].
 constexpr std::chrono::duration<double> when_full{5};
 
 double processor_seconds() {
@@ -39,7 +38,7 @@ double processor_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-// What this realisation has cost, in this process and in those before it.
+// Time spent on the realisation, in this process and in earlier ones.
 class Meter {
  public:
   explicit Meter(Spent before) : before_(before), processor_(processor_seconds()), start_(Clock::now()) {}
@@ -89,7 +88,7 @@ class Job {
     }
     if (!ending) {
       if (!save(job_.checkpoint))
-        events_.remark("no room for a checkpoint: what came after the last one is lost");
+        events_.remark("no room for a checkpoint: the work since the last one is lost");
       return std::nullopt;
     }
     std::string state;
@@ -119,14 +118,15 @@ class Job {
 
  private:
   [[noreturn]] void refuse_files(const char* pointer, const char* rule) const {
-    throw InputError(job_.scene_name, pointer, shortened(scene_.document.at(Json::json_pointer(pointer))),
-                     std::string(rule) +
-                         " where files cannot be left: `peclet-engine run` needs --output with the name of a "
-                         "file, beside which they are put");
+    throw InputError(
+        job_.scene_name, pointer, shortened(scene_.document.at(Json::json_pointer(pointer))),
+        std::string(rule) +
+            ", because there is no place for files: `peclet-engine run` puts them beside --output, "
+            "which must name a file");
   }
 
-  // Tries until there is room. False: nobody wants to wait for it. Without a checkpoint, from which the job
-  // could go on another time, that is an error.
+  // Repeats write() while the disk is full and the caller waits for room. Returns false if it does not wait;
+  // throws NoRoomError then if the job has no checkpoint to resume from.
   template <class Write>
   bool write_patiently(const Write& write) const {
     while (true) {
@@ -141,7 +141,7 @@ class Job {
     }
   }
 
-  // A file beside the result, which lists it: `write` puts it there, durably. False: there was no room.
+  // Writes a file beside the result and lists it in the result. Returns false as write_patiently().
   template <class Write>
   bool leave(const std::string& name, const Write& write, Json& result) const {
     const fs::path path = job_.files + name;
@@ -158,7 +158,7 @@ class Job {
     simulation_ = std::make_unique<Simulation>(scene_, schedule_, job_.header.seed, threads, job_.scene_name);
   }
 
-  // Where its frames go, as far as it has come.
+  // Opens the file for frames, if the scene has a trajectory, and checks the frames written so far.
   void open_frames_file() {
     const gsd::Frames* const frames = simulation_->frames();
     if (frames == nullptr) return;
@@ -190,8 +190,8 @@ class Job {
     }
   }
 
-  // The window begins where the checkpoint is, if not later. A run whose window is another one than its scene
-  // says is not resumed as one of the scene.
+  // Moves the beginning of the window to the extended checkpoint, if that is later. The identity then
+  // includes this step, so that checkpoints of the scene's own window do not match.
   void plan_extension() {
     const auto progressed = [&] {
       try {
@@ -205,7 +205,7 @@ class Job {
       throw InputError(
           job_.scene_name, "/duration", fmt::format("{} steps", total),
           fmt::format("must be {} steps at least: {} that the checkpoint has made, and one for each "
-                      "block of a window",
+                      "block of the window",
                       progressed.step + count_of_blocks, progressed.step));
     }
     if (progressed.step > schedule_.equilibration) {
@@ -217,7 +217,7 @@ class Job {
     meter_.start_after(progressed.spent);
   }
 
-  // Moduli are those of whole cycles.
+  // Throws InputError if moduli, which are means over whole cycles, would begin within a cycle.
   void refuse_part_of_cycle(std::uint64_t step) const {
     const std::optional<double> period = scene_.physics.flow.period();
     if (!period || !scene_.observables.contains("oscillation")) return;
@@ -230,6 +230,7 @@ class Job {
                     job_.extended.string(), step % of_cycle, of_cycle));
   }
 
+  // Resumes from the job's checkpoint. Returns false if that was unusable and has been set aside.
   bool resume() {
     try {
       const Spent spent = read_checkpoint(job_.checkpoint, identity_, *simulation_);
@@ -246,9 +247,9 @@ class Job {
     }
   }
 
-  // Until the end, or until a drain is requested.
+  // Makes steps until the realisation ends. Returns nothing if the job was drained before.
   std::optional<Ending> loop() {
-    // Some 65 000 particle-steps are about ten milliseconds.
+    // 65536 particle-steps take about ten milliseconds.
     const std::uint64_t stride = std::max<std::uint64_t>(1, 65536 / scene_.particles.count);
     Clock::time_point next_checkpoint =
         Clock::now() +
@@ -263,14 +264,14 @@ class Job {
     }
   }
 
-  // Frames that have come together go to their file. False: there is no room, and nobody wants to wait.
+  // Writes frames to their file if they take much memory. Returns false as write_patiently().
   bool relieve_memory() {
     constexpr std::size_t many = std::size_t{8} << 20;
     if (!frames_file_ || simulation_->frames()->pending().size() < many) return true;
     return write_patiently([this] { frames_file_->take(*simulation_->frames()); });
   }
 
-  // Frames are on disk before the checkpoint that knows of them.
+  // Writes a checkpoint, after the frames that it knows of are on disk.
   void put_checkpoint(const fs::path& path) {
     if (frames_file_) {
       frames_file_->take(*simulation_->frames());
@@ -279,7 +280,7 @@ class Job {
     write_checkpoint(path, identity_, meter_.spent(), *simulation_);
   }
 
-  // Returns when the next one is due. Want of room is no reason to give up work that is in memory.
+  // Writes a checkpoint, and returns the time until the next one. If the disk is full the job continues.
   Clock::duration checkpoint_on_the_way() {
     const std::chrono::duration<double> interval(job_.checkpoint_seconds);
     try {
@@ -291,13 +292,12 @@ class Job {
     }
   }
 
-  // False: there is no room, and nobody wants to wait for it.
+  // Returns false as write_patiently().
   bool save(const fs::path& path) {
     return write_patiently([&] { put_checkpoint(path); });
   }
 
-  // A realisation that broke off leaves its last state where people can look at it: `name` in the folder of
-  // failures. False: there was no room.
+  // Saves the last state of a realisation that broke off as `name`. Returns false as write_patiently().
   bool save_state(const Ending& ending, std::string& name) {
     if (is_measured(ending.cause) || job_.failures.empty()) return true;
     name = job_.header.point.substr(0, 12) + "-" + std::to_string(job_.header.seed) + ".state";
@@ -311,7 +311,7 @@ class Job {
   Schedule schedule_;
   CheckpointIdentity identity_;
   std::unique_ptr<Simulation> simulation_;
-  std::optional<GrowingFile> frames_file_;  // where there are frames
+  std::optional<GrowingFile> frames_file_;  // if the scene has a trajectory
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// One realisation from its scene to its result, with checkpoints on the way.
+// Runs one realisation from its scene to its result, with checkpoints.
 #pragma once
 
 #include <filesystem>
@@ -11,47 +11,48 @@
 
 namespace peclet::engine {
 
+// Scene, seed, settings and files of a job.
 struct JobSpecification {
   ResultHeader header;
   Json scene;
   std::string scene_name;            // in messages
   int threads = 1;                   // at most; a small system uses fewer
-  std::filesystem::path checkpoint;  // resumed from when it exists; empty: none is written
+  std::filesystem::path checkpoint;  // resumed from if it exists; empty: no checkpoints
   double checkpoint_seconds = 300;
-  // A checkpoint, of a scene that differs in durations, observables and files at most, from which the job
-  // goes on if it has none of its own; empty: it begins at the start. Windows begin where the checkpoint is,
-  // if the scene's begins before it.
+  // Checkpoint from which the job continues if it has no checkpoint of its own; empty: it begins at the
+  // start. Its scene may differ in durations, observables and files. The production window begins at this
+  // checkpoint if the scene's window would begin before it.
   std::filesystem::path extended;
   std::filesystem::path failures;  // folder for the state of a realisation that broke off; empty: not saved
-  std::string files;  // what the names of files beside the result begin with; empty: none are taken
-  bool restart_on_bad_checkpoint =
-      false;  // an unusable checkpoint is set aside (.rejected) instead of ending the job
+  std::string files;               // prefix of the names of files beside the result; empty: no files
+  // An unusable checkpoint is renamed to .rejected and the job starts again; if false, the job ends.
+  bool restart_on_bad_checkpoint = false;
 };
 
 struct Progress {
   const char* phase;  // "packing", "equilibration", "production"
-  // Steps made and in all; while packing those of its minimisation, whose number nobody knows: 0.
+  // Steps made and their total. While packing: steps of the minimisation, and 0.
   std::uint64_t step, steps;
   double strain;
 };
 
-// What the surroundings of a job may ask and hear, several times a second.
+// Callbacks of a running job, called several times a second.
 struct JobEvents {
+  // Returns true if the job shall write a checkpoint and end.
   std::function<bool()> drain_requested = [] { return false; };
   std::function<void(const Progress&)> progress = [](const Progress&) {};
   std::function<void(const std::string&)> remark = [](const std::string&) {};  // for a log
-  // A checkpoint on the way did not fit onto the disk; the job goes on, and tries again some seconds later.
+  // A checkpoint did not fit onto the disk; the job continues, and tries again some seconds later.
   std::function<void(const NoRoomError&)> skipped = [](const NoRoomError&) {};
-  // A file that the job cannot end without did not fit. True: try again now; false: end all the same.
+  // A file that the job needs at its end did not fit. Returns true to try again now, false to end without it.
   std::function<bool(const NoRoomError&)> wait_for_room = [](const NoRoomError&) { return false; };
 };
 
-// The result, or nothing when the job was drained: its checkpoint is then on disk, or the one before it when
-// there was no room. Throws InputError, CheckpointError, std::system_error.
+// Returns the result, or nothing if the job was drained. Its checkpoint is then on disk, or, if the disk was
+// full, the previous one. Throws InputError, CheckpointError, std::system_error.
 std::optional<Json> run_job(const JobSpecification& job, const JobEvents& events);
 
-// Speaks frames on `descriptor` until the peer closes it or says stop; schema/README.md lists the messages.
-// Returns the exit code.
+// Answers frames (schema/README.md) until the peer leaves or sends drain or stop. Returns the exit code.
 int serve(int descriptor);
 
 }  // namespace peclet::engine

@@ -15,18 +15,19 @@
 namespace peclet::engine {
 namespace {
 
-constexpr double inflation = 1e-3;    // of the diameters that are brought apart
-constexpr double smallest_gap = 0.2;  // accepted, of that inflation
+constexpr double inflation = 1e-3;    // relative increase of the diameters in the minimisation
+constexpr double smallest_gap = 0.2;  // smallest accepted gap, as a fraction of the inflation
 constexpr int most_iterations = 40000;
-constexpr double skin = 0.15;  // of the ranges
+constexpr double skin = 0.15;  // of the neighbour list, as a fraction of the ranges
 
-// Overlaps of the inflated spheres at one configuration.
+// Overlaps and forces of the inflated spheres in one configuration.
 struct Overlaps {
-  double largest = 0;  // of the inflation-free contact distance
-  double power = 0;    // force . velocity
+  double largest = 0;  // as a fraction of a_i + a_j
+  double power = 0;    // sum of force . velocity
   double force_squared = 0, velocity_squared = 0;
 };
 
+// Minimises the overlaps of inflated spheres.
 class Quench {
  public:
   Quench(ParticleState& particles, const PeriodicCell& box, const std::function<void()>& made_step)
@@ -43,8 +44,7 @@ class Quench {
     step_ = 0.1;
   }
 
-  // FIRE with its published constants. Returns the smallest of r / (a_i + a_j), at least one when it
-  // succeeds.
+  // Runs FIRE with its published constants. Returns the smallest r / (a_i + a_j); above 1 without overlap.
   double run() {
     constexpr double longest_step = 0.7;
     double mixing = 0.1;
@@ -119,7 +119,7 @@ class Quench {
     }
   }
 
-  // Net forces have units of length here: those of 1e-12 radii are none.
+  // Returns the squared force [length^2] below which a minimum is jammed: 1e-12 radii for each sphere.
   double force_squared_of_jam() const {
     const double radius = *std::min_element(particles_.radius.begin(), particles_.radius.end());
     return 1e-24 * radius * radius * static_cast<double>(particles_.count());
@@ -142,8 +142,8 @@ class Quench {
   double step_;
 };
 
-// The largest volume fraction, to 0.005, at which the spheres were brought apart starting from where they
-// stand, free of overlap at `scale` times their radii: these shrink and grow again by bisection.
+// Returns the largest volume fraction, to 0.005, at which a quench from the present positions leaves no
+// overlap. Bisects between the radii and `scale` times the radii, which are free of overlap.
 double reached_volume_fraction(ParticleState particles, const PeriodicCell& box, double scale,
                                const std::function<void()>& made_step) {
   const std::vector<double> radius = particles.radius;
@@ -158,7 +158,7 @@ double reached_volume_fraction(ParticleState particles, const PeriodicCell& box,
   return free;
 }
 
-// Returns of(species) of each sphere, species by species.
+// Returns the value of(species) for each sphere, species by species.
 template <class Of>
 std::vector<double> of_each_sphere(const Particles& particles, const Of& of) {
   const std::vector<std::size_t> number = species_numbers(particles);
@@ -195,7 +195,7 @@ double cube_edge(const Particles& particles, double volume_fraction) {
   for (std::size_t s = 0; s < number.size(); ++s) {
     const double a = particles.species[s].radius, of_one = 4.0 / 3.0 * std::numbers::pi * a * a * a;
     for (std::size_t i = 0; i < number[s]; ++i) {
-      volume += of_one;  // one by one, because a product would be rounded otherwise
+      volume += of_one;  // one by one, as the sum over radii is rounded
     }
   }
   return std::cbrt(volume / volume_fraction);

@@ -20,12 +20,12 @@
 namespace peclet::engine {
 namespace {
 
-// Half of the sixth digit of a length that begins with 1: files of other programs have no more digits.
+// Relative tolerance of lengths in files with six digits: half of the sixth digit of 1.00000.
 constexpr double rounding = 5e-6;
 
 bool is_near(double a, double b, double scale) { return std::abs(a - b) <= rounding * scale; }
 
-// Whether the radii are alike in some order.
+// Returns true if the radii agree in some order.
 bool are_the_same(std::vector<double> found, std::vector<double> wanted) {
   std::ranges::sort(found);
   std::ranges::sort(wanted);
@@ -66,7 +66,7 @@ class Placing {
            lines);
   }
 
-  // Throws InputError if two lines of the list have one hash.
+  // Throws InputError if two lines of the list have the same hash.
   void require_different_files() const {
     std::map<std::string, std::size_t> seeds;
     const std::vector<std::string> lines = lines_of_list();
@@ -88,7 +88,7 @@ class Placing {
   }
 
   void require_hash(const std::string& path, const std::string& expected, const std::string& pointer) const {
-    std::error_code impossible;  // such a name is not there either
+    std::error_code impossible;  // an impossible name counts as absent
     if (!std::filesystem::is_regular_file(path, impossible))
       refuse(start_.pointer(), path, "must be a file that is there");
     const std::string found = sha256_of_file(path);
@@ -97,7 +97,7 @@ class Placing {
     }
   }
 
-  // Returns the lines of the list, which has to have its hash, without blank ones at its end.
+  // Returns the lines of the list without blank ones at its end. Throws InputError if its hash differs.
   std::vector<std::string> lines_of_list() const {
     require_hash(start_.path, start_.sha256, "/start/sha256");
     const std::string text = read_input(start_.path);
@@ -107,7 +107,7 @@ class Placing {
     return lines;
   }
 
-  // Returns the file of a line, "HASH  PATH" or "HASH *PATH", which has to have this hash.
+  // Returns the path in the seed's line, "HASH  PATH" or "HASH *PATH". Throws InputError if the hash differs.
   std::string listed(std::uint64_t seed) const {
     const std::vector<std::string> lines = lines_of_list();
     if (seed >= lines.size()) {
@@ -155,7 +155,7 @@ class Placing {
     }
     if (!snapshot.has_sizes) {
       refuse(start_.pointer(), start_.path,
-             "must have particles/diameter, and has none: HOOMD-blue 4 writes diameters if its "
+             "must have particles/diameter, which is absent: HOOMD-blue 4 writes diameters if its "
              "GSD.write_diameter is True");
     }
     for (std::size_t i = 0; i < radius.size(); ++i) {

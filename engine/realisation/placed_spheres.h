@@ -1,4 +1,4 @@
-// Spheres where a file has them: the start of a realisation that follows another one.
+// Reads the initial spheres of a realisation from a file.
 #pragma once
 
 #include <cstdint>
@@ -14,16 +14,16 @@ struct PlacedSpheres {
   bool in_motion = false;  // the file has velocities and spins
 };
 
-// The frame that a scene's start names for this seed. Requires a scene with a start; `file` names it in
-// messages. Sphere i of the file, in the order of its ids, has to have the radius of the scene's sphere i,
-// and the cell to be the scene's box, sheared along x: both to 5e-6, because files of other programs have six
-// digits. Places are taken as they are, and so are velocities and spins (angular velocities) where the file
-// has both. Throws InputError where a file is not the one of the hash, or does not fit.
+// Returns the spheres of the frame that the scene's start names for this seed. Requires a scene with a start;
+// `file` is the scene's name in messages. Sphere i of the file, by ids, must have the radius of the scene's
+// sphere i. The cell must be the scene's box, sheared along x. Both are compared to a relative 5e-6, because
+// files of other programs have six digits. Positions are taken unchanged, as are velocities and spins
+// (angular velocities) if the file has both. Throws InputError if the file has another hash or does not fit.
 PlacedSpheres placed_spheres(const Scene& scene, std::uint64_t seed, const std::string& file);
 
-// For a campaign of at most `seeds` seeds, before it runs: the same of the first seed. A list has to have a
-// line for each of them. Without noise two seeds that begin at one file would be one realisation: a list that
-// has a hash twice is refused, and so is one file for all seeds.
+// Checks the start of a campaign of at most `seeds` seeds, and the spheres of its first seed, before it runs.
+// A list must have a line for each seed. Without noise two seeds that begin at one file would be one
+// realisation, so one file for all seeds, or a hash twice in a list, is refused. Throws InputError.
 void check_start_of_campaign(const Scene& scene, const std::string& file, std::int64_t seeds = 1);
 
 }  // namespace peclet::engine

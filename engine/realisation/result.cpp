@@ -20,8 +20,8 @@
 namespace peclet::engine {
 namespace {
 
-// Energy made by the step over the work of the flow on pairs, in the production window. Without flow there is
-// no work; noise does work by itself, so that the balance says nothing about the step.
+// Returns the energy error of the steps over the work of the flow on pairs, in the production window. Returns
+// nothing without flow, because there is no work, and with noise, which does work itself.
 std::optional<double> energy_imbalance(const Scene& scene, const Simulation& simulation) {
   const BlockSums window = sum_of(simulation.production().blocks());
   const StepErrors& errors = simulation.step_errors();
@@ -31,29 +31,29 @@ std::optional<double> energy_imbalance(const Scene& scene, const Simulation& sim
     work_per_step += simulation.schedule().timestep * flow.steady_rate() * flow.shear_part(stress) /
                      static_cast<double>(window.steps);
   }
-  // Waves and oscillations do work that this balance leaves out.
+  // Waves and oscillations do work that this balance omits.
   if (!flow.is_steady() || scene.physics.thermal_energy > 0 || errors.samples == 0 || !(work_per_step > 0)) {
     return std::nullopt;
   }
   return errors.spurious_energy / static_cast<double>(errors.samples) / work_per_step;
 }
 
-// How much more stress the samples have with whole steps than with half ones, relative to the latter.
+// Returns the stress of the samples with whole steps over the one with half steps, less 1.
 std::optional<double> half_step_difference(const StepErrors& errors) {
   const auto [whole, halved] = errors.half_steps;
   if (!(halved > 0)) return std::nullopt;
   return whole / halved - 1;
 }
 
-// Beyond this the equations of implicit steps cannot be called solved. In results/speed-accuracy, with
-// friction at phi = 0.45, it is 0.005 at the automatic step and 0.028 at four times that, whose viscosity is
-// 6 % off.
+// Mean relative residual of implicit steps above which the result gets a warning. In results/speed-accuracy,
+// with friction at phi = 0.45, it is 0.005 at the automatic step, and 0.028 at four times that step, where
+// the viscosity is 6 % off.
 constexpr double largest_mean_residual = 0.015;
 
-// Where more of the steps are divided, the step is no longer the one that was chosen.
+// Share of divided steps above which the result gets a warning: the step is then not the one that was chosen.
 constexpr double largest_share_divided = 0.1;
 
-// How well implicit steps have solved their equations, in the production window.
+// Returns the accuracy of the solver of implicit steps in the production window; null for explicit steps.
 Json solver_json(const Scene& scene, const Simulation& simulation) {
   const StepErrors& errors = simulation.step_errors();
   const auto steps = static_cast<double>(sum_of(simulation.production().blocks()).steps);
@@ -100,7 +100,7 @@ Json common_part(const ResultHeader& header, const Scene& scene, const Schedule&
           {"engine", engine_identity()}};
 }
 
-// 1 + 2 sum of the autocorrelation: statistical_inefficiency() of the block means of every scalar.
+// Returns the statistical_inefficiency() of the block means of every scalar.
 Json inefficiencies(const Json& blocks, const std::vector<Quantity>& quantities) {
   Json all = Json::object();
   for (const Quantity& quantity : quantities) {
@@ -123,7 +123,7 @@ std::vector<Quantity> quantities_of(const StressMeans& stress,
   return all;
 }
 
-// What ended before its window has parts of which nothing is known.
+// Replaces numbers that are not finite by null: means and blocks may be undefined if a run jammed early.
 void leave_no_nans(Json& value) {
   if (value.is_number_float() && !std::isfinite(value.get<double>())) value = nullptr;
   if (!value.is_structured()) return;
@@ -158,7 +158,7 @@ void add_measurements(const Scene& scene, const Simulation& simulation, const En
 
 std::string line(const char* name, const std::string& text) { return fmt::format("{:<12}{}\n", name, text); }
 
-// The standard error of the mean of a series that is correlated; no error of blocks that are all equal.
+// Returns the standard error of the mean of a correlated series; 0 if all values are equal.
 double standard_error(const std::vector<double>& series) {
   const auto n = static_cast<double>(series.size());
   double mean = 0, squares = 0;
@@ -169,7 +169,7 @@ double standard_error(const std::vector<double>& series) {
 
 std::string with_error(const Json& result, const char* name) {
   const double mean = result.at("mean").at(name).get<double>();
-  std::vector<double> series;  // what has jammed has blocks of which nothing is known
+  std::vector<double> series;  // blocks after a jam are null
   for (const Json& block : result.at("blocks").at(name)) {
     if (block.is_number()) series.push_back(block.get<double>());
   }
@@ -215,7 +215,7 @@ std::string means(const Json& result) {
 
 std::string steps(const Json& result) {
   const Json& strain = result.at("strain");
-  return fmt::format("{} + {} {} ones of {:.4g}, a strain of {:.4g} + {:.4g}",
+  return fmt::format("{} + {} {} steps of {:.4g}, strain of {:.4g} + {:.4g}",
                      result.at("steps").at("equilibration").get<std::uint64_t>(),
                      result.at("steps").at("production").get<std::uint64_t>(),
                      result.at("method").get<std::string>(), result.at("timestep").get<double>(),
@@ -254,15 +254,14 @@ Json make_result(const ResultHeader& header, const Scene& scene, const Simulatio
   const std::optional<double> difference = half_step_difference(simulation.step_errors());
   if (difference && std::abs(*difference) > scene.guard.half_step_difference) {
     warn(warnings, "timestep",
-         "half steps change the stress by {:.3g} of it, more than {:.3g}: choose a smaller "
-         "step",
+         "half steps change the stress by a fraction of {:.3g}, more than {:.3g}: choose a smaller step",
          -*difference, scene.guard.half_step_difference);
   }
   const Json solver = solver_json(scene, simulation);
   if (!solver.is_null() && solver["mean_residual"] > largest_mean_residual) {
     warn(warnings, "solver",
-         "the equations of the steps are left with a residual of {:.3g} of the motion, more "
-         "than {:.3g}: choose a smaller step",
+         "the equations of the steps have a mean residual of {:.3g}, relative to the motion, more than "
+         "{:.3g}: choose a smaller step",
          solver["mean_residual"].get<double>(), largest_mean_residual);
   }
   if (!solver.is_null()) {
@@ -270,8 +269,8 @@ Json make_result(const ResultHeader& header, const Scene& scene, const Simulatio
     const double share = solver["divided_steps"].get<double>() / steps;
     if (share > largest_share_divided) {
       warn(warnings, "timestep",
-           "{:.2g} of the steps were divided, down to 1/{}, because "
-           "spheres would have leapt, more than {}: choose a smaller step",
+           "a fraction {0:.2g} of the steps, more than {2}, was divided, down to 1/{1} of a step, because "
+           "spheres would have moved too far: choose a smaller step",
            share, 1 << solver["deepest_division"].get<int>(), largest_share_divided);
     }
   }
@@ -350,7 +349,7 @@ Json target_hints(const Scene& scene) {
 const Json& engine_identity() {
   static const Json identity = [] {
     Json all = provenance();
-    // Besides the kernels, the C library picks its functions by what the processor has.
+    // The C library, too, chooses its functions by the processor.
     std::string set = name_of(chosen_instruction_set());
 #ifdef __x86_64__
     set += __builtin_cpu_supports("fma") != 0 ? ", libm with fma" : "";

@@ -1,4 +1,4 @@
-// The JSON that a realisation leaves behind; schema/result.schema.json describes it.
+// Makes the JSON result of a realisation, which schema/result.schema.json describes, and its summary.
 #pragma once
 
 #include <string>
@@ -16,34 +16,33 @@ struct ResultHeader {
   std::uint64_t seed = 0;
 };
 
-// Means over the production window, in all and in its blocks. Stresses are divided by viscosity * shear_rate,
-// or are in the scene's units where the rate is zero. Unless the window is completed, or the flow has jammed
-// in it, "mean" and "blocks" are null: never a number.
+// Returns the result: means over the production window and over its blocks. Stresses are in units of
+// viscosity * shear_rate, or of the scene if the rate is zero. Unless the window is complete or the flow has
+// jammed, "mean" and "blocks" are null.
 Json make_result(const ResultHeader& header, const Scene& scene, const Simulation& simulation,
                  const Ending& ending, const std::string& saved_state, const Spent& spent);
 
-// Of a realisation whose spheres could not be packed.
+// Returns the result of a realisation whose spheres could not be packed.
 Json make_unpacked_result(const ResultHeader& header, const Scene& scene, const Schedule& schedule,
                           const std::string& message, const Spent& spent);
 
-// Names of the numbers in the result of a completed realisation at which a campaign may aim, sorted
-// (targets_in()). One that the configuration may leave undefined (friction without a contact) is among them.
+// Returns the sorted names of the numbers that may be a campaign's target (targets_in()). Some may be
+// undefined in a configuration, such as friction without a contact.
 std::vector<std::string> names_of_targets(const Scene& scene, const Schedule& schedule);
 
-// What to do about targets that the results do not have: by name, also for what lies below it, the rest of a
-// sentence that begins with the name.
+// Returns advice about targets that results do not have, by name. Each is the rest of a sentence that begins
+// with the name, and is also valid for names below it.
 Json target_hints(const Scene& scene);
 
-// Provenance of this engine with the instruction set that its results depend on.
+// Returns the provenance of this engine, with the instruction set that its results depend on.
 const Json& engine_identity();
 
-// Returns what the result of a complete realisation says in ten lines: its means, each with its standard
-// error within this run (of the block means, by their statistical inefficiency), its steps, warnings and
-// cost, and `place`, where the result lies. Ends with a newline.
+// Returns a summary of a result with means, in about ten lines that end with a newline: means with their
+// standard errors within this run (from block means and their statistical inefficiency), steps, warnings,
+// cost, and `place`, the name of the result's file.
 std::string summary(const Json& result, const std::string& place);
 
-// The text of a result: the keys that tell which run it is and the means first, the long lists of blocks
-// last. The order has no meaning to a reader of JSON, nor to canonical_json().
+// Returns the text of a result: first the keys that identify the run and the means, last the long blocks.
 std::string result_text(const Json& result);
 
 }  // namespace peclet::engine

@@ -17,14 +17,14 @@
 namespace peclet::engine {
 namespace {
 
-// Of an oscillating flow, whose cycles have whole numbers of steps. Of implicit steps moduli are sums over
-// mid-steps: their errors are of second order, (w dt)^2 / 24 = 1e-4 of each other here.
+// Smallest number of steps of a cycle of an oscillating flow. Cycles have whole numbers of steps. Moduli from
+// implicit steps are sums over mid-steps, with errors of second order: (w dt)^2 / 24 = 1e-4 here.
 constexpr double least_steps_of_cycle = 128;
 
-// Thousands of years of computing; step counters hold far more.
+// Largest number of steps of a phase: thousands of years of computing. Step counters hold far more.
 constexpr double most_steps = 1e15;
 
-// Steps of the phase called `name`, which begins then. Throws InputError when there are too many to count.
+// Returns the steps of the phase `name`, which begins at time `from`. Throws InputError if they are too many.
 std::uint64_t steps_of(const Duration& duration, double from, const char* name, const Scene& scene,
                        double timestep, const std::string& file) {
   // A duration that is a whole number of steps must not gain one by rounding.
@@ -36,7 +36,7 @@ std::uint64_t steps_of(const Duration& duration, double from, const char* name, 
   return static_cast<std::uint64_t>(steps);
 }
 
-// Radii of which there is a sphere; a species without one is refused unless another one has its radius.
+// Returns the distinct radii of the spheres. Throws InputError if the radius of a species has no sphere.
 std::vector<double> present_radii(const Particles& particles, const std::string& file) {
   const std::vector<std::size_t> number = species_numbers(particles);
   std::vector<double> present;
@@ -68,7 +68,7 @@ Schedule make_schedule(const Scene& scene, const std::string& file) {
   Schedule schedule;
   schedule.timestep = resolved_timestep(scene, file);
   if (!scene.timestep) {
-    // A short window is divided into as many steps as it needs.
+    // A short window gets smaller steps, one for each block.
     schedule.timestep =
         std::min(schedule.timestep, time_of(scene.production, scene, begin) / count_of_blocks);
   }
@@ -77,10 +77,9 @@ Schedule make_schedule(const Scene& scene, const std::string& file) {
     schedule.timestep = *period / steps;
   }
   if (!std::isnormal(schedule.timestep)) {
-    throw InputError(
-        file, "/integrator/timestep", fmt::format("{}", schedule.timestep),
-        "must come out as a number above 0: sizes, forces or durations of the scene are beyond what "
-        "can be computed with; choose other units");
+    throw InputError(file, "/integrator/timestep", fmt::format("{}", schedule.timestep),
+                     "must be a normal floating-point number above 0: sizes, forces or durations of the "
+                     "scene are too small or too large for double precision; choose other units");
   }
   schedule.equilibration = steps_of(scene.equilibration, 0, "equilibration", scene, schedule.timestep, file);
   schedule.production = steps_of(scene.production, begin, "production", scene, schedule.timestep, file);
@@ -105,7 +104,7 @@ std::optional<Ending> ending_of(const StepReport& report, const System& system, 
   if (!std::isfinite(displacement) || !report.sums.finite) {
     return Ending{Ending::Cause::non_finite, system.step, "a position or velocity is not finite"};
   }
-  // Whatever the guard, spheres must not leap over each other: the integrator evaluates no forces then.
+  // Whatever the guard, spheres must not pass each other in a step: the integrator then evaluates no forces.
   const double largest =
       std::min(guard.largest_displacement, 0.5 * system.list.ranges().largest() / smallest_radius);
   if (displacement > largest) {

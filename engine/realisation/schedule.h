@@ -1,4 +1,4 @@
-// The steps of a realisation: how many, of which size, why they end, and whether the scene fits them.
+// Chooses the steps of a realisation, finds why it ends, and checks that a scene can be run.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace peclet::engine {
 
-// Steps of the two phases; the step size is constant, so they are known before the first one.
+// Step size and number of steps of the two phases. The step size is constant.
 struct Schedule {
   double timestep = 0;
   std::uint64_t equilibration = 0, production = 0;
@@ -19,11 +19,11 @@ struct Schedule {
   std::uint64_t total() const { return equilibration + production; }
 };
 
-// Throws InputError when the step is too large, the production window shorter than its 32 blocks, or a phase
-// longer than can be counted.
+// Returns the schedule of a scene; `file` is the scene's name in messages. Throws InputError if the step is
+// too large, the production window is shorter than its 32 blocks, or a phase has too many steps.
 Schedule make_schedule(const Scene& scene, const std::string& file);
 
-// Why a realisation is over.
+// Why, and at which step, a realisation ended.
 struct Ending {
   enum class Cause { completed, jammed, overlap, displacement, non_finite, packing, timestep };
   Cause cause = Cause::completed;
@@ -33,16 +33,16 @@ struct Ending {
 
 const char* name_of(Ending::Cause cause);
 
+// Returns true if a realisation with this ending has means.
 inline bool is_measured(Ending::Cause cause) { return has_results(name_of(cause)); }
 
-// What the guard, or arithmetic, has against the step that was just made. Displacements and overlaps are in
-// units of the smallest radius of all, and of the smaller one of the pair.
+// Returns the ending if the last step gave numbers that are not finite, or violates the guard. Displacements
+// are in units of the smallest radius of all, overlaps in units of the smaller radius of the pair.
 std::optional<Ending> ending_of(const StepReport& report, const System& system, const Guard& guard,
                                 double smallest_radius);
 
-// Checks whether spheres, box and observables of a scene go together, as far as that can be known without
-// placing a sphere: within milliseconds for the largest scene. Throws InputError where a species has no
-// sphere, where the box is smaller than the range of the forces, and where an observable does not fit.
+// Checks a scene in milliseconds, without placing spheres. Throws InputError if a species has no sphere, the
+// box is smaller than the range of the forces, or an observable does not fit.
 void check_fit(const Scene& scene, const Schedule& schedule, const std::string& file);
 
 }  // namespace peclet::engine

@@ -1,4 +1,4 @@
-// The engine as a worker: jobs come and results go over a socket.
+// The engine as a worker: receives jobs and reports results over a socket.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -27,14 +27,14 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// How often a running job looks at the socket.
+// Interval at which a running job reads the socket.
 constexpr std::chrono::milliseconds attention{100};
 
-// How soon a file is tried again that did not fit onto the disk, and how often when the engine is to leave.
+// Delay before a file that did not fit onto the disk is tried again, and the number of tries before exiting.
 constexpr std::chrono::seconds until_next_try{1};
 constexpr int last_tries = 5;
 
-// A log that cannot be written harms no job.
+// Writes a line to standard error; errors are ignored, because a log must not end a job.
 void log_line(const std::string& text) {
   std::fputs((text + "\n").c_str(), stderr);
   std::fflush(stderr);
@@ -65,7 +65,7 @@ class Worker {
   }
 
  private:
-  // A peer that is gone is no error: what is finished lies in the spool, what is not goes to a checkpoint.
+  // Sends a message. A lost peer is not an error: results are in files, a running job writes a checkpoint.
   void tell(const Json& message) {
     if (abandoned_) return;
     try {
@@ -85,7 +85,7 @@ class Worker {
     } else if (type == "drain" || type == "stop") {
       leave_ = true;  // nothing is running
     } else {
-      throw FrameError("a message of type \"" + type + "\" is none that this engine knows");
+      throw FrameError("a message of type \"" + type + "\" is not for an engine");
     }
   }
 
@@ -133,7 +133,7 @@ class Worker {
     try {
       const std::optional<Json> result = run_job(job, events(id, message["progress_seconds"].get<double>()));
       if (result && deliver(id, *result, message["spool"].get<std::string>())) {
-        leave_ = told_to_leave_;  // nobody says it twice, except after "drained"
+        leave_ = told_to_leave_;  // the runner repeats it only after "drained"
       } else {
         tell({{"type", "drained"}, {"job", id}, {"step", last_step_}});
       }
@@ -145,7 +145,7 @@ class Worker {
     leave_ = leave_ || abandoned_;
   }
 
-  // False: there was no room for the result before the engine had to leave. Its seed will be run again.
+  // Writes and reports the result. Returns false if the disk was full until the engine had to leave.
   bool deliver(const Json& id, const Json& result, const std::string& spool) {
     const std::string text = result_text(result);
     for (;;) {
@@ -164,7 +164,8 @@ class Worker {
     tell({{"type", "no-room"}, {"job", id}, {"path", error.path().string()}, {"bytes", error.bytes()}});
   }
 
-  // What is done stays in memory for as long as the runner wants to wait; only leaving has to end some time.
+  // Waits before the next try to write. Returns false after `last_tries` if the engine is to leave; otherwise
+  // the work stays in memory for as long as the disk is full.
   bool wait_for_room(const Json& id, const NoRoomError& error) {
     if (told_to_leave_ || abandoned_) {
       if (tries_left_-- == 0) {
@@ -200,7 +201,7 @@ class Worker {
     return events;
   }
 
-  // Asked at every turn of the time loop; looks at the socket only now and then.
+  // Returns true if the job shall end. Called at every turn of the time loop; reads the socket at intervals.
   bool drain_requested() {
     const Clock::time_point now = Clock::now();
     if (now - last_look_ < attention) return told_to_leave_ || abandoned_;
@@ -209,14 +210,14 @@ class Worker {
     return told_to_leave_ || abandoned_;
   }
 
-  // What the runner may have to say while a job is running.
+  // Handles a message of the runner during a job. Throws FrameError for a message that is not allowed then.
   void hear(std::chrono::milliseconds patience) {
     Json message;
     switch (channel_.receive(message, patience)) {
       case FrameChannel::Status::nothing:
         return;
       case FrameChannel::Status::closed:
-        abandoned_ = true;  // the owner is gone: keep the work
+        abandoned_ = true;  // the runner is gone: write a checkpoint
         return;
       case FrameChannel::Status::message:
         break;
@@ -225,7 +226,7 @@ class Worker {
     if (type == "stop") std::exit(0);
     if (type == "job" && !waiting_job_ && !told_to_leave_) {
       waiting_job_ = message;
-      hear(std::chrono::milliseconds(0));  // a drain may be behind it
+      hear(std::chrono::milliseconds(0));  // a drain may follow
       return;
     }
     if (type != "drain") {
@@ -233,15 +234,15 @@ class Worker {
                        (waiting_job_ ? " and another one waits" : ""));
     }
     told_to_leave_ = true;
-    waiting_job_.reset();  // the runner gives it to somebody else
+    waiting_job_.reset();  // the runner gives it to another worker
   }
 
   FrameChannel channel_;
-  std::optional<Json> waiting_job_;  // came while another one ran
+  std::optional<Json> waiting_job_;  // received while another job was running
   bool leave_ = false;
   bool abandoned_ = false;
   bool told_to_leave_ = false;  // by a drain during the present job
-  int tries_left_ = 0;          // to write something before leaving
+  int tries_left_ = 0;          // tries to write a file before leaving
   std::uint64_t last_step_ = 0;
   Clock::time_point last_progress_{}, last_look_{};
 };

@@ -18,19 +18,19 @@
 namespace peclet::engine {
 namespace {
 
-// Pairs are listed that much beyond their range, as a fraction of the smallest one. A small skin keeps the
-// list close to the pairs that act; large steps would use it up at once.
+// Skin of the neighbour list as a fraction of the smallest range. A small skin keeps the list close to the
+// pairs that act; with large steps it would have to be rebuilt at every step.
 constexpr double skin_of_explicit_steps = 0.03, skin_of_implicit_steps = 0.05;
 constexpr double skin_of_candidates = 0.5;
 
-// Of what the guard allows particles to move in one step: beyond that the step is divided. Noise moves some
-// of many particles that far where nothing leaps.
+// Displacement in a step beyond which implicit steps are divided, as a fraction of what the guard allows.
+// Noise moves some of many particles that far in regular steps, so that its fraction is larger.
 constexpr double guarded_share = 1.0 / 3, guarded_share_of_noise = 2.0 / 3;
 
-// Steps and half steps are compared a few times in a run.
+// Number of comparisons of steps with half steps in the production window.
 constexpr std::uint64_t comparisons = 8;
 
-// The streaming flow's velocities, and those of equilibrium where there is a temperature.
+// Sets the velocities and spins of the streaming flow, and adds thermal ones if there is a temperature.
 void set_initial_velocities(ParticleState& particles, const BackgroundFlow& flow, const Physics& physics,
                             std::uint64_t seed) {
   const KeyedRandom random(seed, Purpose::initial_velocity);
@@ -132,7 +132,7 @@ std::optional<Ending> Simulation::advance(std::uint64_t steps) {
   return std::nullopt;
 }
 
-// Who samples the step to come; null: nobody.
+// Returns the observables that sample the next step, or null.
 PairWatcher* Simulation::watchers_of_step() {
   watchers_.clear();
   if (system_.step >= schedule_.equilibration) {
@@ -177,7 +177,7 @@ std::optional<Ending> Simulation::check_stability() {
   const double share = integrator_->stability_share(system_);
   errors_.largest_stability_share = std::max(errors_.largest_stability_share, share);
   if (share < 1) return std::nullopt;
-  // 2 l dt + w^2 dt^2 shrinks at least in proportion to dt.
+  // The share, 2 l dt + w^2 dt^2, shrinks at least in proportion to dt, so that step / share is stable.
   const double step = integrator_->timestep();
   return Ending{
       Ending::Cause::timestep, system_.step,

@@ -50,7 +50,7 @@ Quantity StressMeans::tensor(const std::string& name, const std::string& symbol)
       .name = name, .symbol = symbol, .unit = name_of_stress_unit(physics_), .axes = {axis_of_components()}};
 }
 
-// The stress of the solvent, and the stresslets of spheres as if each were alone.
+// Adds the stress of the solvent, and the stresslets of isolated spheres.
 void StressMeans::add_background() {
   const bool is_steady = physics_.flow.steady_rate() > 0, varies = physics_.flow.varies();
   const bool has_solvent = is_steady || physics_.flow.deformation().at_stress() != nullptr;
@@ -100,9 +100,9 @@ void StressMeans::add_scalars() {
       [=](const Measured& of) { return per_sample(of) * of.sums.temperature.rotational; });
 }
 
-// A jammed suspension stands still in the long run: its rate is 0, however far it strained before. Over seeds
-// the mean of `flowing` is the share that flows to the end, which a window that is too short to notice a jam
-// does not tell. Viscosities are stress over mean rate, never a mean of stress over rate.
+// Adds the quantities of a flow at a given stress. The rate of a jammed suspension is 0, even if it strained
+// before. The mean of `flowing` over seeds is the share that flows to the end; it is null if the window is
+// too short to detect a jam. Over seeds a viscosity is stress over mean rate.
 void StressMeans::add_flow(double stress, bool notices_jams) {
   const auto rate = [](const Measured& of) {
     return of.has_jammed ? 0 : of.sums.shear_rate / static_cast<double>(of.sums.planned);
@@ -161,7 +161,7 @@ Json StressMeans::blocks(const System& system, const Production& production) con
     for (const auto& [name, value] : mean.items()) {
       if (!value.is_structured()) kept[name].push_back(rounded(value));
     }
-    // The total's xy is the relative viscosity.
+    // The total is left out: its xy is the relative viscosity.
     Json& shear = kept["shear_stress"];
     for (const Part& part : parts_) {
       if (!part.is_constant) shear[part.name].push_back(rounded(mean["stress"][part.name][xy]));

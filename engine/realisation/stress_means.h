@@ -1,5 +1,4 @@
-// The stress and what is measured with it at every step: means in the units of the result, their blocks, and
-// the descriptions of all of them.
+// Computes and describes the means of stress, contacts and temperatures, in the units of the result.
 #pragma once
 
 #include <functional>
@@ -19,18 +18,15 @@ class StressMeans {
   StressMeans(const StressMeans&) = delete;
   StressMeans& operator=(const StressMeans&) = delete;
 
-  // Descriptions of the numbers of means().
   std::vector<Quantity> quantities() const;
 
-  // Returns the means of these sums. Stresses are divided by viscosity * shear_rate, or in the scene's units
-  // at rest. `has_jammed`: the flow at a given stress stands still in the end.
+  // Returns the means of these sums. Stresses are in units of viscosity * shear_rate, or of the scene at
+  // rest. `has_jammed`: the suspension has jammed at a given stress.
   Json means(const System& system, const BlockSums& sums, bool has_jammed = false) const;
-  // Returns all blocks in five digits: of numbers, and of xy of every stress that fluctuates, 32; of whole
-  // tensors the quarters of the window.
+  // Returns block means in five digits: 32 of scalars and of xy of fluctuating stresses, quarters of tensors.
   Json blocks(const System& system, const Production& production) const;
 
  private:
-  // The sums, and what the means need besides.
   struct Measured {
     const BlockSums& sums;
     double volume, volume_fraction, particles;
@@ -41,8 +37,8 @@ class StressMeans {
   struct Part {
     std::string name, symbol;
     std::function<SymmetricTensor(const Measured&)> mean;
-    bool is_constant = false;  // the same in every configuration
-    bool is_of_pairs = true;   // or of their motion
+    bool is_constant = false;  // in all configurations
+    bool is_of_pairs = true;   // from pairs, or from the motion of particles
   };
   struct Named {
     Quantity quantity;
@@ -57,7 +53,7 @@ class StressMeans {
 
   Physics physics_;
   double unit_;
-  std::vector<Part> parts_;  // in the order in which they are added up
+  std::vector<Part> parts_;  // in the order of summation
   std::vector<Named> others_;
 };
 

@@ -1,12 +1,12 @@
-"""Campaigns of peclet in Python.
+"""Builds, runs and reads campaigns of Peclet in Python.
 
     import peclet
 
     results = peclet.open("flow-curve.peclet")
-    results.estimates()      # a row for each point: what was swept, verdict, mean, 95 % interval
+    results.estimates()      # a row for each point: swept parameters, verdict, mean, 95 % interval
     results.plot()           # the flow curve
 
-Every number comes from `peclet export`, which has to be installed, or from what it wrote into a file.
+All numbers come from the program peclet, which must be installed.
 """
 from peclet.campaign import Campaign
 from peclet.program import PecletError

@@ -1,30 +1,34 @@
-"""Campaigns that are built here and run by the program."""
+"""Builds campaigns and has the program peclet run them."""
 import json
 import os
 
 from peclet.program import PecletError, ask, run_shown
 from peclet.results import open_results
 
-# Codes of `peclet run` that are no error: all converged or complete; finished, but not so; stopped, and goes on when
-# run again.
+# Exit codes of `peclet run` without an error: 0 all points converged or complete; 3 finished, but not all of them
+# converged; 75 stopped, and continued by the next run.
 ENDED, STOPPED = (0, 3), 75
 
 
 class Campaign:
-    """A scene, a sweep over it and a target.
+    """A campaign: a scene, a sweep over its parameters, and a target.
 
         campaign = peclet.Campaign("friction", scene, {"/contact/friction": [0, 0.5, 1]}, tolerance=0.05)
         results = campaign.run()
 
-    scene       a dictionary, or the path of a JSON file (with another name than the campaign's)
-    sweep       values by JSON pointer into the scene, all of one combined with all of the others; or the list of
-                entries that a campaign file has
-    observable, tolerance, confidence    of the target, the tolerance relative to the mean
-    minimum, maximum                     seeds of a point
-    realisations                         seeds of every point, in the place of tolerance, confidence and these two
+    name        name of the campaign
+    scene       a dictionary, or the path of a JSON file (not that of the campaign file)
+    sweep       lists of values by JSON pointer into the scene, all combinations of which are run; or the list of
+                entries of a campaign file; None: a single point
+    observable  name of the target's quantity
+    tolerance   half-width of its confidence interval, relative to the mean
+    confidence  level of the interval, in (0, 1)
+    minimum, maximum    fewest and most seeds of a point
+    realisations        a fixed number of seeds of every point; replaces the four before
     more        other keys of a campaign file, such as engine or keep_files
 
-    `document` is what the file has; nothing is checked before validate() or run().
+    `document` is the content of the campaign file, a dictionary. It is checked by validate() and run(), not before.
+    Raises PecletError if the file of the scene cannot be read.
     """
 
     def __init__(
@@ -64,13 +68,17 @@ class Campaign:
             self.document.update({"show": [observable], **more, "realisations": realisations})
 
     def write(self, path=None):
-        """Writes the campaign file, NAME.json unless told otherwise, and returns its path. A file that is there already
-        must be that of an earlier campaign of this name."""
+        """Writes the campaign file and returns its path.
+
+        path    path of the file; NAME.json in the working folder by default
+
+        Raises PecletError if the file cannot be written, or exists and is not a campaign of this name.
+        """
         path = os.fspath(path) if path else self.document["name"] + ".json"
         if os.path.exists(path):
             self._check_earlier(path)
         text = json.dumps(self.document, indent=1, default=plain) + "\n"
-        # Whole or not at all: a part of it would be taken for something else the next time.
+        # Renamed when complete: a part of a campaign would not be recognised as one by the next write().
         temporary = f"{path}.{os.getpid()}.tmp"
         try:
             with open(temporary, "w", encoding="utf-8") as file:
@@ -81,7 +89,7 @@ class Campaign:
         return path
 
     def _check_earlier(self, path):
-        """Throws PecletError if the file is something else, such as the scene."""
+        """Raises PecletError if the file is not a campaign of this name, for example if it is the scene."""
         try:
             with open(path, encoding="utf-8-sig") as file:
                 earlier = json.load(file)
@@ -96,13 +104,25 @@ class Campaign:
         )
 
     def validate(self, path=None, program=None):
-        """Writes the file and returns what `peclet validate` says of every point: time step, groups and warnings.
-        PecletError says what is wrong, and where."""
+        """Writes the campaign file and returns the answer of `peclet validate`.
+
+        path       path of the campaign file, as for write()
+        program    path or name of the program peclet, as for peclet.open()
+
+        Returns a list of dictionaries, one for each point: time step, dimensionless groups, warnings. Raises
+        PecletError with the place of the fault if the campaign cannot be run.
+        """
         return json.loads(ask(program, "validate", "--json", "--", self.write(path)))["points"]
 
     def run(self, path=None, program=None, options=()):
-        """Writes the file, runs the campaign until every point is decided, or goes on where it was stopped, and returns
-        its results. What `peclet run` prints is shown; `options` are more of its options, such as "--workers=4".
+        """Writes the campaign file, runs the campaign until every point is decided, and returns its Results.
+
+        path       path of the campaign file, as for write()
+        program    path or name of the program peclet, as for peclet.open()
+        options    further options of `peclet run`, such as ["--workers=4"]
+
+        Shows the output of `peclet run`. A campaign that was stopped continues. Raises PecletError if it fails or is
+        stopped, KeyboardInterrupt if it is interrupted.
         """
         path = self.write(path)
         code, said, interrupted = run_shown(program, "run", *options, "--", path)
@@ -116,7 +136,7 @@ class Campaign:
 
 
 def plain(value):
-    """What JSON has for the numbers and arrays of NumPy."""
+    """Returns numbers and arrays of NumPy as JSON can hold them. Raises PecletError for other objects."""
     if hasattr(value, "tolist"):
         return value.tolist()
     raise PecletError(f"{value!r}: must be something that a JSON file may hold")

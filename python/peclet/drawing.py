@@ -1,19 +1,19 @@
 #!/usr/bin/env python3
 """Draws figures with matplotlib: python3 THIS.py [FILE.pdf | FILE.png | FILE.svg]
 
-Without a file the figure is shown. This is the script that `peclet plot` leaves and the page of a campaign saves, which
-ends with the numbers of its FIGURE, and a module of the Python package peclet. `peclet plot` replaces a script only
-while it is as peclet wrote it.
+Without a file the figure is shown. This file is a module of the Python package peclet. It is also the script that
+`peclet plot` writes and the page of a campaign saves; the script ends with its numbers, FIGURE. `peclet plot` replaces
+a script only if it has not been changed.
 
-A figure has panels, or it has points over a sweep, of which over_sweep() makes panels:
-x, y     {about: {words, symbol, unit}, log, categories: words at 0, 1 ... in the place of numbers}
+A figure is a dictionary with panels, or with points over a sweep, which over_sweep() turns into panels:
+x, y     {about: {words, symbol, unit}, log, categories: words at 0, 1 ... instead of numbers}
 panels   [{title, marks, lines, bands, columns, levels}]
          marks {series, x, y, half, kind, small}; kind: decided, undecided, provisional, jammed (y may be null)
          lines {series, style, places: [x, y]}; style: guide, line, dashed
          bands {series, places: [x, low, high]}; columns, which are boxes {series, from, to, low, high}
          levels {series, value, across}
-legend   [{series, name, kind}]; kinds of marks; hasBand, bandName; notes: what is left out
-Symbols, names and titles are lists of {text, level}: level -1 is lowered, 1 raised.
+legend   [{series, name, kind}]; kinds: of the marks; hasBand, bandName; notes: texts about omitted points
+Symbols, names and titles are lists of parts {text, level}: level -1 is a subscript, 1 a superscript.
 """
 import json
 import math
@@ -22,7 +22,7 @@ import re
 import shlex
 import sys
 
-# Told apart in grey and by eyes that see few colours.
+# Colours that can be distinguished in grey and with colour blindness.
 COLOURS = ("#0072b2", "#c44e00", "#00805c", "#a8487f", "#b07700", "#3a8fc0", "#6b6b00", "#1b1b1b")
 MARKERS = "osD^vPH"
 STYLE = {
@@ -37,7 +37,7 @@ DASHES = (0, (3, 2))
 
 
 def cure_for(module, package):
-    """How to install a module for this Python: conda's, Debian's (`package`), or another one, which pip serves."""
+    """Returns the command that installs `module` (for conda and pip) or `package` (Debian) for this Python."""
     if os.path.exists(os.path.join(sys.prefix, "conda-meta")):
         return f"conda install -c conda-forge {module}"
     if sys.prefix == "/usr" and os.path.exists("/etc/debian_version"):
@@ -49,8 +49,11 @@ def cure_for(module, package):
 
 
 def parts_of(symbol, element=""):
-    """The parts of a symbol as engines write it, such as η_r or σ_xy^{contact normal}: what follows _ is lowered, what
-    follows ^ raised, letters and digits or all between braces. An element is lowered behind the name."""
+    """Returns the parts of a symbol in the notation of engines, such as η_r or σ_xy^{contact normal}.
+
+    _ begins a subscript and ^ a superscript, of letters and digits or of all between braces. `element` is added to the
+    subscript behind the name.
+    """
     if element:
 
         def named(found):
@@ -65,21 +68,27 @@ def parts_of(symbol, element=""):
 
 
 def plain(text):
+    """Returns the text as parts without sub- and superscripts."""
     return [{"text": text, "level": 0}]
 
 
 def words_of(name):
+    """Returns the name of a quantity or key as words."""
     return name.replace("/", ", ").replace("_", " ")
 
 
 def about_quantity(quantity):
+    """Returns {words, symbol, unit} of a quantity {name, element, symbol, unit}."""
     words = words_of(quantity["name"]) + (f", {quantity['element']}" if quantity["element"] else "")
     symbol = parts_of(quantity["symbol"], quantity["element"]) if quantity["symbol"] else []
     return {"words": words, "symbol": symbol, "unit": unit_of(quantity["unit"])}
 
 
 def about_key(key):
-    """A key that the engine has no words for is called by its last step, an element of a list by its last two."""
+    """Returns {words, symbol, unit} of a key {pointer, words, symbol, unit}.
+
+    Without words of the engine, the words are the last step of the pointer, or the last two for an element of a list.
+    """
     steps = key["pointer"].strip("/").split("/")
     words = key["words"] or words_of(" ".join(steps[-2:] if steps[-1].isdigit() else steps[-1:]))
     return {"words": words, "symbol": parts_of(key["symbol"]), "unit": unit_of(key["unit"])}
@@ -90,7 +99,7 @@ def unit_of(unit):
 
 
 def title_of(about, longest=math.inf):
-    """Words, symbol and unit; the words have a line of their own where all has more characters than `longest`."""
+    """Returns the title of an axis: words, symbol and unit. A title of more than `longest` characters has two lines."""
     symbol = [*plain(" "), *about["symbol"]] if about["symbol"] else []
     unit = [*plain(" ["), *parts_of(about["unit"]), *plain("]")] if about["unit"] else []
     title = plain(about["words"]) + symbol + unit
@@ -100,7 +109,7 @@ def title_of(about, longest=math.inf):
 
 
 def mathtext(parts):
-    """As matplotlib reads it."""
+    """Returns parts as a text with matplotlib's mathtext."""
     text, before = "", 0
     for part in parts:
         level = part["level"]
@@ -108,7 +117,7 @@ def mathtext(parts):
             text += part["text"].replace("$", r"\$")
         else:
             inner = re.sub(r"[\\${}^_%#&~]", "", part["text"]).replace(" ", r"\ ")
-            # What is lowered and what is raised stand above each other.
+            # A subscript and a superscript share one place.
             text = text[:-1] if before else text + "$"
             text += ("^" if level > 0 else "_") + r"{\mathrm{" + inner + "}}$"
         before = level
@@ -116,7 +125,7 @@ def mathtext(parts):
 
 
 def plain_number(value):
-    """0.01, 2000, 5·10⁶; four digits at most."""
+    """Returns a number with at most four significant digits: 0.01, 2000, 5·10⁶."""
     size = abs(value)
     if value == 0 or 1e-3 <= size < 1e5:
         digits = f"{value:.4g}"
@@ -127,28 +136,29 @@ def plain_number(value):
     return ("10" if abs(leading - 1) < 1e-9 else f"{leading:.4g}·10") + raised
 
 
-# A quantity over what is swept
+# A quantity over swept parameters
 
 
 def is_number(value):
+    """Returns True for a finite number that is not a truth value."""
     return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
 
 
 def widest_gap(numbers):
-    """The part of the whole that the widest gap between neighbours takes."""
+    """Returns the widest gap between neighbours of sorted numbers, as a fraction of their range."""
     return max((b - a for a, b in zip(numbers, numbers[1:])), default=0) / (numbers[-1] - numbers[0])
 
 
 def is_logarithmic(values):
-    """Whether positive numbers lie more evenly on a logarithmic axis, over a factor of five or more."""
-    numbers, least_ratio = sorted(values), 5  # below, there are too few round numbers
+    """Returns True for positive numbers over a factor of 5 or more that a logarithmic axis spaces more evenly."""
+    numbers, least_ratio = sorted(values), 5  # below this ratio there are too few round numbers for ticks
     if not numbers or numbers[0] <= 0 or numbers[-1] < least_ratio * numbers[0]:
         return False
     return widest_gap([math.log(n) for n in numbers]) < widest_gap(numbers)
 
 
 def word_of(value, distinct):
-    """What is too long to be read in a figure is called by its place among the values, from 1."""
+    """Returns a value of a parameter as text; if that is too long, its place among the distinct values, from #1."""
     longest = 26
     if value is None:
         return "–"
@@ -161,7 +171,7 @@ def word_of(value, distinct):
 
 
 def swept(parameter, points):
-    """A parameter: its value at each point, each of its values, as words too."""
+    """Returns a parameter with its value at each point (cells, words), and its distinct values."""
     cells = [point["settings"].get(parameter["pointer"]) for point in points]
     values = [cell for k, cell in enumerate(cells) if cell not in cells[:k]]
     about = about_key(parameter)
@@ -177,18 +187,19 @@ def swept(parameter, points):
 
 
 def follows(other, axis):
-    """Whether the value of `other` follows from that of `axis` at every point."""
+    """Returns True if the value of the parameter `axis` determines that of `other` at every point."""
     pairs = {(axis["values"].index(a), other["values"].index(o)) for a, o in zip(axis["cells"], other["cells"])}
     return len(pairs) == len(axis["values"])
 
 
 def kind_of(point):
+    """Returns the kind of a point's mark: decided, undecided, provisional or jammed."""
     kinds = {"converged": "decided"}
     return "jammed" if point["jammed"] else kinds.get(point["state"], point["state"])
 
 
 def ends(mark):
-    """What of a mark has to be seen. Bars of numbers that may still change may be enormous."""
+    """Returns the values of y that must be visible for a mark. Bars of provisional marks may be large and are not."""
     if mark["y"] is None:
         return []
     if mark["kind"] == "provisional" or mark["half"] is None:
@@ -197,8 +208,11 @@ def ends(mark):
 
 
 def over_sweep(data):
-    """The figure of `peclet plot`: every point of `data` over the parameter `over`, a curve for each value of what else
-    varies and does not follow from it, or of the parameter `by` alone."""
+    """Returns the figure of `peclet plot`: every point of `data` over the parameter `over`.
+
+    There is a curve for each value of the parameter `by`, or, without it, for each combination of all other parameters
+    that vary independently of `over`. `data` is the output of `peclet plot --json`.
+    """
     points = data["points"]
     columns = [swept(parameter, points) for parameter in data["parameters"]]
     if not columns:
@@ -248,12 +262,13 @@ def over_sweep(data):
 
 
 def is_hidden(mark, logs):
-    """Whether a logarithmic axis has no place for a mark. That of a jam is at the edge then."""
+    """Returns True if a mark has no place on a logarithmic axis. A jammed point is then drawn at the edge instead."""
     below = logs["y"] and mark["kind"] != "jammed" and mark["y"] <= 0
     return below or (logs["x"] and mark["x"] <= 0)
 
 
 def notes(absent, hidden, quantity):
+    """Returns texts about omitted points: `absent` ones without a number, `hidden` ones on logarithmic axes."""
     said = []
     if absent:
         said.append(f"left out: {absent} point{'' if absent == 1 else 's'} without a number of {quantity} yet")
@@ -267,7 +282,7 @@ def notes(absent, hidden, quantity):
 
 
 def draw(figure):
-    """The whole figure; returns matplotlib's Figure, and an Axes for each panel."""
+    """Draws a figure with panels; returns matplotlib's Figure and a list with an Axes for each panel."""
     import matplotlib.pyplot as plt
 
     plt.rcParams.update(STYLE)
@@ -287,6 +302,7 @@ def draw(figure):
 
 
 def draw_panel(axes, figure, panel):
+    """Draws one panel of a figure in matplotlib's `axes`."""
     for band in panel.get("bands", []):
         x, low, high = zip(*band["places"])
         axes.fill_between(x, low, high, color=colour_of(band), alpha=0.16, linewidth=0)
@@ -318,11 +334,12 @@ def draw_panel(axes, figure, panel):
 
 
 def colour_of(one):
+    """Returns the colour of a mark, line, band, column or level, by its series."""
     return COLOURS[one.get("series", 0) % len(COLOURS)]
 
 
 def draw_marks(axes, marks):
-    """Marks of one series and kind with their bars: open ones have not converged, dashed bars may still change."""
+    """Draws marks of one series and kind with their bars: open if not converged, dashed if provisional."""
     kind, colour = marks[0]["kind"], colour_of(marks[0])
     marker, face = MARKERS[marks[0]["series"] % len(MARKERS)], colour if kind == "decided" else "white"
     barred = [(mark["x"], mark["y"], mark["half"]) for mark in marks if is_number(mark.get("half"))]
@@ -335,8 +352,10 @@ def draw_marks(axes, marks):
 
 
 def draw_jam(axes, mark, log):
-    """A cross at the number of what has jammed, or at the edge of the frame: the upper one without a number, the lower
-    one where a logarithmic axis has no place for it."""
+    """Draws a cross for a jammed point, at its number or at the edge of the frame.
+
+    It is at the upper edge without a number, at the lower edge if the number has no place on a logarithmic axis.
+    """
     colour, y, scale = colour_of(mark), mark["y"], {}
     if y is None or log and y <= 0:
         y, scale = 1 if y is None else 0, {"transform": axes.get_xaxis_transform(), "clip_on": False}
@@ -346,7 +365,7 @@ def draw_jam(axes, mark, log):
 
 
 def span(figure, name):
-    """From the smallest to the largest number that is to be seen along an axis; none without a number."""
+    """Returns the smallest and the largest number that must be visible along an axis, or None without numbers."""
     log, numbers, centres = figure[name]["log"], [], []
     for panel in figure["panels"]:
         if name == "x":
@@ -365,19 +384,19 @@ def span(figure, name):
     if not numbers:
         return None
     low, above = min(numbers), [centre for centre in centres if centre > 0]
-    # A bar that reaches almost down to zero must not squeeze all else: it is cut off.
+    # A bar that ends near zero is cut off, so that it does not compress the rest of a logarithmic axis.
     if log and above:
         low = max(low, min(above) / 3)
     return low, max(numbers)
 
 
 def set_axis(axes, name, about, ends):
-    """Scale, limits, ticks and title of an axis."""
+    """Sets scale, limits, ticks and title of the axis `name` ("x" or "y"); `ends` are as from span()."""
     axis, words = getattr(axes, f"{name}axis"), about.get("categories")
     limits, scale = getattr(axes, f"set_{name}lim"), getattr(axes, f"set_{name}scale")
     scale("log" if about["log"] else "linear")
     axes.tick_params(axis=name, which="both", direction="in", top=True, right=True)
-    longest = 40 if name == "y" else math.inf  # for the height of a panel
+    longest = 40 if name == "y" else math.inf  # characters in the height of a panel
     getattr(axes, f"set_{name}label")(mathtext(title_of(about["about"], longest)))
     if words:
         step = -(-len(words) // 8)
@@ -394,7 +413,7 @@ def set_axis(axes, name, about, ends):
 
 
 def set_ticks(axis, log, ends):
-    """A few plain numbers along an axis with these ends."""
+    """Sets ticks with a few plain numbers for an axis with these ends."""
     from matplotlib import ticker
 
     decades = math.log10(max(ends) / min(ends)) if log and ends else 0
@@ -408,7 +427,7 @@ def set_ticks(axis, log, ends):
 
 
 def legend_of(figure):
-    """Handles of what the marks mean."""
+    """Returns matplotlib's legend handles for the series, kinds of marks, and bands of a figure."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
@@ -437,7 +456,7 @@ def legend_of(figure):
 
 
 def place_legend(axes, figure):
-    """A legend in a corner where it covers nothing, or beside the frame where there is none."""
+    """Places the legend in a corner where it covers nothing, or beside the frame if every corner is covered."""
     handles = legend_of(figure)
     if not handles:
         return
@@ -455,7 +474,7 @@ def place_legend(axes, figure):
 
 
 def drawn_places(panel):
-    """Places that are close enough along all that is drawn."""
+    """Yields points (x, y) along everything that a panel shows, closely spaced on lines."""
     for mark in panel["marks"]:
         for end in ends(mark):
             yield mark["x"], end
@@ -468,6 +487,7 @@ def drawn_places(panel):
 
 
 def main(figure):
+    """Shows a figure, or saves it to the file on the command line. Exits if matplotlib is not installed."""
     try:
         import matplotlib
     except ImportError as missing:
@@ -484,6 +504,6 @@ def main(figure):
 
         matplotlib.pyplot.show()
         return
-    # Without the time of day, so that the same numbers give the same bytes.
+    # Without dates, so that equal numbers give equal files.
     dates = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}
     drawing.savefig(sys.argv[1], metadata=dates.get(sys.argv[1].rpartition(".")[2]))

@@ -1,21 +1,28 @@
-"""The jamming point of curves of viscosity over volume fraction, and which volume fractions would tell more.
+"""Estimates the jamming point of curves of viscosity over volume fraction, and proposes further volume fractions.
 
-The fits of `peclet jamming` (jamming_report.py beside this file says what it prints):
+These are the fits of `peclet jamming`, whose output jamming_report.py makes:
 
     points = [(0.56, 41.2, 0.8, 16), ...]     # volume fraction, viscosity > 0, its standard error > 0, number of seeds
     law = peclet.jamming.fit_law(points, flowing=0.62)
     print(law.phi_m, law.interval, law.exponent)
 
-The law is eta = A (1 - phi / phi_m)^-beta, fitted by least squares in ln eta with the errors s_i = (standard error /
-mean)_i c_i. c^2 = (n - 1) / (n - 3) is the mean of Student's t squared with n - 1 degrees of freedom: the spread of a
-few seeds is itself uncertain, and without c the weights of points whose spread came out small by luck make chi^2 too
-large and intervals too narrow. Given phi_m the law is a line in x_i = -ln(1 - phi_i / phi_m), so that ln A and beta
-follow in closed form and only phi_m is searched for (variable projection: G. Golub and V. Pereyra, SIAM J. Numer. Anal.
-10, 413, 1973).
+The law is fitted to ln eta by least squares:
 
-The interval of phi_m is where chi^2(phi_m) <= least chi^2 + z^2 max(1, chi^2 / degrees), z = 1 for the standard error
-(half the width) and 1.96 for 95 %: a law that does not describe the points has wider ones. It is not symmetric: far
-points hold phi_m from below better than from above.
+    eta = A (1 - phi / phi_m)^-beta
+    error of ln eta_i: s_i = c_i (standard error / mean)_i,    c^2 = (n - 1) / (n - 3)
+
+eta is the viscosity, phi the volume fraction, phi_m the jamming point, A the prefactor, beta the exponent, n the number
+of seeds. c^2 is the mean of Student's t squared with n - 1 degrees of freedom. It accounts for the uncertain spread of
+a few seeds; without it chi^2 is too large and intervals are too narrow. Given phi_m the law is a line in
+x_i = -ln(1 - phi_i / phi_m). ln A and beta then follow in closed form, and only phi_m is searched for (variable
+projection: G. Golub and V. Pereyra, SIAM J. Numer. Anal. 10, 413, 1973).
+
+The interval of phi_m is the range in which
+
+    chi^2(phi_m) <= least chi^2 + z^2 max(1, least chi^2 / degrees of freedom)
+
+with z = 1 for the standard error (half its width) and z = 1.96 for 95 %. A poor fit has wider intervals. The interval
+is not symmetric: points far from jamming bound phi_m better from below than from above.
 """
 import dataclasses
 import json
@@ -23,32 +30,32 @@ import math
 
 import numpy as np
 
-Z_95 = 1.959963984540054  # standard errors to either end of an interval of 95 %
-FEWEST_SEEDS = 4  # of a point: c is not finite for fewer
+Z_95 = 1.959963984540054  # half-width of a 95 % interval in standard errors
+FEWEST_SEEDS = 4  # of a point; c is not finite for fewer
 FEWEST_POINTS = 4  # of a fit
-SMALLEST_GAP, GAPS = 1e-7, 400  # between phi_m and the largest fraction that flows; phi_m is below 1
-EXPONENTS = np.linspace(0.25, 6, 116)  # among which a common one is searched for
+SMALLEST_GAP, GAPS = 1e-7, 400  # smallest phi_m - flowing that is tried, and the number of tries up to phi_m = 1
+EXPONENTS = np.linspace(0.25, 6, 116)  # tried for a common exponent
 
 
 class NotDetermined(Exception):
-    """Why there is no jamming point, or no exponent."""
+    """The points do not determine the jamming point or the exponent; the text says why."""
 
 
 @dataclasses.dataclass
 class Law:
-    """Pairs are a number and its standard error, which is 0 of what was given."""
+    """A fitted law. Pairs are a number and its standard error, which is 0 for given numbers."""
 
     phi_m: tuple
-    interval: tuple  # of 95 %
+    interval: tuple  # 95 % interval of phi_m
     exponent: tuple  # beta
     prefactor: tuple  # A
     chi_squared: float
-    degrees: int  # of freedom: points less parameters
+    degrees: int  # degrees of freedom: points less parameters
 
 
 @dataclasses.dataclass
 class Line:
-    """Least squares of y = constant + slope x; what is not fitted is 0 with the variance 0."""
+    """A least-squares fit of y = constant + slope x; a parameter that is not fitted is 0 with variance 0."""
 
     constant: float
     slope: float
@@ -58,7 +65,7 @@ class Line:
 
 
 def weighted_line(x, y, weights, with_constant=True, with_slope=True):
-    """The line through the points of the last axis, for each row of x. Requires as many points as parameters."""
+    """Returns the Line fitted to each row of x (..., n), y (..., n) or (n,), with weights (n,), 1 / variance."""
     total = weights.sum()
 
     def mean(values):
@@ -78,15 +85,15 @@ def weighted_line(x, y, weights, with_constant=True, with_slope=True):
 
 
 def weights_of(points):
-    """1 / s_i^2 of each point."""
+    """Returns the weights 1 / s_i^2 of points (fraction, viscosity, standard error, seeds), an array (n,)."""
     _, value, error, count = np.asarray(points, float).T
     return (count - 3) / (count - 1) / (error / value) ** 2
 
 
 def lowest(function, low, high):
-    """Where a function of rows of places is smallest between `low` and `high`, and its value there, for each row."""
+    """Returns place and value of the minimum, between low and high (rows,), of a function of arrays (rows, places)."""
     rows = np.arange(len(low))
-    for _ in range(6):  # each a tenth as wide
+    for _ in range(6):  # each round has a tenth of the width
         places = np.linspace(low, high, 21, axis=-1)
         values = function(places)
         at = np.argmin(values, axis=-1)
@@ -95,9 +102,11 @@ def lowest(function, low, high):
 
 
 def crossing(function, inside, outside, bound):
-    """The last place before the first one, on the way from `inside` to `outside`, at which the function of places is
-    more than the bound. Requires that it is at `outside`."""
-    for _ in range(8):  # each a twentieth as wide
+    """Returns the place, from `inside` to `outside`, at which a function of arrays first exceeds `bound`.
+
+    The function must exceed the bound at `outside`.
+    """
+    for _ in range(8):  # each round has a twentieth of the width
         places = np.linspace(inside, outside, 21)
         beyond = np.argmax(function(places) > bound)
         inside, outside = places[max(beyond - 1, 0)], places[beyond]
@@ -105,7 +114,7 @@ def crossing(function, inside, outside, bound):
 
 
 class Fit:
-    """chi^2 over ln(phi_m - flowing), at the best prefactor and, unless exponents are given, at the best exponent."""
+    """chi^2 of one curve over the gap ln(phi_m - flowing), at the best prefactor and exponent. Arguments: fit_law()."""
 
     def __init__(self, points, flowing, unit_prefactor):
         self.fractions, values = np.asarray(points, float).T[:2]
@@ -114,9 +123,11 @@ class Fit:
         self.gaps = np.linspace(math.log(SMALLEST_GAP), math.log(1 - flowing), GAPS)
 
     def degrees(self, exponent):
+        """Returns the degrees of freedom; `exponent` is None if it is fitted."""
         return len(self.fractions) - 3 + (exponent is not None) + self.unit_prefactor
 
     def line(self, jamming, exponent=None):
+        """Returns the Line in x for each phi_m in `jamming`, with fitted or given exponents."""
         x = -np.log1p(-self.fractions / np.asarray(jamming)[..., None])
         if exponent is None:
             return weighted_line(x, self.logarithms, self.weights, not self.unit_prefactor)
@@ -125,11 +136,14 @@ class Fit:
         return dataclasses.replace(line, slope=slope)
 
     def chi_squared(self, gaps, exponents=None):
+        """Returns the chi^2 at these gaps, with fitted or given exponents."""
         return self.line(self.flowing + np.exp(gaps), exponents).chi_squared
 
     def least(self, exponents=None):
-        """For each exponent chi^2 at all gaps, the gap at which it is smallest, and its value there; infinite where
-        that is the first gap, and NaN where chi^2 has no bound above it."""
+        """Returns, for each exponent, chi^2 at all gaps, the best gap, and the minimum of chi^2.
+
+        The minimum is infinity if it lies at the first gap, NaN if the points do not bound phi_m from above.
+        """
         column = None if exponents is None else np.asarray(exponents)[:, None]
         of_gaps = np.atleast_2d(self.chi_squared(self.gaps, column))
         at = np.argmin(of_gaps, axis=1)
@@ -141,7 +155,7 @@ class Fit:
         return of_gaps, best, np.where(at == 0, np.inf, np.where(is_bounded, least, np.nan))
 
     def crossing(self, of_gaps, best, direction, bound, exponent):
-        """The fraction at which chi^2 first exceeds the bound on the way from the best gap; else `flowing`."""
+        """Returns the phi_m below (-1) or above (1) the best gap at which chi^2 exceeds the bound; else `flowing`."""
         places = np.flatnonzero((self.gaps - best) * direction > 0)[::direction]
         beyond = np.flatnonzero(of_gaps[places] > bound)
         if not len(beyond):
@@ -151,6 +165,7 @@ class Fit:
         return self.flowing + math.exp(crossing(lambda gaps: self.chi_squared(gaps, exponent), inside, outside, bound))
 
     def law(self, exponent=None):
+        """Returns the fitted Law. Raises NotDetermined."""
         of_gaps, best, chi = (found[0] for found in self.least(None if exponent is None else [exponent]))
         jamming = self.flowing + math.exp(best)
         line = self.line(jamming, exponent)
@@ -173,7 +188,7 @@ class Fit:
             for direction in (-1, 1)
         )
         error = (above - below) / 2
-        # How the line turns with phi_m: var = var given phi_m + (d / d phi_m)^2 var of phi_m.
+        # Variance of another parameter p: var(p) = var(p given phi_m) + (d p / d phi_m)^2 var(phi_m).
         step = 1e-3 * (jamming - self.flowing)
         nearer, farther = self.line(jamming - step, exponent), self.line(jamming + step, exponent)
 
@@ -188,8 +203,15 @@ class Fit:
 
 
 def fit_law(points, flowing, exponent=None, unit_prefactor=False):
-    """The Law through points (fraction, viscosity, standard error, seeds). `flowing`: the largest fraction of which it
-    is known that it flows; phi_m is searched for from there to 1. Throws NotDetermined."""
+    """Returns the Law fitted to one curve.
+
+    points            sequence of (volume fraction, viscosity > 0, standard error > 0, number of seeds > 3)
+    flowing           largest volume fraction that is known to flow; phi_m is searched for from there to 1
+    exponent          beta; None: fitted
+    unit_prefactor    True: A = 1; False: fitted
+
+    Raises NotDetermined.
+    """
     if len(points) < FEWEST_POINTS:
         raise NotDetermined(f"{len(points)} of the {FEWEST_POINTS} points that a fit needs")
     return Fit(points, flowing, unit_prefactor).law(exponent)
@@ -197,16 +219,21 @@ def fit_law(points, flowing, exponent=None, unit_prefactor=False):
 
 @dataclasses.dataclass
 class CommonExponent:
-    exponent: tuple
-    curves: int  # that it is of
+    """An exponent that several curves share."""
+
+    exponent: tuple  # beta and its standard error
+    curves: int  # their number
     chi_squared: float
     degrees: int
 
 
 def find_common_exponent(curves, unit_prefactor):
-    """The CommonExponent: beta is where the sum over the curves of their least chi^2 is smallest. Its standard error is
-    half the width of the range in which the sum is at most its least value plus max(1, chi^2 / degrees). Curves that no
-    exponent describes take no part."""
+    """Returns the CommonExponent of curves (points, flowing).
+
+    beta minimises the sum over the curves of their least chi^2. Its standard error is half the width of the range in
+    which the sum is at most its least value plus max(1, chi^2 / degrees). Curves that no exponent describes are left
+    out. Raises NotDetermined.
+    """
     fits = [Fit(points, flowing, unit_prefactor) for points, flowing in curves]
 
     def least(fit, exponents):
@@ -236,8 +263,11 @@ def find_common_exponent(curves, unit_prefactor):
 
 
 def law_with(points, flowing, common, unit_prefactor):
-    """The law of a curve at the common exponent. What phi_m and prefactor owe to the error of the exponent is added in
-    quadrature, by how they move with it; where one side of it has no law, by the other side."""
+    """Returns the Law of a curve at the common exponent.
+
+    The errors of phi_m and the prefactor include that of the exponent, added in quadrature: from the laws at the
+    exponent plus and minus its error, or from one of these if the other does not exist. Raises NotDetermined.
+    """
     value, error = common.exponent
     laws = []
     for exponent in (value - error, value, value + error):
@@ -264,8 +294,14 @@ def law_with(points, flowing, common, unit_prefactor):
 
 
 def fit_common_law(curves, unit_prefactor=False):
-    """Of curves (points, flowing), each as for fit_law(): the CommonExponent, or the NotDetermined that says why there
-    is none; and for each curve its Law, or such a reason."""
+    """Fits laws with one exponent to several curves.
+
+    curves            sequence of (points, flowing), each as for fit_law()
+    unit_prefactor    True: A = 1 for all; False: fitted for each
+
+    Returns the CommonExponent, and a list with the Law of each curve. A NotDetermined, which says why, stands in the
+    place of each that is not determined.
+    """
     try:
         common = find_common_exponent(curves, unit_prefactor)
     except NotDetermined as why:
@@ -274,7 +310,7 @@ def fit_common_law(curves, unit_prefactor=False):
 
 
 def or_why(function, *arguments):
-    """What the function returns, or the NotDetermined that it throws."""
+    """Returns the value of function(*arguments), or the NotDetermined that it raises."""
     try:
         return function(*arguments)
     except NotDetermined as why:
@@ -282,23 +318,35 @@ def or_why(function, *arguments):
 
 
 def is_found(answer):
+    """Returns False for a NotDetermined."""
     return not isinstance(answer, NotDetermined)
 
 
 @dataclasses.dataclass
 class Steepest:
-    phi_m: tuple  # middle of the interval of the grid where the slope is largest, and its standard error
+    """The jamming point by the steepest rise of a curve."""
+
+    phi_m: tuple  # middle of the interval with the largest slope, and its standard error
     width: float  # of that interval
     to_jammed: bool = False  # it lies between the last point that flows and the first one that is jammed
 
 
 def find_steepest(points, jammed=None, seed=1, draws=2000):
-    """The interval of neighbouring fractions in which Delta eta / Delta phi is largest, of points as for fit_law() in
-    ascending order. Its error has two parts,
-        error^2 = width^2 / 12 + mean of (middle* - middle)^2,
-    the grid's and that of the values: middle* is of curves whose values are drawn again with their standard errors, by
-    random numbers that follow from `seed`. Where the slope is largest in the last interval the curve may go on to rise:
-    then phi_m lies between the last fraction and `jammed`, the smallest one that is jammed, or is not determined."""
+    """Returns the Steepest rise of a curve: the interval of neighbouring fractions with the largest slope.
+
+    points    as for fit_law(), in ascending order
+    jammed    smallest volume fraction that is known to be jammed, or None
+    seed      of the random numbers
+    draws     number of curves that are drawn
+
+    phi_m is the middle of the interval. Its error has a part of the grid and a part of the values:
+
+        error^2 = width^2 / 12 + mean of (middle* - middle)^2
+
+    middle* belongs to a curve whose values are drawn with their standard errors. If the slope is largest in the last
+    interval, the curve may rise further: phi_m then lies between the last fraction and `jammed`. Raises NotDetermined
+    if `jammed` is absent then, or with fewer than 3 points.
+    """
     if len(points) < 3:
         raise NotDetermined(f"{len(points)} of the 3 points that it needs")
     fractions, values, errors = np.asarray(points, float).T[:3]
@@ -315,15 +363,16 @@ def find_steepest(points, jammed=None, seed=1, draws=2000):
     return Steepest(((last + jammed) / 2, (jammed - last) / math.sqrt(12)), jammed - last, True)
 
 
-# Curves as the program gives them: {"name", "settings", "points": [{"fraction", "state", "mean", ...}]}.
+# Curves in the form of the program: {"name", "settings", "points": [{"fraction", "state", "mean", ...}]}.
 
 
 def law_point(point):
+    """Returns a point of the program as fit_law() needs it."""
     return point["fraction"], point["mean"], point["standard_error"], point["count"]
 
 
 def has_error(point):
-    """Whether the point can enter a fit."""
+    """Returns True if the point can be part of a fit."""
     return point["count"] >= FEWEST_SEEDS and (point["mean"] or 0) > 0 and (point["standard_error"] or 0) > 0
 
 
@@ -337,7 +386,7 @@ WHY_LEFT_OUT = {
 
 
 def why_left_out(point):
-    """Why a point is no part of the law, and a detail; None if it is one, or is jammed, which the table says."""
+    """Returns why a point is left out of the law, and a detail. Returns None for fitted and for jammed points."""
     state = point["state"]
     if state == "flowing" and not has_error(point):
         return f"no error yet, {FEWEST_SEEDS} seeds with a value are needed", str(point["count"])
@@ -350,8 +399,11 @@ def why_left_out(point):
 
 
 class Estimate:
-    """The jamming point of a curve by both definitions, what went into them, and `remarks`: pairs of what is said, in
-    the same words for every curve, and of which point."""
+    """The jamming point of a curve of the program. The law is fitted to flowing points with a viscosity over `above`.
+
+    `law` is a Law and `steepest` a Steepest, or each a NotDetermined. `remarks` are pairs: a text that is the same for
+    every curve, and the point.
+    """
 
     def __init__(self, curve, above):
         self.name, self.settings, self.points = curve["name"], curve["settings"], curve["points"]
@@ -374,6 +426,7 @@ class Estimate:
         )
 
     def jammed_at(self):
+        """Returns the smallest fraction beyond the flowing ones, if it is jammed; else None."""
         stuck = self.smallest_stuck
         return stuck["fraction"] if stuck and stuck["state"] == "jammed" else None
 
@@ -381,6 +434,7 @@ class Estimate:
         return len(self.fitted) >= FEWEST_POINTS
 
     def add_contradictions(self):
+        """Adds remarks about jammed points that contradict flowing ones or the law, and about a poor fit."""
         stuck = self.smallest_stuck["fraction"] if self.smallest_stuck else math.inf
         for point in self.points:
             if point["state"] == "jammed" and point["fraction"] < stuck:
@@ -397,8 +451,17 @@ class Estimate:
 
 
 def estimate_all(curves, above=10, exponent=None, unit_prefactor=False, common_exponent=False):
-    """An Estimate of each curve, and the CommonExponent, or why there is none; None unless it is asked for. The law is
-    of flowing points whose viscosity is more than `above`, the steepest rise of all with an error."""
+    """Estimates the jamming points of several curves.
+
+    curves             as from the program
+    above              the law is fitted to flowing points with a larger viscosity than this
+    exponent           beta; None: fitted
+    unit_prefactor     True: A = 1
+    common_exponent    True: one exponent is fitted to all curves
+
+    Returns a list of Estimates, and the CommonExponent or a NotDetermined (None if not asked for). The steepest rise is
+    that of all points with an error.
+    """
     made, common = [Estimate(curve, above) for curve in curves], None
     enough = [one for one in made if one.has_enough_points()]
     if common_exponent:
@@ -412,22 +475,23 @@ def estimate_all(curves, above=10, exponent=None, unit_prefactor=False, common_e
     return made, common
 
 
-FINEST = 1e-4  # decimals of a proposed fraction
-NEAREST = 0.0015  # distance of one for the law to a point of the campaign
-MOST_POINTS = 20
+FINEST = 1e-4  # resolution of proposed fractions
+NEAREST = 0.0015  # smallest distance of a fraction proposed for the law from other points
+MOST_POINTS = 20  # of one proposal
 
 
 class Neighbours:
-    """The fractions of a curve and those that have been proposed."""
+    """The volume fractions of a curve, and those that have been proposed."""
 
     def __init__(self, estimate, proposed):
         self.taken = np.sort([*proposed, *(point["fraction"] for point in estimate.points)])
 
     def is_free(self, fraction, distance):
+        """Returns True if the fraction is in (0, 1) and at least `distance` from all others."""
         return 0 < fraction < 1 and not (abs(self.taken - fraction) < distance).any()
 
     def widest_gap(self, low, high, least):
-        """The middle of the widest gap between neighbours from `low` to `high`; None if all are below `least`."""
+        """Returns the middle of the widest gap, of `least` or more, between neighbours in [low, high], or None."""
         found = None
         for left, right in zip(self.taken, self.taken[1:]):
             if left >= low - FINEST and right <= high + FINEST and right - left >= least:
@@ -436,11 +500,15 @@ class Neighbours:
 
 
 def best_of_law(estimate, exponent, unit_prefactor, proposed):
-    """The fraction that makes the error of phi_m smallest,
-        var(phi_m) = 1 / sum_i w_i (g_i - its fit by the law's other columns)^2,
-        g = -beta phi / (phi_m (phi_m - phi)),
-    with one more point of the fitted ones' median weight, among fractions up to two errors below phi_m and up to
-    half-way from what flows to phi_m: nearer to it a small system may jam. None if nothing is to be gained."""
+    """Returns the volume fraction at which another point makes the error of phi_m smallest, and why.
+
+        var(phi_m) = 1 / sum_i w_i (g_i - fit of g_i by the law's other columns)^2
+        g = d ln eta / d phi_m = -beta phi / (phi_m (phi_m - phi))
+
+    The new point has the median weight of the fitted ones. Fractions are at most two errors below phi_m, and at most
+    half-way from the flowing ones to phi_m, because nearer to it a small system may jam. Returns None if no fraction
+    reduces the error.
+    """
     law, stuck = estimate.law, estimate.smallest_stuck
     jamming, error = law.phi_m
     last = min(jamming - 2 * error, (estimate.largest_flowing + jamming) / 2)
@@ -468,9 +536,12 @@ def best_of_law(estimate, exponent, unit_prefactor, proposed):
 
 
 def bisection(estimate, proposed):
-    """The fraction half-way between the largest that flows and the smallest that does not; the middle of the widest gap
-    among flowing ones where these are near each other; beyond the last one, or before the first, where all flow or
-    none does. None where it is taken."""
+    """Returns a volume fraction by bisection, and why; None if it is taken.
+
+    It is half-way between the largest flowing fraction and the smallest one that does not flow. If these are near each
+    other, it is in the widest gap of flowing fractions. If all flow, it is beyond the last one; if none flows, below
+    the first one.
+    """
     fine_grid, stride = 0.005, 0.02
     neighbours = Neighbours(estimate, proposed)
     flowing, stuck = estimate.largest_flowing, estimate.smallest_stuck
@@ -493,15 +564,25 @@ def bisection(estimate, proposed):
 
 
 def next_fraction(estimate, proposed=(), exponent=None, unit_prefactor=False):
-    """The next fraction of a curve and why, given what has been proposed of all; None if nothing is to be gained."""
+    """Returns the next volume fraction of an Estimate, and why, or None.
+
+    proposed    fractions that have been proposed for any curve
+    exponent, unit_prefactor    as for fit_law()
+    """
     of_law = best_of_law(estimate, exponent, unit_prefactor, proposed) if is_found(estimate.law) else None
     return of_law or bisection(estimate, proposed)
 
 
 def propose(estimates, budget=None, exponent=None, unit_prefactor=False):
-    """Fractions with reasons, one after the other, turn by turn of the curves: as many as `budget` (seconds of
-    processor time) pays, one a curve unless given; the cost of one at all curves, as the dearest point of each took;
-    and why there are none."""
+    """Proposes volume fractions for further points, taking the curves in turn.
+
+    estimates    list of Estimates
+    budget       processor time [s] to be spent; None: one fraction for each curve
+    exponent, unit_prefactor    as for fit_law()
+
+    Returns a list of (fraction, reason); the cost of one fraction at all curves [s], taken from the most expensive
+    point of each; and why there are no fractions, or "".
+    """
     cost = sum(max((point["cpu_seconds"] for point in one.points), default=0) for one in estimates)
     most = len(estimates)
     if budget is not None:
@@ -510,7 +591,7 @@ def propose(estimates, budget=None, exponent=None, unit_prefactor=False):
             return (
                 [],
                 cost,
-                f"a point takes some {cost:.3g} s of processor time, as the dearest has: more than the budget",
+                f"a point takes some {cost:.3g} s of processor time, as the dearest one did: more than the budget",
             )
     made, is_any = [], True
     while is_any and len(made) < min(most, MOST_POINTS):
@@ -519,16 +600,23 @@ def propose(estimates, budget=None, exponent=None, unit_prefactor=False):
             if found := next_fraction(one, [fraction for fraction, _ in made], exponent, unit_prefactor):
                 is_any = True
                 made.append((found[0], f"{one.name}: {found[1]}" if one.name else found[1]))
-    return made, cost, "" if made else "no fraction would make phi_m better known: more seeds would"
+    return made, cost, "" if made else "no fraction would reduce the error of phi_m: more seeds would"
 
 
 class Refused(Exception):
-    """Something of the campaign file: its place, its value, and the rule that it breaks."""
+    """An entry of the campaign file cannot be used: its JSON pointer, its value, and the rule that it breaks."""
 
 
 def added_to_sweep(sweep, over, fractions):
-    """The operations (RFC 6902) that add fractions to the entry of a sweep that sets `over`, and the sweep with them.
-    Throws Refused for an entry that sets it in step with others, whose values at new fractions are unknown."""
+    """Adds volume fractions to a sweep.
+
+    sweep        list of entries of a campaign file
+    over         JSON pointer of the volume fraction
+    fractions    list of numbers
+
+    Returns the JSON patch (RFC 6902) and the changed sweep. Raises Refused if no entry sets `over`, or if an entry sets
+    it in step with other keys, whose values at new fractions are unknown.
+    """
     for place, entry in enumerate(sweep):
         pointers = entry["set"] if isinstance(entry["set"], list) else [entry["set"]]
         if over not in pointers:

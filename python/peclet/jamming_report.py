@@ -1,7 +1,7 @@
-"""What `peclet jamming` says, for people and for programs.
+"""Makes the output of `peclet jamming`, as text or JSON.
 
-The program runs this file: it reads one JSON document of curves and options from standard input and writes an answer to
-standard output.
+The program runs this file, which reads a JSON document with curves and options from standard input and writes its
+answer to standard output.
 """
 import dataclasses
 import json
@@ -10,7 +10,7 @@ import textwrap
 from pathlib import Path
 
 if __name__ == "__main__":
-    # This Python's own NumPy comes before that of the folder which has the package.
+    # NumPy is imported before the folder of the package is on the path, which might have another one.
     try:
         import numpy  # noqa: F401
     except ModuleNotFoundError as missing:
@@ -18,17 +18,18 @@ if __name__ == "__main__":
     sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from peclet.jamming import Refused, added_to_sweep, estimate_all, is_found, propose
 
-WIDTH = 100  # of the text for people
+WIDTH = 100  # of the text [characters]
 
 
 def folded(text):
+    """Returns the text with lines of at most WIDTH characters."""
     lines = text.split("\n")
     wrapped = (textwrap.wrap(line, WIDTH, break_long_words=False, break_on_hyphens=False) or [""] for line in lines)
     return "\n".join(part for parts in wrapped for part in parts)
 
 
 def with_error(number):
-    """ "8.93 ± 0.12" of a pair: the error to two significant digits, the value to the same place."""
+    """Returns a pair as "8.93 ± 0.12": the error to two significant digits, the value to the same place."""
     value, error = number
     decimals = 1 - int(f"{error:.1e}".split("e")[1])
 
@@ -51,6 +52,7 @@ def counted(number, noun):
 
 
 def cells_of(one, options):
+    """Returns the cells of the table for one Estimate, by title."""
     stuck = one.smallest_stuck
     row = {
         "curve": one.name,
@@ -73,7 +75,7 @@ def cells_of(one, options):
 
 
 def aligned(rows):
-    """Columns two blanks apart; numbers of points and fractions to the right, all others to the left."""
+    """Returns rows as a text with aligned columns, two blanks apart; numbers are aligned to the right."""
     titles = [title for title in rows[0] if title != "curve" or any(row["curve"] for row in rows)]
     lines = [titles, *([row[title] for title in titles] for row in rows)]
     widths = [max(map(len, column)) for column in zip(*lines)]
@@ -84,7 +86,7 @@ def aligned(rows):
 
 
 def remarks_text(estimates, options):
-    """What is true of several curves, once, with the curves and places of which it is."""
+    """Returns the remarks, each once with its curves and points."""
     told = {}
     for k, one in enumerate(estimates):
         own = list(one.remarks)
@@ -128,8 +130,9 @@ def legend(estimates, common, options):
     if options["by"] != "law" and any(is_found(one.steepest) and one.steepest.to_jammed for one in estimates):
         text += "*: between the last point that flows and the first one that is jammed\n"
     return folded(
-        text + "Whether a viscosity would grow with the stiffness, as that of a jammed point does, no single point can "
-        "tell: sweep the stiffness."
+        text
+        + "A single point cannot tell whether its viscosity grows with the stiffness, as that of a jammed point does: "
+        "sweep the stiffness."
     )
 
 
@@ -156,7 +159,7 @@ def in_json(value):
 
 
 def answer_json(answer, *pairs):
-    """What was found, with its pairs as objects; or the first of these null, and why."""
+    """Returns an answer as JSON: pairs as objects; or, if not determined, null for the first pair, and the obstacle."""
     if not is_found(answer):
         return {pairs[0]: None, "obstacle": str(answer)}
     found = {**dataclasses.asdict(answer), "obstacle": None}
@@ -199,8 +202,11 @@ def document_json(document, estimates, common, proposed):
 
 
 def answer(document):
-    """`text` for people, or with `json` for programs, and the `sweep` with the proposed points, or None; or `refused`,
-    what is wrong with the campaign's sweep."""
+    """Returns the answer to a document of the program: {text, sweep} or {refused}.
+
+    `text` is the output, JSON if the document asks for it. `sweep` is the campaign's sweep with the proposed points, or
+    None. `refused` is the fault of the sweep: pointer, value, rule.
+    """
     form = {name: document[name] for name in ("exponent", "unit_prefactor")}
     options = {name: document[name] for name in ("above", "common_exponent")}
     estimates, common = estimate_all(document["curves"], **form, **options)

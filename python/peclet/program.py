@@ -1,4 +1,4 @@
-"""The program peclet: where it is, and what it answers."""
+"""Finds and calls the program peclet."""
 import ctypes
 import os
 import shutil
@@ -11,21 +11,34 @@ libc = ctypes.CDLL(None)
 
 
 class PecletError(Exception):
-    """What peclet, or this package, says is wrong."""
+    """An error that the program peclet or this package reports; its text is meant for users."""
 
 
 def find_program(program=None):
-    """Path of the program: as given, else of the variable PECLET of the environment, else of PATH."""
+    """Returns the path of the program peclet.
+
+    program    path or name; by default the environment variable PECLET, or else "peclet" on PATH
+
+    Raises PecletError if it is not found.
+    """
     name = program or os.environ.get("PECLET") or "peclet"
     path = shutil.which(name)
     if path is None:
-        raise PecletError(f"{name}: no such program; install peclet, or name it by the variable PECLET")
+        raise PecletError(
+            f"{name}: no such program; install peclet, or set the environment variable PECLET to its path"
+        )
     return path
 
 
 def ask(program, *arguments, allowed=(0,)):
-    """What `peclet ARGUMENTS` prints, as text. PecletError has what it says on standard error. Verbs that need Python
-    find this one."""
+    """Calls `peclet ARGUMENTS` and returns its standard output as text.
+
+    program    as for find_program()
+    arguments  texts
+    allowed    exit codes that are not errors
+
+    Verbs that need Python find this interpreter. Raises PecletError with the program's standard error.
+    """
     path = os.pathsep.join([os.path.dirname(sys.executable), os.environ.get("PATH", os.defpath)])
     how = {"capture_output": True, "text": True, "encoding": "utf-8", "env": {**os.environ, "PATH": path}}
     done = subprocess.run([find_program(program), *arguments], **how)
@@ -36,11 +49,13 @@ def ask(program, *arguments, allowed=(0,)):
 
 
 def run_shown(program, *arguments):
-    """Runs `peclet ARGUMENTS` and shows what it prints. Returns its exit code, what it said last on standard error, and
-    whether it was interrupted. An interrupt is passed on, and the end that it leads to is waited for.
+    """Calls `peclet ARGUMENTS` and shows its output.
+
+    Returns the exit code, the last message on standard error, and True if the call was interrupted. Passes an interrupt
+    on to the program and waits for its end.
     """
-    # The program has a process group of its own, because a second signal, as a terminal or notebook sends one to all of
-    # the group, would stop it without checkpoints. It is asked to stop when Python is killed.
+    # The program has its own process group: a terminal or notebook sends signals to the whole group, and a second one
+    # would stop it without checkpoints. The kernel asks it to stop if Python is killed.
     process = subprocess.Popen(
         [find_program(program), *arguments],
         stderr=None if sys.stderr.isatty() else subprocess.PIPE,

@@ -1,4 +1,4 @@
-"""What a campaign has found so far."""
+"""Reads the results of a campaign."""
 import csv
 import io
 import json
@@ -9,15 +9,20 @@ from peclet.program import PecletError, ask
 from peclet.table import Table, cell_of, is_same
 
 ESTIMATE = ("mean", "standard_error", "half_width")
-# Columns of the exports that are text, also where it looks like a number.
+# Columns of the exports that are texts, even if they look like numbers.
 TEXTS = ("label", "hash", "verdict", "quantity", "symbol", "unit", "estimator")
 OF_POINTS = ("label", "verdict", "seeds", "lost", "count", *ESTIMATE, "provisional", "jammed")
 OF_SEEDS = ("label", "seed", "deciding", "ending", "cpu_seconds")
 
 
 def open_results(campaign, program=None):
-    """The results of a campaign: of its file NAME.json, of its folder NAME.peclet, also while it runs. Nothing is read
-    before it is asked for, and every question reads what is there then."""
+    """Opens the results of a campaign, which may be running. Called peclet.open.
+
+    campaign   path of the campaign file NAME.json or of its folder NAME.peclet
+    program    path or name of the program peclet; by default the environment variable PECLET, or else PATH
+
+    Returns Results, whose methods read the present state at each call. Raises PecletError if the path does not exist.
+    """
     path = os.fspath(campaign)
     if not os.path.exists(path):
         raise PecletError(f"{path}: no such file or folder; must be a campaign file, or its .peclet folder")
@@ -25,8 +30,10 @@ def open_results(campaign, program=None):
 
 
 def short_names(pointers):
-    """Of each JSON pointer into the scene its last word, and as many before it as tell it from the others and from
-    columns of every table."""
+    """Returns a short name for each JSON pointer into the scene, by pointer.
+
+    The name is the last word, with as many words before it as make it differ from the other names and columns.
+    """
     words = {pointer: pointer.strip("/").split("/") for pointer in pointers}
     names = {}
     for pointer, own in words.items():
@@ -41,12 +48,12 @@ def short_names(pointers):
 
 
 def apart(name, swept, prefix):
-    """The name of a column that is not the name of a swept parameter."""
+    """Returns the name of a column, with `prefix` if a swept parameter has this name."""
     return prefix + name if name in swept else name
 
 
 def value_of(text):
-    """The number, truth or word in a cell of a CSV table; None if it is empty."""
+    """Returns the number, truth value or text in a cell of a CSV table; None if it is empty."""
     if text == "":
         return None
     try:
@@ -56,8 +63,10 @@ def value_of(text):
 
 
 def elements(rows, wanted):
-    """The rows of the long export that are the element `wanted` of a list, one a point: by its places, as in
-    transient/shear_stress/3, or by its words, as in stress/total/xy."""
+    """Returns the rows of the long export for one element of a list, one a point.
+
+    `wanted` names the element by its indices, as in transient/shear_stress/3, or by its words, as in stress/total/xy.
+    """
     places, chosen = {}, []
     for row in rows:
         if not wanted.startswith(row["quantity"] + "/"):
@@ -72,12 +81,16 @@ def elements(rows, wanted):
 
 
 def cell_value(value):
-    """What the tables of the program have for a value of a scene."""
+    """Returns a value of a scene as tables show it: lists and objects as JSON texts."""
     return json.dumps(value, separators=(",", ":")) if isinstance(value, (dict, list)) else value
 
 
 class Results:
-    """`path` is that of the campaign, `program` the peclet that is asked."""
+    """The results of a campaign, as of the time of each call. Made by peclet.open().
+
+    path       path of the campaign
+    program    path or name of the program peclet
+    """
 
     def __init__(self, path, program=None):
         self.path, self.program = path, program
@@ -89,7 +102,7 @@ class Results:
         return ask(self.program, verb, *options, "--", self.path)
 
     def _named(self, rows):
-        """Rows with the short names of what is swept first, and these names."""
+        """Returns the rows with short names of the swept parameters, and a list of these names."""
         names = short_names([key for key in (rows[0] if rows else {}) if key.startswith("/")])
         known = []
         for row in rows:
@@ -98,24 +111,28 @@ class Results:
         return known, list(names.values())
 
     def export(self):
-        """The whole export, as `peclet export` prints it: points, and every realisation of each."""
+        """Returns the output of `peclet export`, a dictionary: the points, each with all its realisations."""
         return json.loads(self._ask("export"))
 
     @property
     def target(self):
-        """Observable, tolerance and confidence, as the campaign has them."""
+        """The campaign's target, a dictionary: observable, tolerance, confidence."""
         return self._status()["target"]
 
     @property
     def name(self):
+        """The campaign's name."""
         return self._status()["campaign"]
 
     def _status(self):
-        # The code of `status` is the state of the campaign: 3 some points are not converged, 4 not finished.
+        # Exit codes of `status`: 3 if some points have not converged, 4 if the campaign has not finished.
         return json.loads(ask(self.program, "status", "--json", "--", self.path, allowed=(0, 3, 4)))
 
     def quantities(self):
-        """What was measured: quantity, symbol, unit, estimator, and the names of its axes (none of a single number)."""
+        """Returns a Table of the measured quantities: quantity, symbol, unit, estimator, axes.
+
+        `axes` lists the names of the axes; it is empty for a single number.
+        """
         found = {}
         for row in self._rows("long"):
             axes = [row[f"axis_{k}"] for k in (1, 2, 3) if row.get(f"axis_{k}")]
@@ -124,13 +141,21 @@ class Results:
         return Table.of_rows(["quantity", "symbol", "unit", "estimator", "axes"], list(found.values()))
 
     def estimates(self, quantity=None):
-        """A row for each point: the swept parameters, label, verdict, seeds and lost ones; and `count`, `mean`,
-        `standard_error` and `half_width` of the 95 % interval (of the campaign's confidence) at the point's last stop
-        test, with the control variate where there is one. Those of the target, by which the campaign stops, or of another
-        single number, such as pressure, stress/total/xy or transient/shear_stress/3; the half-width of such is
-        Student's, or of shares Clopper and Pearson's. `provisional` rows have had no stop test yet: their mean is that
-        of all seeds so far, and has no interval. `jammed`: half of the seeds or more have jammed, as `peclet jamming`
-        counts them; such a point has no viscosity."""
+        """Returns a Table of estimates with a row for each point.
+
+        quantity   name of a single number, such as pressure, stress/total/xy or transient/shear_stress/3; by default
+                   the campaign's target
+
+        Columns: the swept parameters, label, verdict, seeds, lost (seeds without a value), count (values), mean,
+        standard_error, half_width of the confidence interval, provisional, jammed. Estimates are those of the point's
+        last stop test, with the control variate if there is one. Half-widths of quantities other than the target are
+        Student's, those of shares Clopper and Pearson's.
+
+        provisional    True if the point has had no stop test; the mean is that of all seeds, without an interval
+        jammed         True if at least half of the seeds have jammed; such a point has no viscosity
+
+        Raises PecletError if the quantity was not measured, or is a list.
+        """
         rows, axes = self._named(self._rows("csv"))
         for row in rows:
             row["provisional"] = row["mean"] is None
@@ -154,10 +179,14 @@ class Results:
             row |= {name: other.get(name) for name in ("count", *ESTIMATE)}
 
     def profile(self, quantity, **wanted):
-        """A row for each point and each element of a quantity with axes, such as a profile, a distribution or the
-        components of a stress: the swept parameters, label, the axes by their names, count, mean, standard error and
-        half-width. Of the points with these values of swept parameters, of all without. `quantity` may name a single
-        element."""
+        """Returns a Table with a row for each point and each element of a quantity with axes.
+
+        quantity   name of a profile, a distribution, a tensor or another quantity with axes; may name one element
+        wanted     values of swept parameters by name; restricts the points
+
+        Columns: the swept parameters, label, one for each axis, count, mean, standard_error, half_width. Raises
+        PecletError if the quantity was not measured.
+        """
         quantity, everything = quantity.lstrip("/"), self._rows("long")
         chosen = [row for row in everything if row["quantity"] == quantity] or elements(everything, quantity)
         if not chosen:
@@ -171,9 +200,14 @@ class Results:
         return Table.of_rows(axes + ["label", *names, "count", *ESTIMATE], rows).where(**wanted)
 
     def realisations(self, **wanted):
-        """A row for each seed that has ended: the swept parameters, label, seed, whether it is in the estimate
-        (`deciding`), how it ended, processor seconds, and every mean that is a single number, without control
-        variate; one with the name of a swept parameter is called measured_NAME. Reads the whole export."""
+        """Returns a Table with a row for each seed that has ended.
+
+        wanted     values of swept parameters by name; restricts the points
+
+        Columns: the swept parameters, label, seed, deciding (True if the estimate includes the seed), ending (its
+        cause), cpu_seconds, and every mean that is a single number, without control variate. A mean with the name of a
+        swept parameter is called measured_NAME. Reads the whole export.
+        """
         document = self.export()
         names = short_names(sorted({pointer for point in document["points"] for pointer in point["settings"]}))
         rows, scalars = [], {}
@@ -193,8 +227,12 @@ class Results:
         return Table.of_rows([*names.values(), *OF_SEEDS, *scalars], rows).where(**wanted)
 
     def files(self, point=None, **wanted):
-        """Paths of what realisations have left beside their results: those of a point, named as the program does it (by
-        its label, its values alone, digits of its hash), or of the points with these values of swept parameters.
+        """Returns the paths of the files that realisations have left beside their results, as a list of texts.
+
+        point      a point by its label, its values alone, or the first digits of its hash; by default all points
+        wanted     values of swept parameters by name; restricts the points
+
+        Raises PecletError if the point is not known.
         """
         return [file["path"] for file in self._files(point, wanted)]
 
@@ -206,8 +244,14 @@ class Results:
         return [file for file in left if file["point"] in labels]
 
     def trajectory(self, point=None, seed=0, **wanted):
-        """The frames that a seed of a point has left with the observable `trajectory`: gsd.hoomd's trajectory, a
-        sequence of them. The point is named as for files(); it must be a single one."""
+        """Opens the trajectory of one seed of a point, from a scene with the observable `trajectory`.
+
+        point, wanted    name a single point, as for files()
+        seed             number of the seed
+
+        Returns a gsd.hoomd.HOOMDTrajectory, a sequence of frames. Raises PecletError if there is no trajectory, if
+        there are several, or if the module gsd is not installed.
+        """
         try:
             import gsd.hoomd
         except ImportError as missing:
@@ -221,25 +265,29 @@ class Results:
         return gsd.hoomd.open(found[0], "rb")
 
     def jamming(self, *options):
-        """What `peclet jamming --json` says: where the curves of viscosity over volume fraction jam; `options` are more
-        of its options, such as "--by=law". The fits alone are in peclet.jamming."""
+        """Returns the jamming points of curves of viscosity over volume fraction, as `peclet jamming --json` does.
+
+        options    further options of this verb, such as "--by=law"
+
+        Returns a dictionary. The module peclet.jamming has the fits alone. Raises PecletError.
+        """
         return json.loads(self._ask("jamming", "--json", *options))
 
     def plot(self, quantity=None, x=None, by=None, axes=None, label=None, log=None, where=None):
-        """Draws an estimate of every point over one swept parameter, with intervals as bars, as `peclet plot` does, and
-        returns matplotlib's Axes.
+        """Plots the estimate of every point over one swept parameter, with confidence intervals, as `peclet plot` does.
 
-        quantity  the campaign's target unless given
-        x         the swept parameter on the axis; the one with most values unless given. If it has words, such as
-                  "auto", its values stand side by side
-        by        another one, of which each value is a curve; all others that vary unless given
-        axes      matplotlib's Axes to draw in; new ones unless given
-        label     of the curve, where it is a single one
-        log       logarithmic axes: "", "x", "y" or "xy"; those that fit unless given
-        where     values of swept parameters by name: of the points that have them
+        quantity  name of a single number; by default the campaign's target
+        x         name of the swept parameter on the axis; by default the one with most values. Values that are words,
+                  such as "auto", are placed side by side
+        by        name of another swept parameter, with a curve for each value; by default all others that vary
+        axes      matplotlib's Axes to draw in; by default new ones
+        label     name of the curve in the legend, if there is a single one
+        log       logarithmic axes: "", "x", "y" or "xy"; by default chosen by the values
+        where     values of swept parameters by name, a dictionary; restricts the points
 
-        Open marks are points that have not converged; without a bar they have had no stop test yet. Crosses have jammed:
-        at their number, or at the edge of the frame where they have none.
+        Open marks are points that have not converged; those without a bar have had no stop test. Crosses are jammed
+        points, at the edge of the frame if they have no value. Returns matplotlib's Axes. Raises PecletError if
+        nothing is swept, a name is wrong, or matplotlib is not installed.
         """
         try:
             import matplotlib.pyplot as pyplot
@@ -262,7 +310,7 @@ class Results:
         axes = axes or pyplot.subplots(figsize=(4.5, 3.4), layout="constrained")[1]
         draw_panel(axes, figure, figure["panels"][0])
         if not figure["x"]["categories"]:
-            axes.autoscale()  # with what else is drawn there
+            axes.autoscale()  # includes other curves in these axes
         handles = legend_of(figure)
         for handle in handles:
             axes.add_line(handle)

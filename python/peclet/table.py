@@ -1,4 +1,4 @@
-"""Columns of equal length."""
+"""A table of named columns."""
 import html
 import math
 
@@ -14,7 +14,12 @@ class NoSuchColumn(PecletError, KeyError):
 
 
 class Table:
-    """Columns by name, each a NumPy array of the same length. Iteration gives the rows, as dictionaries."""
+    """A table of columns by name, each a NumPy array of the same length. Iteration yields the rows as dictionaries.
+
+    columns    sequences of equal length by name
+
+    Raises ValueError if the lengths differ; table["name"] raises NoSuchColumn, a PecletError and KeyError.
+    """
 
     def __init__(self, columns):
         self.columns = {name: np.asarray(values) for name, values in columns.items()}
@@ -23,7 +28,10 @@ class Table:
 
     @classmethod
     def of_rows(cls, names, rows):
-        """Of rows that are dictionaries; numbers that a row lacks are NaN, texts empty."""
+        """Returns a Table with the columns `names` from `rows`, a sequence of dictionaries.
+
+        Missing numbers become NaN, missing texts "".
+        """
         return cls({name: column_of([row.get(name) for row in rows]) for name in names})
 
     def __len__(self):
@@ -47,25 +55,33 @@ class Table:
     __hash__ = None
 
     def take(self, indices):
+        """Returns a Table of the rows with these indices, or for which a boolean array is True."""
         return Table({name: values[indices] for name, values in self.columns.items()})
 
     def where(self, **wanted):
-        """The rows in which these columns have these values; numbers to nine digits."""
+        """Returns a Table of the rows in which the named columns have these values; numbers are compared to 1e-9.
+
+        Raises NoSuchColumn.
+        """
         chosen = np.ones(len(self), bool)
         for name, value in wanted.items():
             chosen &= [is_same(cell, value) for cell in self[name].tolist()]
         return self.take(chosen)
 
     def sorted_by(self, *names):
-        """Rows in order, of several names the first counts most. Numbers come before words, NaN is last."""
+        """Returns a Table sorted by these columns, the first one foremost. Numbers precede words; NaN is last.
+
+        Raises NoSuchColumn.
+        """
         keys = [[rank_of(cell) for cell in self[name].tolist()] for name in names]
         return self.take(sorted(range(len(self)), key=lambda row: [key[row] for key in keys]))
 
     def to_dict(self):
+        """Returns the columns as lists, by name."""
         return {name: values.tolist() for name, values in self.columns.items()}
 
     def to_pandas(self):
-        """A pandas.DataFrame; pandas has to be installed."""
+        """Returns a pandas.DataFrame. Raises ImportError if pandas is not installed."""
         import pandas
 
         return pandas.DataFrame(self.columns)
@@ -89,17 +105,22 @@ class Table:
 
 
 def is_same(cell, value):
+    """Returns True if the values are equal; numbers are compared to a relative 1e-9."""
     if isinstance(cell, str) or isinstance(value, str):
         return cell == value
     return math.isclose(cell, value, rel_tol=1e-9)
 
 
 def rank_of(cell):
+    """Returns a key for sorting: numbers, then texts, then NaN."""
     return (2, 0) if cell != cell else (isinstance(cell, str), cell)
 
 
 def column_of(values):
-    """Texts where all are, truths where all are, both numbers and words as objects, else numbers."""
+    """Returns the values as an array of texts, of truth values, of numbers, or, if mixed with texts, of objects.
+
+    None becomes NaN, or "" in a column with texts.
+    """
     texts = ["" if v is None else v for v in values]
     if values and all(isinstance(v, str) for v in texts):
         return np.array(texts)
@@ -113,4 +134,5 @@ def column_of(values):
 
 
 def cell_of(value):
+    """Returns the value as a table shows it: numbers with six significant digits."""
     return f"{value:.6g}" if isinstance(value, (float, np.floating)) else str(value)

@@ -24,7 +24,7 @@ SCENE = merged(
     observables=["stress", "linear_response"],
 )
 EQUILIBRATION = 100  # Brownian times
-# Brownian times of the window, 80 times the viscosity or more, and seeds.
+# Window [Brownian times], at least 80 times the viscosity, and seeds, by volume fraction.
 WINDOWS = {
     0.30: (400, 60),
     0.40: (500, 40),
@@ -35,13 +35,13 @@ WINDOWS = {
     0.55: (5000, 16),
 }
 MIDDLE = 0.45
-OTHERS = {0.30: ((1000, 16),), MIDDLE: ((250, 16), (50, 24)), 0.50: ((50, 16),)}  # particles and seeds
+OTHERS = {0.30: ((1000, 16),), MIDDLE: ((250, 16), (50, 24)), 0.50: ((50, 16),)}  # other particle numbers and seeds
 HALVED_SEEDS = 24
-# Prices in the flow: volume fractions, Peclet numbers, seeds, Brownian times of the window.
+# Prices in the flow: volume fractions, Peclet numbers, seeds, window [Brownian times].
 PRICED, PECLETS, PRICE_SEEDS, PRICE_WINDOW = (0.30, 0.45, 0.50), (0.001, 0.003, 0.01, 0.03, 0.1), 16, 200
 USUAL = {"count": 100, "step": "automatic"}
-FROZEN = 4  # a frequency, over the Brownian one: above it inertia is felt
-# The correlation is taken up to so many Brownian times for each unit of the viscosity.
+FROZEN = 4  # frequency over the Brownian one; above it inertia matters
+# Upper limit of the correlation's integral [Brownian times] over the relative viscosity.
 TIMES_OF_CORRELATION = 2.5
 
 
@@ -55,7 +55,7 @@ def point_of(program, name, scene, seeds):
 
 
 def by_correlation(point):
-    """Up to the first lag beyond TIMES_OF_CORRELATION times the viscosity."""
+    """Returns the viscosity by the correlation up to the first lag beyond TIMES_OF_CORRELATION times the viscosity."""
     viscosity, _ = point.measured(TARGET)
     lag = np.array(point.means[0]["linear_response"]["lag"]) / BROWNIAN_TIME
     place = int(np.searchsorted(lag, TIMES_OF_CORRELATION * viscosity))
@@ -70,7 +70,7 @@ def rows_of(fraction, count, step, point):
 
 
 def curve_rows(fraction, point):
-    """eta(t), and the moduli, with their standard errors over seeds."""
+    """Yields rows of eta(t) and of the moduli, with their standard errors over seeds."""
     for axis, name in (("time", "viscosity"), ("frequency", "storage"), ("frequency", "loss")):
         scale = BROWNIAN_TIME if axis == "frequency" else 1 / BROWNIAN_TIME
         modulus = THERMAL_ENERGY if axis == "frequency" else 1  # in units of kT / a^3
@@ -80,7 +80,7 @@ def curve_rows(fraction, point):
 
 
 def price_row(fraction, peclet, point, window, quantity, viscosity, foretold=1.0, count=100):
-    """`foretold`: the price over that at rest, as peclet plan guesses it."""
+    """Returns the row of a price; `foretold` is the estimate of `peclet plan` for the price over that at rest."""
     values = [*point.by_seed(quantity).values()]
     seconds = [seconds_of_window(result, EQUILIBRATION, window) for result in point.results]
     row = {"fraction": fraction, "peclet": peclet, "count": count, "seeds": len(values), "foretold": foretold}
@@ -88,7 +88,7 @@ def price_row(fraction, peclet, point, window, quantity, viscosity, foretold=1.0
 
 
 def price_rows(program, fraction, viscosity):
-    """Yields those of means in the flow."""
+    """Yields the rows of prices in the flow."""
     for peclet in PECLETS:
         patch = {"fluid": {"thermal_energy": None}, "observables": None, "volume_fraction": fraction}
         scene = merged(SCENE, patch, at_peclet(peclet), in_brownian_times(EQUILIBRATION, PRICE_WINDOW))
@@ -123,13 +123,13 @@ def measure(program):
 
 
 def in_errors(a, b):
-    """Returns the difference of two viscosities over its standard error, a number that has no error of its own."""
+    """Returns the difference of two viscosities over its standard error, and an error of 0."""
     value, error = difference(number(a, "viscosity"), number(b, "viscosity"))
     return value / error, 0.0
 
 
 def compared(table, label, **which):
-    """The two forms of one point."""
+    """Returns the check that both estimates of one point agree."""
     row, other = (first(table, by=by, **which) for by in ("momentum", "correlation"))
     text = f"{label}: by correlation less by momentum, in standard errors"
     return Check(text, "two forms", *in_errors(other, row), -3, 3)
@@ -169,8 +169,8 @@ def modulus(curves, fraction, name):
 
 
 def moduli(curves, table):
-    """The loss at the lowest frequency belongs to the viscosity at rest, the storage to the loss by Kramers and Kronig,
-    and the loss at high frequencies, where structure is frozen, to a published formula for hard spheres."""
+    """Yields checks of the moduli: G'' at the lowest frequency against the viscosity at rest, G' against the
+    Kramers-Kronig relation, and G'' at high frequency, with frozen structure, beside a formula for hard spheres."""
     for fraction, row in usual_rows(table).items():
         frequency, storage, storage_error = modulus(curves, fraction, "storage")
         _, loss, loss_error = modulus(curves, fraction, "loss")
@@ -255,7 +255,7 @@ def draw():
 def quick_measure(program):
     scene = merged(SCENE, in_brownian_times(10, 60), volume_fraction=0.3)
     momentum = point_of(program, "quick", merged(scene, particles={"count": 60}), 12).measured(TARGET)
-    # Einstein's and Batchelor's 1 + 2.5 phi + 5.9 phi^2 below, slow shear (2.3) within 20 % above.
+    # Bounds: Einstein's and Batchelor's 1 + 2.5 phi + 5.9 phi^2 below; 20 % above slow shear (2.3).
     return [Check("φ = 0.3: η_r at rest", "1 + 2.5 φ + 5.9 φ² (Batchelor 1977), ± 20 %", *momentum, 1.82, 2.9, 11)]
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Contacts in weak and in strong flow: how long they last, and what they connect."""
+"""Contacts in weak and in strong flow: their lifetimes and clusters."""
 import os
 import sys
 from pathlib import Path
@@ -15,18 +15,19 @@ TITLE = "Contacts in weak and in strong flow"
 WEAK, STRONG = 0.01, 1e4
 PECLETS = (WEAK, 0.1, 1, 10, 100, 1000, STRONG)
 SEEDS = 8
-STEPS = 400  # each a frame
+STEPS = 400  # of the window, each with a frame
 FRACTION = 0.5
 SCENE = merged(
     TABLE_SCENE, volume_fraction=FRACTION, observables=["stress", "trajectory"], trajectory={"contacts": True}
 )
-BEFORE = {"strain": 2, "brownian_times": 60}  # whichever is first
-# "Short-lived": as a share of the time in which the flow parts two spheres, a strain of 1, and of the Brownian time.
+BEFORE = {"strain": 2, "brownian_times": 60}  # whichever comes first
+# Bound for "short-lived": a fraction of the strain 1 that separates two spheres, and of the Brownian time.
 SHORT = 0.1
 
 
 def of_seed(program, name, scene, seed):
-    """Lifetime in steps, contacts of a sphere, share of the largest cluster, mean and largest overlap; the result."""
+    """Runs one seed and returns the lifetime of contacts [steps], contacts per sphere, share of the largest cluster,
+    mean and largest overlap, and the result."""
     result = program.run_alone(name, scene, 1, seed)
     frames, overlaps = zip(*frames_of(os.path.join(program.folder, f"{name}.trajectory.gsd")))
     count = scene["particles"]["count"]
@@ -43,7 +44,7 @@ def row_at(program, peclet, seeds, patch):
     scene = merged(SCENE, at_peclet(peclet), window, patch)
     found = [of_seed(program, f"pe-{peclet:g}-{seed}", scene, seed) for seed in range(seeds)]
     steps, *others, results = zip(*found)
-    # Rate and Brownian time are those of the scene: by a group of the result over the step.
+    # Shear time and Brownian time of the scene, from the groups of a result.
     shear, brownian = (results[0]["derived"][f"{name}_time"] for name in ("shear", "brownian"))
     row = {"peclet": peclet, "seeds": seeds} | entries("steps", estimate(steps))
     row |= entries("strain", estimate([s * step / shear for s in steps]))

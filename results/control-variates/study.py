@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""What the stress B of the random forces takes away from the scatter: as a part of the stress, which is a control
-variate with the coefficient -1 of the rest, and by regression of the rest on its components."""
+"""Reduction of the variance by the stress B of the random forces: as part of the stress, a control variate of the rest
+with the coefficient -1, and by regression of the rest on its components."""
 import sys
 from pathlib import Path
 
@@ -21,14 +21,14 @@ SCENE = merged(
 )
 BLOCKS = 32  # of a window
 XY = 3
-# Components of B that are controls; None: B_xy with the coefficient -1, which makes the stress that acts.
+# Components of B that are controls; None: B_xy with the coefficient -1, which gives the stress that acts.
 FIXED, ONE, ALL = "B_xy, coefficient -1", "B_xy, fitted", "six components of B, fitted"
 CONTROLS = {FIXED: None, ONE: (XY,), ALL: range(6)}
 COLOURS = dict(zip(CONTROLS, (BLUE, GREEN, RED)))
 
 
 def controlled(viscosity, stress, components):
-    """B is the pairs' Brownian stress, in units of the viscosity; with minus one as coefficient, B is added."""
+    """Returns the viscosities minus controls. `stress` is B over viscosity * rate; a coefficient of -1 adds B."""
     if components is None:
         return viscosity + stress[:, XY]
     return cross_fitted(viscosity, stress[:, list(components)])
@@ -53,7 +53,7 @@ def rows_of(peclet, means):
 
 
 def window_rows(peclet, results):
-    """Of averages over parts of the window, with the coefficient -1."""
+    """Yields rows of variance ratios for averages over parts of the window, with the coefficient -1."""
     found = np.array([r["blocks"]["relative_viscosity"] for r in results])
     viscosity = found - [r["blocks"]["shear_stress"]["brownian_lubrication"] for r in results]
     whole = results[0]["time"]["production"] / results[0]["derived"]["brownian_time"]
@@ -115,7 +115,7 @@ def quick_measure(program):
     scene = merged(SCENE, in_brownian_times(2, 4), particles={"count": 30})
     for row in rows_of(1, [r["mean"] for r in results_at(program, 1, 200, scene)]):
         yield change_of(row, 6)
-        # Over four Brownian times the white noise of B is most of the scatter.
+        # In windows of four Brownian times most of the scatter is white noise of B.
         text = f"Pe = 1, {row['controls']}: variance over that without controls"
         yield Check(text, "saving", *number(row, "ratio"), 0, 0.8, row["seeds"] - 1)
 

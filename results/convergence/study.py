@@ -14,30 +14,30 @@ import numpy as np
 
 TITLE = "Convergence of the viscosity"
 SCENE = merged(REFERENCE_SCENE, particles={"count": 250})
-# Averages that a result has of consecutive parts of its window; seeds that are left out together.
+# Blocks of a window; seeds of a set for the jackknife.
 BLOCKS, SET = 32, 16
-WINDOWS = [2**k for k in range(6)]  # blocks that are averaged together
-GROUPS = (1, 2, 4, 8)  # seeds that are
+WINDOWS = [2**k for k in range(6)]  # numbers of blocks that are averaged
+GROUPS = (1, 2, 4, 8)  # numbers of seeds that are averaged
 BROWNIAN = in_brownian_times(2, 16)
 SHEARED = in_strains(1, 4)
-# Pe, seeds, durations; log10 of the published number of samples for 10 %, a sample being an explicit step of one
+# Pe, seeds, durations, log10 of the published number of samples for 10 %. A sample is an explicit step of one
 # realisation with N = 1000.
 RUNS = ((0.01, 96, BROWNIAN, 8), (1, 96, BROWNIAN, None), (1e4, 192, SHEARED, 5))
 TARGET = 0.1
-# At Pe = 0.01 the mean of such windows is not known to 10 %: spreads there are relative to the published viscosity at
-# rest.
+# Means that spreads are relative to: at Pe = 0.01 the published viscosity at rest, because the measured mean has an
+# error above 10 %.
 PUBLISHED_MEAN = {0.01: diverging(0.5, JAMMED_AT_REST)}
 KINDS = {"plain": "without", "controlled": "with"}
 
 
 class Series:
-    """Of one campaign of one point: a row for each seed of the 32 block means of the viscosity of the pairs without
-    the stress of their random forces, and with it."""
+    """Block means of the viscosity of pairs of one point, arrays (seeds, 32): `plain` without the stress of the random
+    forces, `controlled` with it."""
 
     def __init__(self, results, published=None):
         blocks = [r["blocks"] for r in results]
         self.controlled = np.array([b["relative_viscosity_pair"] for b in blocks])
-        # Without noise there is none.
+        # The stress of random forces is absent without noise.
         control = np.array([b["shear_stress"].get("brownian_lubrication", [0] * 32) for b in blocks])
         self.plain = self.controlled - control
         self.control = control.mean(axis=1)
@@ -49,37 +49,39 @@ class Series:
         self.measured = estimate(self.controlled.mean(axis=1))
 
     def mean(self, seeds=slice(None)):
-        """What spreads are relative to: the better estimate of the mean, of these seeds."""
+        """Returns the mean that spreads are relative to, the published one or that of these seeds."""
         return self.published or self.controlled[seeds].mean()
 
     def of(self, kind):
         return getattr(self, kind)
 
     def whole(self, kind):
-        """By seed, the average over the window."""
+        """Returns the averages over the window (seeds,)."""
         return self.of(kind).mean(axis=1)
 
 
 def averaged(rows, together):
-    """Of the blocks of each seed: averages over so many consecutive ones."""
+    """Returns averages over `together` consecutive blocks of each seed."""
     return rows.reshape(len(rows), -1, together).mean(axis=2)
 
 
 def grouped(rows, size):
-    """Means of consecutive groups of seeds, place by place."""
+    """Returns means over consecutive groups of `size` seeds, block by block."""
     whole = len(rows) // size * size
     return rows[:whole].reshape(-1, size, rows.shape[1]).mean(axis=1)
 
 
 def variance_over_seeds(rows):
-    """Of rows by seed: the variance over the seeds, averaged over the places in the row."""
+    """Returns the variance over seeds, averaged over blocks, of rows (seeds, blocks)."""
     return rows.var(axis=0, ddof=1).mean()
 
 
 def exponent_of(sets, over_what):
-    """d ln(spread) / d ln(samples) of sets of seeds: over steps by averages of 1 to 32 blocks, over seeds by means of 1
-    to 8 seeds in every block. Variances are averaged over the sets before the logarithm; what counts over seeds is how
-    many groups a set has, less one."""
+    """Returns d ln(spread) / d ln(samples) of sets of seeds.
+
+    Over steps it is from averages of 1 to 32 blocks, over seeds from means of 1 to 8 seeds in every block. Variances
+    are averaged over the sets before the logarithm. Over seeds the weights are the number of groups in a set, less one.
+    """
     sizes = np.array(WINDOWS if over_what == "steps" else GROUPS)
     parts = averaged if over_what == "steps" else grouped
     errors = np.ones(len(sizes)) if over_what == "steps" else 1 / np.sqrt(SET // sizes - 1)
@@ -88,20 +90,20 @@ def exponent_of(sets, over_what):
 
 
 def exponent(series, kind, over_what):
-    """With its standard error, by leaving out one set of seeds at a time, and degrees of freedom."""
+    """Returns exponent_of() all sets, its jackknife error over sets, and the degrees of freedom."""
     rows = series.of(kind)
     sets = [rows[k : k + SET] for k in range(0, len(rows), SET)]
     return *jackknife(lambda chosen: exponent_of([sets[k] for k in chosen], over_what), len(sets)), len(sets) - 1
 
 
 def spread(series, kind):
-    """Relative standard deviation of the whole window over seeds, with its error."""
+    """Returns the relative standard deviation of window averages over seeds, and its error."""
     values = series.whole(kind)
     return jackknife(lambda seeds: values[seeds].std(ddof=1) / series.mean(seeds), len(values))
 
 
 def saving(series, blocks=BLOCKS):
-    """Variance with the control variate over that without, of averages over so many blocks; and its error."""
+    """Returns the variance with the control variate over that without, for averages over `blocks`, and its error."""
 
     def squares(kind):
         rows = averaged(series.of(kind), blocks)
@@ -112,7 +114,7 @@ def saving(series, blocks=BLOCKS):
 
 
 def explicit_steps(program, number, series, particles):
-    """Explicit steps of N = 1000 spheres, in the units of Table 4.1, that take as long as the window."""
+    """Returns the window's length in explicit steps of N = 1000 spheres, in the units of Table 4.1."""
     limits = {"limits": {"shear_rate": 0.009, "thermal_energy": 0.017}, "integrator": {"method": "explicit"}}
     answer = program.derived(merged(REFERENCE_SCENE, at_peclet(number), limits))
     rate = min(0.009, number * 0.017 / (6 * math.pi * 0.1))
@@ -120,7 +122,7 @@ def explicit_steps(program, number, series, particles):
 
 
 def samples_for_target(steps, found):
-    """log10 of the steps after which this spread of a window of `steps` is 10 %, by 1 / sqrt(samples); and its
+    """Returns log10 of the steps after which a spread, found with `steps`, falls to 10 % as 1 / sqrt(samples), and its
     error."""
     value, error = found
     return math.log10(steps * (value / TARGET) ** 2), 2 * error / value / math.log(10)
@@ -133,7 +135,7 @@ def run(program, number, seeds, duration, patch=None, name=None):
 
 
 def exponents(number, series):
-    """Of the spread over seeds and over steps, of both kinds."""
+    """Yields names and exponents of the spread over seeds and over steps, without and with the control variate."""
     for over_what in ("seeds", "steps"):
         for kind, word in KINDS.items():
             name = f"Pe = {number:g}: exponent of the spread over {over_what}, {word} the control variate"
@@ -157,7 +159,7 @@ def summary_row(number, kind, series, steps):
 
 
 def spread_rows(number, series, steps):
-    """Spreads of averages over parts of the window, and over several seeds."""
+    """Yields rows of spreads of averages over parts of the window, and over several seeds."""
     for over_what, sizes in (("steps", WINDOWS), ("seeds", GROUPS[1:])):
         for size in sizes:
             parts = over_what == "steps"
@@ -193,7 +195,7 @@ OF_METHOD = "Pe = 1: standard deviation over four Brownian times, implicit steps
 
 
 def comparisons(program, found):
-    """That spreads are those of another number of spheres, and of explicit steps, as the samples for 10 % suppose."""
+    """Yields ratios of spreads, for other particle numbers and explicit steps, that the samples for 10 % rely on."""
     large = run(program, 1e4, 48, SHEARED, {"particles": {"count": 1000}}, "convergence-1000")
     value, error = quotient(spread(large, "plain"), spread(found[1e4], "plain"))
     yield OF_COUNT, (4 * value**2, 4 * 2 * value * error, 47)
@@ -205,7 +207,7 @@ def comparisons(program, found):
 
 
 def sample_rows(table):
-    """The published numbers of samples are orders of magnitude: a decade either way."""
+    """Yields statements about the number of samples for 10 %; published orders of magnitude are bounds of a decade."""
     rows = {r["peclet"]: r for r in table if r["estimate"] == "plain"}
     found = {p: (r["log10_explicit_steps_1000"], r["log10_error"]) for p, r in rows.items()}
     for number, _, _, published in RUNS:
@@ -222,10 +224,10 @@ def judge():
     numbers = read_numbers(HERE / "numbers.csv")
     yield from sample_rows(read_rows(HERE / "table.csv"))
     for name, (value, error, _) in numbers.items():
-        if BROWNIAN_MEAN in name:  # it "averages to zero": within three standard errors
+        if BROWNIAN_MEAN in name:  # published as "averages to zero"; tested to three standard errors
             yield Statement(f"{name}, in standard errors", "L 3.6", value / error, 0, -3, 3)
             yield Finding(name, "L 3.6", value, error)
-    # Seeds are independent. Consecutive steps are not, and no exponent is published: the spread must only fall.
+    # Seeds are independent. Consecutive steps are not, and their exponent is not published: the spread must fall.
     for name, (*found, degrees) in numbers.items():
         if "over seeds" in name:
             yield Check(name, "seeds", *found, -0.6, -0.4, degrees)

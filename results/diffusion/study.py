@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Mean squared displacements of dilute spheres, and self-diffusion from dilute to dense."""
+"""Mean squared displacements of dilute spheres, and self-diffusion from dilute to dense suspensions."""
 import math
 import sys
 from pathlib import Path
@@ -14,7 +14,7 @@ import numpy as np
 TITLE = "Mean squared displacement and self-diffusion"
 AT_REST = merged(REFERENCE_SCENE, flow={"shear_rate": 0}, observables=["stress", "mean_squared_displacement"])
 
-# tau_I = 0.1, tau_C = 1e-3; explicit steps, because inertia is what is looked at.
+# tau_I = 0.1, tau_C = 1e-3; explicit steps, because inertia is studied.
 VISCOSITY, DENSITY, STIFFNESS = 1.0, 0.1, 1e5
 INERTIAL_TIME = DENSITY / VISCOSITY
 RATIOS = (1.7, 0.17, 0.017)  # tau_I / tau_B
@@ -34,11 +34,11 @@ DILUTE = merged(
 FRACTIONS = (0.001, 0.1, 0.2, 0.3, 0.4, 0.45, 0.5, 0.55)
 CROWDED = merged(AT_REST, in_brownian_times(10, 9), particles={"count": 250}, integrator={"method": "implicit"})
 
-# Displacements over windows ten and twenty times longer, for the limit of long times: volume fractions, ratios.
+# Windows ten and twenty times longer, for the limit of long times: volume fractions and ratios by window.
 LONG = {90: ((0.001, 0.1, 0.3, 0.5), (WARM, COLD)), 180: ((0.1, 0.3, 0.5), (COLD,))}
 LONG_SEEDS = 18
 
-# At short times, with the inertia of the hot ones.
+# Volume fractions at short times, with the inertia of HOT.
 BALLISTIC_FRACTIONS, BALLISTIC_SEEDS = (0.001, 0.1, 0.3, 0.5, 0.55), 8
 BALLISTIC = merged(
     CROWDED,
@@ -50,19 +50,21 @@ SHORT_LAG = 0.05  # over tau_I
 
 
 def thermal_energy(ratio, viscosity, density):
-    """kT at which tau_I / tau_B = (rho a^2 / eta) (kT / (eta a^3)) has this value, a = 1."""
+    """Returns the kT at which tau_I / tau_B = (rho a^2 / eta) (kT / (eta a^3)) has this value, a = 1."""
     return ratio * viscosity**2 / density
 
 
 def free_displacement(time, energy, radius):
-    """<x^2> of a free sphere along one axis: (2 kT m / zeta^2) (zeta t / m - 1 + exp(-zeta t / m)), L4.1."""
+    """Returns <x^2> of a free sphere along one axis, (2 kT m / zeta^2) (zeta t / m - 1 + exp(-zeta t / m)) (L4.1)."""
     mass, zeta = 4 / 3 * math.pi * DENSITY * radius**3, 6 * math.pi * VISCOSITY * radius
     return 2 * energy * mass / zeta**2 * (zeta * time / mass - 1 + np.exp(-zeta * time / mass))
 
 
 def dilute_curves(program, ratios, seeds, patch=None):
-    """Yields, for each ratio, rows of time, measured and free displacement of the small spheres, with the standard
-    error, and the same ratio of the two for both species, which all of its scatter is taken from."""
+    """Yields rows of time, measured and free displacement of the small spheres, for each ratio.
+
+    `over_free` and its standard error are the measured over the free displacement, mean over both species.
+    """
     energies = [thermal_energy(r, VISCOSITY, DENSITY) for r in ratios]
     settings = [{"/fluid/thermal_energy": energy} for energy in energies]
     points = program.run("dilute", merged(DILUTE, patch or {}), settings, seeds, "kinetic_temperature")
@@ -80,12 +82,12 @@ def dilute_curves(program, ratios, seeds, patch=None):
 
 
 def small_of(species):
-    """Returns the mean over the axes."""
+    """Returns the mean displacement over the axes."""
     return np.mean([species[axis] for axis in "xyz"], axis=0)
 
 
 def dilute_statements(curves, seeds, tolerance):
-    """Of the row between two times that is furthest from the formula, in standard errors."""
+    """Yields a statement for each range of times, about the row furthest from the formula in standard errors."""
     for ratio, rows in curves.items():
         for name, low, high in (("before", 0, 0.1), ("around", 0.1, 1), ("beyond", 1, 30)):
             between = [r for r in rows if low * INERTIAL_TIME <= r["time"] <= high * INERTIAL_TIME]
@@ -106,7 +108,7 @@ def diffusion(program, ratios, fractions, seeds, patch=None, name="crowded"):
 
 
 def long_times(program):
-    """Rows with windows of so many Brownian times."""
+    """Yields rows of diffusion with the windows of LONG."""
     for times, (fractions, ratios) in LONG.items():
         patch = {"duration": {"production": {"brownian_times": times}}}
         for row in diffusion(program, ratios, fractions, LONG_SEEDS, patch, f"crowded-{times}"):
@@ -114,7 +116,7 @@ def long_times(program):
 
 
 def short_times(program):
-    """Displacements of the small spheres over those without any force, kT t^2 / m along each axis."""
+    """Yields rows of the displacement of small spheres over the ballistic one, kT t^2 / m along each axis."""
     energy = thermal_energy(HOT, 0.1, 0.1)
     scene = merged(BALLISTIC, fluid={"thermal_energy": energy})
     settings = [{"/volume_fraction": f} for f in BALLISTIC_FRACTIONS]
@@ -139,24 +141,23 @@ def measured_ratio(a, b):
 
 
 def beside(a, b):
-    """Quotient of two rows that should be equal; its error is the one that it has where they are."""
+    """Returns the ratio of two rows that should be equal, with the error for a ratio of 1."""
     return a["diffusion"] / b["diffusion"], math.hypot(a["standard_error"], b["standard_error"]) / b["diffusion"]
 
 
 def line_of(rows):
-    """D(phi) by least squares with the errors: intercept, slope over intercept and its standard error, and what remains
-    of each row."""
+    """Returns the least-squares line D(phi): intercept, slope over intercept and its standard error, and residuals."""
     x, y, errors = (np.array([r[name] for r in rows]) for name in ("fraction", "diffusion", "standard_error"))
     intercept, slope, slope_error = line_through(x, y, errors)
     mean_x, mean_error = weighted_mean(x, errors)
     ratio = slope / intercept
-    # The intercept is the value at the mean of x, whose error is independent, less mean_x times the slope.
+    # The intercept is the value at the mean of x, with an independent error, minus mean_x times the slope.
     ratio_error = math.hypot(slope_error * (1 + ratio * mean_x), ratio * mean_error) / abs(intercept)
     return intercept, ratio, ratio_error, (y - intercept - slope * x).tolist()
 
 
 def crossover_row(rows, ratio, seeds):
-    """Half a decade either way is what "0.01" says of an order of magnitude."""
+    """Returns the statement about the crossover; the published order of magnitude 0.01 is a bound of half a decade."""
     times, displacements = np.log([(r["time"], r["displacement"]) for r in rows]).T
     found = float(np.interp(math.log(INERTIAL_TIME), times, displacements)) / math.log(10)
     error = next(r for r in rows if r["time"] >= INERTIAL_TIME)["standard_error"] / math.log(10)
@@ -165,8 +166,8 @@ def crossover_row(rows, ratio, seeds):
 
 
 def temperature_rows(long, short):
-    """At long times; at short ones, with more volume fractions, it is a finding. The converse, that it depends on the
-    temperature above 0.17, is not said in print."""
+    """Yields statements about long times, and findings about short times, with more volume fractions. A dependence on
+    the temperature above 0.17 is not published."""
     text = "D / D_0 at τ_I/τ_B = 0.17 over that at 0.017"
     for warm, cold in zip(long[WARM], long[COLD]):
         name, degrees = f"φ = {cold['fraction']:g}, lags to 24 τ_B: {text}", cold["seeds"] - 1
@@ -179,7 +180,7 @@ def temperature_rows(long, short):
 
 
 def short_time_rows(of, degrees):
-    """Of lags of 1.5 and 3 Brownian times, at which spheres have not felt their neighbours whole."""
+    """Yields findings for lags of 1.5 to 3 Brownian times, at which spheres have hardly met their neighbours."""
     intercept, slope, slope_error, residuals = line_of([of[COLD, f] for f in FRACTIONS])
     residual, fraction = max(zip(residuals, FRACTIONS), key=lambda r: abs(r[0]))
     text = f"lags to 3 τ_B: largest distance of D / D_0 from a line in φ (at φ = {fraction:g}) over its dilute value"
@@ -188,7 +189,7 @@ def short_time_rows(of, degrees):
 
 
 def long_time_rows(table):
-    """The middle volume fractions against the straight line through the first and the last."""
+    """Yields statements about D(phi) at long times, and its distance from a line through the first and last points."""
     degrees = table[0]["seeds"] - 1
     for low, high in zip(table, table[1:]):
         text = f"lags to 24 τ_B: D / D_0 at φ = {high['fraction']:g} over that at {low['fraction']:g}: it falls"
@@ -210,7 +211,7 @@ def long_time_rows(table):
 
 
 def constant_rows(of):
-    """That D approaches a constant: within a tenth, which a curve on logarithmic axes does not show."""
+    """Yields statements that D approaches a constant, within a tenth, which logarithmic axes do not resolve."""
     for fraction in LONG[180][0]:
         long, longer = of["implicit, windows of 90", fraction], of["implicit, windows of 180", fraction]
         text = f"φ = {fraction:g}: D between lags of 24 and 48 τ_B over that between 12 and 24"
@@ -223,7 +224,7 @@ def constant_rows(of):
 
 
 def ballistic_rows(table):
-    """ "Roughly independent" of the volume fraction: within a tenth, at a lag well below τ_I; print gives none."""
+    """Yields rows about short times. "Roughly independent" of φ is tested to a tenth, at a lag below τ_I."""
     for lag, kind in ((SHORT_LAG, Statement), (SHORT_LAG / 5, Finding)):
         of_fraction = groups(table, "fraction").values()
         dilute, *crowded = (min(rows, key=lambda r: abs(r["time"] - lag)) for rows in of_fraction)
@@ -246,7 +247,7 @@ def judge():
     yield from long_time_rows(long[COLD])
     yield from constant_rows({(r["method"], r["fraction"]): r for r in table if r["ratio"] == COLD})
     yield from short_time_rows(of, seeds - 1)
-    # Two sizes: the mean of 1 / a over the number of spheres, 2.744 of the small ones to one large.
+    # Mean of 1 / a over the spheres, 2.744 small ones for each large one.
     free = over(measured(of[COLD, FRACTIONS[0]]), (2.744 + 1 / 1.4) / 3.744)
     yield Check("dilute limit of D / D_0 over the mean of a / a_i", "formula", *free, 0.95, 1.05, seeds - 1)
     methods = beside(of[WARM, 0.3], explicit)

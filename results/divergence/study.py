@@ -1,6 +1,5 @@
 #!/usr/bin/python3
-"""How the viscosity of frictionless spheres diverges with their volume fraction, at rest, at Pe = 4.6 and at
-Pe = 10^4."""
+"""Divergence of the viscosity of frictionless spheres with volume fraction, at rest, at Pe = 4.6 and at Pe = 10^4."""
 import math
 import sys
 from pathlib import Path
@@ -20,7 +19,7 @@ FRACTIONS = (0.40, 0.45, 0.48, 0.50, 0.52, 0.54, 0.56, 0.58, 0.59, 0.60, 0.61)
 SHEARED = merged(TABLE_SCENE, duration={"production": {"strain": 3}})
 SEEDS = 5
 
-# At rest: what the zero-shear study has of these volume fractions, and lubrication at a small Peclet number.
+# Volume fractions at rest, with rows of the study zero-shear and lubrication at a small Peclet number.
 REST_FRACTIONS = FRACTIONS[:7]
 SLOW = merged(TABLE_SCENE, in_brownian_times(20, 20), peclet=0.22)
 SLOW_SEEDS = 3
@@ -29,15 +28,15 @@ PUBLISHED = {0: (JAMMED_AT_REST, 1.5), 4.6: (None, None), 1e4: (JAMMED_IN_STRONG
 
 
 def jammed_at(fractions, values):
-    """phi_J of (1 - phi / phi_J)^-1.5, the published exponent, by the same search; twice, as of two parameters."""
+    """Returns phi_J of (1 - phi / phi_J)^-1.5, with the published exponent; twice, as fit_with_error() needs a pair."""
     jammed, shapes = shapes_of(fractions)
     best = jammed[np.argmin(np.square(np.log(np.maximum(values, 1e-9)) - 1.5 * shapes).sum(axis=1))]
     return float(best), float(best)
 
 
 def fit_with_error(rows, quantity, function=jammed_and_exponent):
-    """The fit, and of both numbers the standard error: that of the viscosities by drawing them again, and what leaving
-    out one volume fraction at a time does, in quadrature; and these two."""
+    """Returns, for both numbers of the fit: value, standard error, its part from the viscosities, and its part from
+    leaving out one volume fraction at a time, added in quadrature."""
     fractions, numbers = np.array([r["fraction"] for r in rows]), [number(r, quantity) for r in rows]
     values = np.array([v for v, _ in numbers])
     whole, by_fractions = jackknife(lambda chosen: function(fractions[chosen], values[chosen]), len(rows))
@@ -46,9 +45,8 @@ def fit_with_error(rows, quantity, function=jammed_and_exponent):
 
 
 def other_forms(rows, quantity, lowest):
-    """Of the points from `lowest` on: phi_J with lambda = 1.5; and phi_J, lambda and prefactor of
-    c (1 - phi / phi_J)^-lambda. Least squares in the logarithm as above, with the root of the mean square of what is
-    left."""
+    """Returns other fits to points from `lowest` on: phi_J with lambda = 1.5; phi_J, lambda and c of
+    c (1 - phi / phi_J)^-lambda. Least squares in the logarithm, with rms residuals."""
     chosen = [r for r in rows if r["fraction"] >= lowest]
     values = np.log([r[quantity] for r in chosen])
     jammed, shapes = shapes_of([r["fraction"] for r in chosen])
@@ -62,13 +60,13 @@ def other_forms(rows, quantity, lowest):
 
 
 def sheared(program, name, cases, seeds, patch=None):
-    """Returns rows of (Peclet number, volume fraction)."""
+    """Returns rows for cases (Peclet number, volume fraction)."""
     pointers = {"peclet": "/peclet", "fraction": "/volume_fraction"}
     return program.rows(name, merged(SHEARED, patch or {}), pointers, cases, seeds)
 
 
 def at_rest(program):
-    """Yields rows of eta_phi / eta (zero-shear's), the lubrication viscosity, and their sum."""
+    """Yields rows at rest: eta_phi / eta of the study zero-shear, the lubrication viscosity, and their sum."""
     cases = [(fraction,) for fraction in REST_FRACTIONS]
     for slow in program.rows("slow", SLOW, {"fraction": "/volume_fraction"}, cases, SLOW_SEEDS):
         fraction = slow["fraction"]
@@ -85,14 +83,17 @@ READINGS = {"pairs": "η_r of pairs", "viscosity": "η_r with 1 + 2.5 φ"}
 
 
 def fit_rows(peclet, name, curve):
-    """Which η_r is fitted is not in print: that of the pairs, which the figures plot, or with 1 + 2.5 φ. The nearer
-    reading decides. φ_J has three digits in print, λ an ≈."""
+    """Yields statements about φ_J and λ.
+
+    It is not published whether η_r of pairs, as in the figures, or with 1 + 2.5 φ was fitted; the nearer one decides.
+    φ_J is published with three digits, λ as approximate.
+    """
     jammed, exponent = PUBLISHED[peclet]
     fits = {reading: fit_with_error(curve, reading) for reading in READINGS}
     nearer = min(fits, key=lambda reading: abs(fits[reading][0][0] - jammed))
     degrees = max(len(curve) - 2, 1)
     for reading, of in READINGS.items():
-        # The errors that judge are of the seeds; leaving out volume fractions tests the form.
+        # Statements use the error from seeds; leaving out volume fractions tests the form.
         (found, whole, error, _), (power, _, power_error, _) = fits[reading]
         ends, seeds = (jammed - 0.01, jammed + 0.01), min(r["seeds"] for r in curve) - 1
         text = f"{name}: φ_J of {of} (published: {jammed})"
@@ -104,7 +105,7 @@ def fit_rows(peclet, name, curve):
 
 
 def shift_rows(curves):
-    """In the published form, λ = 1.5 for both; and with λ free."""
+    """Yields rows about the shift of φ_J, with λ = 1.5 as published, and with λ fitted."""
     for reading, of in READINGS.items():
         held = difference(*(fit_with_error(curves[p], reading, jammed_at)[0][::2][:2] for p in PECLET))
         free = difference(*(fit_with_error(curves[p], reading)[0][:2] for p in PECLET))
@@ -114,7 +115,7 @@ def shift_rows(curves):
 
 
 def lowest_rows(curves, name):
-    """That the intermediate curve lies below both others."""
+    """Yields statements that the curve at the intermediate Pe lies below both others."""
     middle = {r["fraction"]: r for r in curves[4.6]}
     for peclet, of in ((0, name), (1e4, NAMES[1e4])):
         both = [(middle[r["fraction"]], r) for r in curves[peclet] if r["fraction"] in middle]
@@ -144,14 +145,14 @@ def judge():
     name = f"Pe → 0 ({how})"
     recipe, curves[0] = curves[0], [rest[f] for f in sorted(rest) if f >= FRACTIONS[0]]
     yield from fit_rows(0, name, curves[0])
-    for reading, of in READINGS.items():  # at rest no exponent of one form meets all volume fractions
+    for reading, of in READINGS.items():  # at rest one exponent does not describe all volume fractions
         value, _, error = fit_with_error(curves[0], reading, jammed_at)[0][:3]
         seeds = min(r["seeds"] for r in curves[0])
         yield Finding(f"{name}: φ_J of {of}, λ = 1.5", "form", value, error, seeds - 1)
     yield from fit_rows(1e4, NAMES[1e4], curves[1e4])
     yield from shift_rows(curves)
     yield from lowest_rows(curves, name)
-    # The published way to the limit: Green and Kubo's integral of the structural stress, and lubrication.
+    # The published estimate of the limit: the Green-Kubo integral of the structural stress, plus lubrication.
     for reading, of in READINGS.items():
         for (value, error, *_), what in zip(fit_with_error(recipe, reading), ("φ_J", "λ")):
             yield Finding(f"Pe → 0 by the published recipe: {what} of {of}", "L4.9a", value, error, len(recipe) - 2)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The pressure of Brownian spheres at rest beside the equation of state of hard spheres."""
+"""The pressure of Brownian spheres at rest, compared with the equation of state of hard spheres."""
 import math
 import sys
 from pathlib import Path
@@ -13,10 +13,10 @@ TITLE = "The pressure at rest"
 FRACTIONS = (0.20, 0.30, 0.40, 0.45, 0.50)
 THERMAL_ENERGY, STIFFNESS = 0.017, 1e4  # of the published table
 SIZES = {"one": (1.0,), "1 : 1.4": (1.0, 1.4)}  # radii, in equal volumes
-STEPS = (1, 0.25)  # times the automatic one
+STEPS = (1, 0.25)  # in units of the automatic step
 SEEDS = {1: 32, 0.25: 16}
-DENSEST = 4  # times as many at the largest volume fraction and the automatic step, which deviates most
-WIDTH = 0.01  # of agreement
+DENSEST = 4  # factor of the seeds at the largest volume fraction and the automatic step, which deviates most
+WIDTH = 0.01  # bound of the relative deviation
 SCENE = merged(
     REFERENCE_SCENE,
     in_brownian_times(30, 60),
@@ -32,9 +32,11 @@ def species(radii):
 
 
 def hard_pressure(fraction, radii, softness=0.0):
-    """P / (n kT) of hard spheres of these radii in equal volumes: Boublik (1970), J. Chem. Phys. 53, 471; Mansoori,
-    Carnahan, Starling & Leland (1971), J. Chem. Phys. 54, 1523. Good to 0.3 % up to a volume fraction of 0.5. All
-    diameters are less by `softness`, at the same number density."""
+    """Returns P / (n kT) of hard spheres of these radii in equal volumes, to 0.3 % up to a volume fraction of 0.5:
+    Boublik (1970), J. Chem. Phys. 53, 471; Mansoori, Carnahan, Starling & Leland (1971), J. Chem. Phys. 54, 1523.
+
+    All diameters are reduced by `softness`, at the same number density.
+    """
     weights = [a**-3 for a in radii]
     shares = [w / sum(weights) for w in weights]
     full = sum(x * (2 * a) ** 3 for x, a in zip(shares, radii))
@@ -46,8 +48,8 @@ def hard_pressure(fraction, radii, softness=0.0):
 
 
 def softness():
-    """By how much contacts shorten the distance at which spheres repel: the integral of 1 - exp(-U / kT) over the
-    overlap, with U = k_n overlap^2 / 2 (Barker & Henderson 1967, J. Chem. Phys. 47, 4714)."""
+    """Returns the reduction of the effective diameter by soft contacts: the integral of exp(-U / kT) over the overlap,
+    U = k_n overlap^2 / 2 (Barker & Henderson 1967, J. Chem. Phys. 47, 4714)."""
     return math.sqrt(math.pi * THERMAL_ENERGY / (2 * STIFFNESS))
 
 
@@ -60,7 +62,7 @@ def row_of(program, sizes, fraction, step, seeds, patch):
     radii = SIZES[sizes]
     scene = merged(SCENE, patch, particles={"species": species(radii)}, volume_fraction=fraction)
     if step != 1:
-        # "auto" of this scene, not of its windows.
+        # The automatic step of this scene, not shortened to its windows.
         scene["integrator"] = {"timestep": step * program.derived(scene, "pressure")["timestep"]}
     name = f"{'one' if len(radii) == 1 else 'two'}-{fraction:g}-{step:g}"
     (point,) = program.run(name, scene, [{"/volume_fraction": fraction}], seeds, "pressure")

@@ -15,7 +15,7 @@ import numpy as np
 TITLE = "Flow curves of Brownian suspensions"
 FRACTIONS = (0.45, 0.50, 0.55)
 SOURCES = {0.45: "L4.5a", 0.50: "L4.5b", 0.55: "L4.5c"}
-# Campaigns: Peclet numbers, seeds, and Brownian times of production.
+# Campaigns: Peclet numbers, seeds, window [Brownian times].
 CAMPAIGNS = {
     "flow-curve": ((1, 4.6, 22, 100, 460, 2200, 1e4), 16, 40),
     "flow-curve-0.22": ((0.22,), 16, 60),
@@ -26,8 +26,7 @@ STIFFNESSES, STIFFNESS_PECLET = (2.5e3, 1e4, 4e4), (1, 1e4)
 
 
 def structural_over(means, contact_of):
-    """Ratio of the means of the structural Brownian stress and of a contact stress; its error from the seeds' pairs of
-    values."""
+    """Returns the mean structural Brownian stress over a mean contact stress, and its error from values by seed."""
     contact = np.array([contact_of(m) for m in means])
     structural = np.array([m["brownian_structural"][3] for m in means])
     ratio = structural.sum() / contact.sum()
@@ -39,12 +38,12 @@ def plain_contact(mean):
 
 
 def controlled_contact(mean):
-    """The contact stress with that of the random forces, whose mean is zero: all that there is beside lubrication."""
+    """Returns the contact stress plus that of the random forces, whose mean is 0: everything except lubrication."""
     return mean["relative_viscosity_pair"] - term(mean, "lubrication")
 
 
 def rows_of(program, name, cases, seeds, patch=None):
-    """Rows of (fraction, stiffness, Peclet number)."""
+    """Returns rows for cases (fraction, stiffness, Peclet number)."""
     settings = [{"/volume_fraction": f, "/contact/normal_stiffness": k, "/peclet": p} for f, k, p in cases]
     rows = []
     for case, point in zip(cases, program.run(name, merged(TABLE_SCENE, patch or {}), settings, seeds)):
@@ -57,13 +56,13 @@ def rows_of(program, name, cases, seeds, patch=None):
 
 
 USUAL = {"method": "implicit", "count": 250, "stiffness": 1e4}
-LOWEST = 4.6  # of the published points
-FOSS_AND_BRADY = 0.45  # of a volume fraction up to 0.49, by their abstract: J. Fluid Mech. 407, 167 (2000)
-KNOWN = 0.22  # below, errors are as large as the differences between points
+LOWEST = 4.6  # Peclet number of the published minimum
+FOSS_AND_BRADY = 0.45  # volume fraction compared with theirs, up to 0.49 (abstract): J. Fluid Mech. 407, 167 (2000)
+KNOWN = 0.22  # below this Peclet number errors are as large as the differences between points
 
 
 class Curve:
-    """Rows of one volume fraction by Peclet number, and rows about them."""
+    """The rows of one volume fraction by Peclet number, and statements about them."""
 
     def __init__(self, rows, fraction):
         curve = sorted(where(rows, fraction=fraction), key=lambda r: r["peclet"])
@@ -105,7 +104,8 @@ def shape_rows(curve):
 
 
 def lubrication_rows(curve):
-    """It increases. How weakly has no number in print, and depends on what "hydrodynamic" holds."""
+    """Yields rows about the increase of lubrication. "Weakly" has no published number, and depends on the terms that
+    are counted as hydrodynamic."""
     pairs = curve.ratio("lubrication", 1e4, 1)
     yield curve.row(Statement, "lubrication at Pe = 10⁴ over that at 1: it increases", pairs, low=1)
     for text, more in (("2.5 φ", 2.5 * curve.fraction), ("1 + 2.5 φ", 1 + 2.5 * curve.fraction)):
@@ -116,8 +116,8 @@ def lubrication_rows(curve):
 
 
 def low_rows(curve):
-    """The structural Brownian stress beside the contact stress: "maps quite closely" on axes of three decades is a
-    factor of 1.5 either way, at the lowest Pe at which it is known."""
+    """Yields rows about the structural Brownian stress over the contact stress at low Pe. "Maps quite closely", on axes
+    of three decades, is tested to a factor of 1.5, at the lowest Pe with a small error."""
     text = "structural Brownian stress over contact stress at Pe = "
     closely = number(curve.at[SLOWEST], "structural_over_contact")
     yield curve.row(Statement, f"{text}{SLOWEST:g}", closely, SLOWEST, low=2 / 3, high=1.5, essential=False)
@@ -131,8 +131,8 @@ def low_rows(curve):
 
 
 def rest_rows(curves):
-    """The plateau is known by the exact viscosity at rest alone: 0.8 to 1.25 are twice the published errors of two
-    points. Its height rises with the volume fraction."""
+    """Yields statements about the plateau at low Pe, by the exact viscosity at rest. Its bounds, 0.8 to 1.25, are twice
+    the published errors of two points. Its height increases with the volume fraction."""
     rest, how = rows_at_rest()
     for fraction, curve in curves.items():
         if "by" in rest.get(fraction, {}) and fraction != 0.55:  # of linear response
@@ -146,7 +146,7 @@ def rest_rows(curves):
 
 
 def high_rows(curves):
-    """Beside the same suspensions without noise, of the study literature."""
+    """Yields statements about Pe = 10^4 against the same suspensions without noise, from the study literature."""
     steady = read_rows(HERE.parent / "literature" / "table.csv")
     for fraction, curve in curves.items():
         bare = first(steady, method="implicit", fraction=fraction, friction=0, gap=0.05)
@@ -160,7 +160,7 @@ def high_rows(curves):
 
 
 def comparison_rows(table):
-    """That the viscosities of two rows are the same."""
+    """Yields statements that viscosities do not depend on stiffness, particle number and method."""
     for row in where(table, method="implicit", count=250):
         if row["stiffness"] != 1e4:
             text = f"φ = 0.5, Pe = {row['peclet']:g}: η_r at k_n = {row['stiffness']:g} over that at 10⁴"
@@ -216,7 +216,7 @@ def measure(program):
 
 
 def draw_overview(curves):
-    """η_r with 1 + 2.5 φ of the usual runs, with 95 % intervals: Student's t by the seeds of the row, 16 or 8."""
+    """Draws η_r with 95 % intervals; t is Student's quantile by the number of seeds, 16 or 8."""
     t = {16: 2.131, 8: 2.365}
     figure = Figure(HERE / "overview.png", columns=1, size=(1000, 460))
     ends = {"x_range": (5e-3, 2e4), "y_range": (3, 130)}

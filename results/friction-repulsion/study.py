@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Flow curves with friction and with a repulsion whose strength is a multiple of kT."""
+"""Flow curves with friction, and with a repulsion whose strength is a multiple of kT."""
 import math
 import sys
 from pathlib import Path
@@ -13,7 +13,7 @@ import numpy as np
 
 TITLE = "Friction and repulsion in flow curves"
 PECLET = (10, 100, 1e3, 1e4, 1e5, 1e6)
-SLOW = 1  # the Peclet number at which friction should not matter; for A = 0 alone, with more seeds
+SLOW = 1  # Peclet number at which friction should not matter; only for A = 0, with more seeds
 FRICTIONS, STRENGTHS = (0, 0.1, 0.5, 1), (0, 1, 100, 1000)
 # Curves: volume fraction, friction, repulsion over kT.
 CURVES = [
@@ -28,19 +28,19 @@ SCENE = merged(
     repulsion={"form": "exponential", "strength": 0},
 )
 SEEDS, SLOW_SEEDS, METHOD_SEEDS = 5, 8, 12
-# Largest rate and kT, eta, and kappa of two unit spheres.
+# Largest rate, largest kT, eta, and the decay length of the repulsion of two unit spheres.
 RATE, THERMAL_ENERGY, VISCOSITY, LENGTH = 0.009, 0.017, 0.1, 0.02
-# Thickening that is published: volume fraction, friction and where.
+# Published thickening: volume fraction, friction, figure.
 THICKENING = ((0.5, 0.5, "L4.9b"), (0.5, 1, "L4.9d"), (0.45, 0.5, "L4.9c"), (0.53, 0.5, "L4.9c"))
 
 
 def thermal_energy(peclet):
-    """That of a scene with `peclet` and the limits of the table."""
+    """Returns the kT of a scene with this `peclet` and the limits of the table."""
     return min(THERMAL_ENERGY, 6 * math.pi * VISCOSITY * RATE / peclet)
 
 
 def measured(program, name, cases, seeds, patch=None):
-    """Rows of (volume fraction, friction, strength, Peclet number)."""
+    """Returns rows for cases (volume fraction, friction, strength over kT, Peclet number)."""
     pointers = "/volume_fraction", "/contact/friction", "/repulsion/strength", "/peclet"
     settings = [dict(zip(pointers, (f, m, a * thermal_energy(p), p))) for f, m, a, p in cases]
     points = program.run(name, merged(SCENE, patch or {}), settings, seeds)
@@ -62,18 +62,18 @@ def curve_of(rows, *case):
 
 
 def of_curve(curve, function):
-    """function(Peclet numbers, viscosities of pairs), and its standard error."""
+    """Returns function(Peclet numbers, viscosities of pairs) of a curve, and its standard error."""
     x = [r["peclet"] for r in curve]
     return propagated([number(r, "pairs") for r in curve], lambda values: function(x, values))
 
 
 def middle(curve):
-    """log10 Pe of the middle of the thickening."""
+    """Returns log10 Pe of the middle of the thickening."""
     return of_curve(curve, lambda x, values: log_of_share(x, values, 0.5))
 
 
 def width(curve):
-    """Of the thickening, in decades from a tenth to nine tenths."""
+    """Returns the width of the thickening [decades], from 0.1 to 0.9 of its rise."""
     return of_curve(curve, lambda x, values: log_of_share(x, values, 0.9) - log_of_share(x, values, 0.1))
 
 
@@ -82,8 +82,8 @@ def ratio_of(a, b):
 
 
 def plateau(curve, share):
-    """Decades of Pe around the minimum in which the viscosity is within this share of it, by straight lines between the
-    logarithms."""
+    """Returns the decades of Pe around the minimum in which the viscosity is within `share` of it. Logarithms are
+    interpolated linearly."""
 
     def decades(abscissae, values):
         x, logs = np.log10(abscissae), np.log(np.maximum(values, 1e-9))
@@ -117,7 +117,7 @@ def thickening_rows(rows, fraction, friction, source, degrees):
     name = f"φ = {fraction:g}, μ = {friction}"
     bare = curve_of(rows, fraction, friction, 0)
     if fraction == 0.5:
-        # Where print begins and ends to count is not said; half a decade either way.
+        # The published decades have no definition; the bounds allow half a decade.
         text = f"{name}, A = 0: decades of Pe from the minimum to 95 % of the thickening (published: 4 to 5)"
         yield Statement(text, source, *of_curve(bare, thickening_decades), 3.5, 5.5, degrees, essential=False)
         text = f"{name}, A = 0: decades of Pe from a tenth to nine tenths of the thickening"
@@ -134,8 +134,9 @@ def thickening_rows(rows, fraction, friction, source, degrees):
 
 
 def plateau_rows(rows, degrees):
-    """Beside the curve without repulsion of the study literature, which has Pe = 4.6 and 22, too. A tenth is the
-    published error of a point; within a half the bare plateau goes on below Pe = 1, where its curve ends."""
+    """Yields rows about the plateau, against the curve without repulsion of the study literature, which also has
+    Pe = 4.6 and 22. A tenth is the published error of a point. Within a half, the plateau without repulsion extends
+    below Pe = 1, where the curve ends."""
     bare = where(read_rows(HERE.parent / "literature" / "peclet.csv"), fraction=0.5, gap=0.05)
     repelled = curve_of(rows, 0.5, 1, 1000)
     for kind, share, words, bound in ((Statement, 0.1, "a tenth", {"low": 0}), (Finding, 0.5, "a half", {})):
@@ -144,7 +145,7 @@ def plateau_rows(rows, degrees):
 
 
 def stress_rows(rows, degrees):
-    """The unit of stress of the figure is not defined."""
+    """Yields findings about the stress of the thickening; the unit of stress of the figure is not published."""
 
     def middle_stress(friction, strength):
         """Returns log10 of the stress in the middle of the thickening, in units of A / (a^2 kappa)."""
@@ -176,12 +177,12 @@ def judge():
 
 
 def measured_method(program, method):
-    """At five times the rate, where explicit steps cost a fifth; kT follows it."""
+    """Returns the row of a method at five times the rate and kT, where explicit steps cost a fifth."""
     fast = {"limits": {"shear_rate": 0.045}, "contact": {"friction": 0.5}, "integrator": {"method": method}}
     scene = merged(SCENE, fast, in_strains(1, 2), repulsion={"strength": 1000 * thermal_energy(1e4) * 5})
     (point,) = program.run(method, scene, [{"/peclet": 1e4}], METHOD_SEEDS)
     row = row_of((0.5, 0.5, 1000, 1e4), point)
-    # The table has no stresses of these.
+    # The table has no stresses for these rows.
     del row["stress"], row["stress_over_repulsion"]
     return row
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Viscosity against inertia: of the flow without noise, and of the thermal motion."""
+"""Viscosity against inertia: without noise, and with thermal motion."""
 import math
 import sys
 from pathlib import Path
@@ -14,16 +14,16 @@ import numpy as np
 
 TITLE = "Viscosity and inertia"
 THERMAL_ENERGY, RATE = 0.017, 0.045
-FLAT = 0.1  # change that a published curve on logarithmic axes does not show
+FLAT = 0.1  # relative change that is not visible in published curves on logarithmic axes
 
-# Without noise: tau_I / tau_S = rho a^2 rate / eta, by the density alone, so that spheres stay as hard.
+# Without noise tau_I / tau_S = rho a^2 rate / eta is varied by the density alone, which keeps the hardness of spheres.
 FLOW_BOUND = 0.1
 STOKES = (0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10)
 SMALL = {"particles": {"count": 250}}
 FLOW = merged(REFERENCE_SCENE, SMALL, volume_fraction=0.55, flow={"shear_rate": RATE})
 
-# With noise: tau_I / tau_B = rho kT / (eta^2 a), by the density too; tau_I / tau_S = Pe / (6 pi) tau_I / tau_B stays
-# below 0.01. Pe, seeds, values of tau_I / tau_B, equilibration and window.
+# Noise: tau_I / tau_B = rho kT / (eta^2 a) is varied by the density, too; tau_I / tau_S = Pe / (6 pi) tau_I / tau_B
+# stays below 0.01. Runs: Pe, seeds, values of tau_I / tau_B, durations.
 THERMAL_BOUND = 0.01
 THERMAL_RUNS = (
     (0.1, 32, (0.01, 1.8), in_brownian_times(5, 30)),
@@ -41,7 +41,7 @@ def row_of(point, curve, ratio):
 
 
 def flow_rows(program, ratios, seeds, patch=None, name="flow", window=6):
-    """The equilibration grows with the time in which velocities adapt."""
+    """Returns rows by tau_I / tau_S. The equilibration grows with the inertial time."""
     settings = [
         {"/particles/density": stokes * VISCOSITY / RATE, "/duration": in_strains(2 + stokes, window)["duration"]}
         for stokes in ratios
@@ -71,26 +71,25 @@ def ratio_of(a, b):
 
 
 def change_of(row, flat):
-    """Viscosity of a row over a number, less 1."""
+    """Returns the viscosity of a row over a number, minus 1."""
     value, error = quotient(measured(row), flat)
     return value - 1, error
 
 
 def flat_part(rows, bound):
-    """Rows up to the bound, and their weighted mean."""
+    """Returns the rows up to the bound, and their weighted mean."""
     below = [r for r in rows if r["ratio"] <= bound * (1 + 1e-9)]
     return below, mean_of(below)
 
 
 def furthest(rows):
-    """Of rows that should be equal: the one furthest from the weighted mean of the others, and its ratio to it less
-    1."""
+    """Returns the row that is furthest from the weighted mean of the others, and its ratio to that mean, minus 1."""
     found = [(row, change_of(row, mean_of([r for r in rows if r is not row]))) for row in rows]
     return max(found, key=lambda f: abs(f[1][0]))
 
 
 def change(rows):
-    """Of ln eta_r over the range of rows, by the line through it against ln ratio."""
+    """Returns the change of ln eta_r over the range of rows, from a line through ln eta_r against ln ratio."""
     x = np.log([r["ratio"] for r in rows])
     values, errors = np.array([measured(r) for r in rows]).T
     _, slope, error = line_through(x, np.log(values), errors / values)
@@ -98,7 +97,7 @@ def change(rows):
 
 
 def leaves(rows, flat):
-    """log10 of the ratio where the viscosity first is off its flat value by FLAT, between two rows in the logarithm."""
+    """Returns log10 of the ratio at which the viscosity first differs from its flat value by FLAT; NaN if nowhere."""
     x = np.log10([r["ratio"] for r in rows])
     values, errors = np.array([quotient(measured(r), flat) for r in rows]).T
     off, errors = abs(np.log(values)), errors / values
@@ -112,7 +111,7 @@ def leaves(rows, flat):
 
 
 def leaving_row(kind, text, source, row, flat, **more):
-    """How far the viscosity of a row is off its flat value."""
+    """Returns a row about the deviation of a viscosity from its flat value."""
     value, error = change_of(row, flat)
     text = f"{text}: η_r over its flat value, less 1, without its sign"
     return kind(text, source, abs(value), error, degrees=row["seeds"] - 1, **more)
@@ -142,7 +141,7 @@ def thermal_judged(curves):
             yield Statement(f"{text} (at {row['ratio']:g})", "L4.6b", *found, -FLAT, FLAT, degrees)
             text = f"Pe = {number:g}: change of ln η_r from τ_I/τ_B = {below[0]['ratio']:g} to 0.01, by a line"
             yield Statement(text, "L4.6b", *change(below), -FLAT, FLAT, degrees)
-    # Where the curve leaves its flat part is not in print; "only when > 0.01" is, and holds wherever it is flat below.
+    # The end of the flat part is not published. "Only when > 0.01" is, and holds if the curve is flat below.
     for number in sorted(curves):
         last = curves[number][-1]
         flat = flat_part(curves[number], THERMAL_BOUND)[1]
@@ -155,8 +154,8 @@ def comparison(text, implicit, explicit, what="implicit steps over that by expli
 
 
 def groups_of_table():
-    """Of the published Table 4.1, a = 1: whether its rows have the printed Peclet numbers, and what print asks of their
-    times, by arithmetic."""
+    """Yields statements about the published Table 4.1, a = 1: its Peclet numbers, and the published conditions on time
+    scales."""
     off = max(abs(6 * math.pi * VISCOSITY * rate / energy / number - 1) for number, rate, energy in TABLE_4_1)
     text = "Table 4.1: 6πηa³γ̇/kT over the printed Pe, less 1, where it differs most (two digits are printed)"
     yield Statement(text, "L 3.8", off, 0, 0, 0.05)
@@ -192,7 +191,7 @@ def judge():
 def measure(program):
     flow = flow_rows(program, STOKES, 24)
     curves = {run[0]: thermal_rows(program, *run) for run in THERMAL_RUNS}
-    # Where inertia is least, steps that are small beside the automatic one; explicit ones take too long there.
+    # At the smallest inertia: a quarter of the automatic step, because explicit steps take too long.
     number, seeds, _, parts = THERMAL_RUNS[-1]
     fine = thermal_rows(program, number, seeds, (0.001,), parts, {"integrator": {"timestep": 0.0011}}, "thermal-fine")
     explicit = {"integrator": {"method": "explicit"}}

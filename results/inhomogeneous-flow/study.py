@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Suspensions driven by waves of the flow: profiles with errors, the balance of momentum, and what a uniform flow at
-the same local stress would do (Li 2023, ch. 6, Fig. 6.1 and Eqs 6.7 to 6.9)."""
+"""Suspensions driven by flows that vary along their gradient: profiles with errors, momentum balance, and comparison
+with uniform flow at the same local stress (Li 2023, ch. 6, Fig. 6.1 and Eqs 6.7 to 6.9)."""
 import math
 import sys
 from pathlib import Path
@@ -24,8 +24,8 @@ UNIFORM_QUANTITIES = "J", "mu", "Theta", "normal"
 
 
 def uniform_quantities(mean):
-    """Stresses of a result with a rate are in units of viscosity times rate, variances in those of the scene; normal is
-    -sigma_yy / P."""
+    """Returns J, mu, Theta and normal = -sigma_yy / P of uniform flow. Stresses of the result are in units of
+    viscosity * rate, variances in units of the scene."""
     stress = np.array(mean["profiles"]["stress"]["pairs"], float).mean(axis=1)
     pressure = -stress[:3].mean()
     scatter = math.sqrt(np.mean(mean["profiles"]["velocity_variance"][0])) / UNIFORM_RATE
@@ -34,7 +34,7 @@ def uniform_quantities(mean):
 
 
 def uniform_rows(program, hours):
-    """Steady shear without waves: one J for each volume fraction."""
+    """Yields rows of steady shear without waves, one J for each volume fraction."""
     patch = {"flow": {"shear_rate": UNIFORM_RATE}, "particles": {"count": 1000}, "profiles": {"bins": 5}}
     scene = merged(SCENE, {"box": None, "flow": None}, patch, in_strains(4, 12))
     settings = [{"/volume_fraction": fraction} for fraction in UNIFORM]
@@ -49,8 +49,8 @@ def uniform_rows(program, hours):
 
 
 def share_that_separates(profile):
-    """The share of the larger spheres in the fifth of the bins with the largest rates less that in the fifth with the
-    smallest."""
+    """Returns the share of the larger spheres in the fifth of the bins with the largest rates, minus that in the fifth
+    with the smallest rates."""
     order = np.argsort(np.abs(profile.rate))
     some = max(1, len(order) // 5)
     share = profile.largest / profile.fraction
@@ -58,7 +58,7 @@ def share_that_separates(profile):
 
 
 def mirrored(profiles):
-    """Median over bins and quantities of |bin less its image| over its standard error, over the seeds."""
+    """Returns the median over bins and quantities of |bin - image| over its error; NaN without symmetries."""
     found = []
     for image, velocity, shear in symmetries(profiles[0].driving)[1:]:
         others = image != np.arange(len(image))
@@ -70,11 +70,11 @@ def mirrored(profiles):
     return float(np.median(np.concatenate(found))) if found else math.nan
 
 
-MOST_BINS_WITH_QUARTERS = 64  # of a result
+MOST_BINS_WITH_QUARTERS = 64  # largest number of bins for which results have quarters
 
 
 def flow_row(flow, results, profiles):
-    """What a flow has as a whole."""
+    """Returns the row of numbers about a whole flow."""
     row = {"flow": flow.name, "mean": flow.fraction, "height": flow.height, "count": flow.count, "seeds": len(results)}
     parts = {
         "lag": [np.sqrt(np.mean((p.driving - p.velocity) ** 2)) / np.max(np.abs(p.driving)) for p in profiles],
@@ -82,7 +82,7 @@ def flow_row(flow, results, profiles):
         "densest": [np.max(p.fraction) for p in profiles],
         "contrast": [np.std(p.fraction) for p in profiles],
         "separation": [share_that_separates(p) for p in profiles],
-        # With noise there is none: the momentum that it carries is not followed.
+        # Absent with noise, whose momentum is not measured.
         "imbalance": [r["mean"]["profiles"].get("momentum_imbalance", math.nan) for r in results],
     }
     for name, values in parts.items():
@@ -102,7 +102,7 @@ IN_TIME = merged(SCENE, during({"strain": None, "time": 1}, {"strain": None, "ti
 
 
 def results_of(program, flow):
-    """Returns the points of a campaign of one flow, whose bins are its own; its whole results; their profiles."""
+    """Runs the campaign of a flow and returns its points, its whole results, and their Profiles."""
     points = program.run(flow.name, IN_TIME, [flow.settings()], SEEDS, observable="pressure")
     (results,) = program.stored_results(flow.name)
     return points, results, [profile_of(flow, r["mean"]["profiles"]) for r in results]
@@ -139,16 +139,16 @@ class Tables:
         return [r for r in (self._distinct if distinct else self._bins) if r["flow"] in names]
 
     def largest(self, flows, name):
-        """Of some flows, the number of the one that has the largest."""
+        """Returns the number of the flow whose absolute value is the largest."""
         return max((number(self.flows[f.name], name) for f in flows), key=lambda n: abs(n[0]))
 
     def mean(self, flows, name):
-        """Over flows, with the standard error of their scatter."""
+        """Returns the mean of a number over flows, with the standard error of their scatter."""
         return estimate([self.flows[f.name][name] for f in flows])
 
 
 def law_of_fraction(rows):
-    """sqrt(J / mu) = sqrt(alpha) (phi_J - phi), Eq. 6.7: alpha, phi_J and the rms of ln(J / mu) that is left."""
+    """Returns alpha, phi_J and the rms residual of ln(J / mu) by Eq. 6.7, sqrt(J / mu) = sqrt(alpha) (phi_J - phi)."""
     fraction, root = column(rows, "fraction"), np.sqrt(column(rows, "J") / column(rows, "mu"))
 
     def left(parameters):
@@ -160,30 +160,30 @@ def law_of_fraction(rows):
 
 
 def by_flow(flows, tables, function):
-    """A function of the bins of some flows, and its error by leaving out a flow at a time."""
+    """Returns a function of the bins of flows, and its jackknife error over flows."""
     return jackknife(lambda chosen: function(tables.bins(*(flows[k] for k in chosen))), len(flows))
 
 
-# Of Eq. 6.8, with the exponents in print. Its range below 10^-3, with 1.22, is that of bins across which the rate
+# Ranges of J in Eq. 6.8 with the published exponents. The range below 10^-3, with 1.22, has bins in which the rate
 # changes its sign.
 RANGES = ("above 10⁻²", (1e-2, 1), 2), ("10⁻³ to 10⁻²", (1e-3, 1e-2), 1.73)
 
 
 def power_law(rows, low, high):
-    """ln of Theta^1.44 mu^2.5 as a line in ln J, Eq. 6.8, where J is in this range: exponent, logarithm at J = 1."""
+    """Returns slope and constant of ln(Theta^1.44 mu^2.5) as a line in ln J (Eq. 6.8), for J in [low, high)."""
     rows = [r for r in sheared(rows) if low <= r["J"] < high]
     combined = 1.44 * np.log(column(rows, "Theta")) + 2.5 * np.log(column(rows, "mu"))
     return np.polyfit(np.log(column(rows, "J")), combined, 1)
 
 
 def step(rows, above, below):
-    """Of the laws of two ranges, the upper one over the lower one where they meet."""
+    """Returns the ratio of the power laws of two ranges where they meet, the upper one over the lower one."""
     meet = math.log(above[0])
     return float(np.exp(np.polyval(power_law(rows, *above), meet) - np.polyval(power_law(rows, *below), meet)))
 
 
 def collapse(rows):
-    """Scatter of ln of J / (Theta^0.8 mu^1.2), Eq. 6.9, about a cubic in phi."""
+    """Returns the scatter of ln(J / (Theta^0.8 mu^1.2)) (Eq. 6.9) about a cubic in phi."""
     rows = sheared(rows)
     value = np.log(column(rows, "J")) - 0.8 * np.log(column(rows, "Theta")) - 1.2 * np.log(column(rows, "mu"))
     fraction = column(rows, "fraction")
@@ -191,7 +191,7 @@ def collapse(rows):
 
 
 def sheared(rows):
-    """Bins where the flow has a direction: rates above a twentieth of the largest of their flow."""
+    """Returns the bins whose rate is above 0.05 of the largest in their flow."""
     largest = {flow: np.abs(column(of, "rate")).max() for flow, of in groups(rows, "flow").items()}
     return [r for r in rows if abs(r["rate"]) > 0.05 * largest[r["flow"]]]
 
@@ -220,7 +220,7 @@ NOISY = OTHER[1:]
 
 
 def noise(rows, name):
-    """Relative, median over bins."""
+    """Returns the relative error of a quantity, median over bins."""
     return float(np.median(column(rows, f"{name}_error") / np.abs(column(rows, name))))
 
 
@@ -275,15 +275,18 @@ def intro_rows(tables):
 
 
 def uniform_jam(tables):
-    """Of the pair stress over viscosity and rate, mu / J."""
+    """Returns the phi_J of uniform flow, from a fit to the pair stress over viscosity * rate, mu / J."""
     fractions = column(tables.uniform, "fraction")
     values = [propagated([number(r, "mu"), number(r, "J")], lambda v: v[0] / v[1]) for r in tables.uniform]
     return divergence(fractions, values, (1, 0.65, 1.6))[1]
 
 
 def residuals(tables, side):
-    """Median of |mu - mu(J)| over its error in the tenth of each flow with the largest or, for a side of -1, the
-    smallest rates, and its error by flow. J beyond uniform flow is that of the densest one."""
+    """Returns the median of |mu - mu(J)| over its error, and its jackknife error over flows.
+
+    It is taken over the tenth of the bins of each flow with the largest (side 1) or smallest (-1) rates. mu(J) is that
+    of uniform flow, constant beyond its range.
+    """
     order = sorted(tables.uniform, key=lambda r: r["J"])
     known = np.log(column(order, "J")), np.log(column(order, "mu"))
 
@@ -361,7 +364,7 @@ def draw():
 
 
 def quick_measure(program):
-    """A small box: spheres leave the layers of fast shear, and momentum is balanced."""
+    """Runs a small box: spheres leave the layers of fast shear, and momentum is balanced."""
     small = Flow("quick", [wave(0.1)], 24, 0.5, 25, 40, width=12)
     _, results, profiles = results_of(program, small)
     slow = estimate([float((p.fraction[[2, 3, 8, 9]] - p.fraction[[0, 5, 6, 11]]).mean()) for p in profiles])

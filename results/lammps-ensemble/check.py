@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """peclet export campaign.json | check.py
 
-Compares the ensemble with the theory of Hookean dumbbells: viscosity and first normal stress difference over n kT
-lambda and 2 n kT (lambda rate)^2, which are 1 at every rate, and what they are with the finite step of dumbbells.in.
-Errors: standard ones.
+Compares the ensemble with the theory of Hookean dumbbells: viscosity over n kT lambda, and first normal stress
+difference over 2 n kT (lambda rate)^2. Both are 1 at every rate; also compares with their values for the finite step of
+dumbbells.in. Errors are standard errors.
 """
 import json
 import sys
@@ -15,7 +15,7 @@ from studies.tables import markdown_head, markdown_row
 import numpy as np
 from scipy.linalg import solve_discrete_lyapunov
 
-# dumbbells.in: kT = H = lambda = 1, so zeta = 4; mass of a bead; step.
+# Parameters of dumbbells.in: friction zeta = 4 (kT = H = lambda = 1), mass of a bead, step.
 FRICTION, MASS, STEP = 4.0, 0.5, 0.005
 HEAD = [
     "rate λ",
@@ -35,17 +35,18 @@ def unit_with(entries):
 
 
 def with_step(rate):
-    """Both ratios for the step of LAMMPS: velocity Verlet with the friction of half-step velocities, then the flow
-    moves the beads.
+    """Returns both ratios for the step of LAMMPS: velocity Verlet with the friction of half-step velocities, then the
+    displacement by the flow.
 
-    State: connector x, y, relative velocity x, y, relative force x, y. Its stationary covariance is C = A C A' + Q.
+    The state is connector x, y, relative velocity x, y, relative force x, y. Its stationary covariance C obeys
+    C = A C A' + Q.
     """
     kick = unit_with({(2, 4): STEP / 2 / MASS, (3, 5): STEP / 2 / MASS})
     drift = unit_with({(0, 2): STEP, (1, 3): STEP})
     force = unit_with({(4, 4): 0, (5, 5): 0, (4, 0): -2, (5, 1): -2, (4, 2): -FRICTION, (5, 3): -FRICTION})
     flow = unit_with({(0, 1): rate * STEP})
     noise = np.diag([0, 0, 0, 0, 1, 1]) * 4 * FRICTION / STEP
-    # As thermo output sees it: after the second kick, with the force from before the flow's displacement.
+    # State at thermo output: after the second kick, with the force before the displacement by the flow.
     covariance = solve_discrete_lyapunov(kick @ force @ drift @ kick @ flow, kick @ noise @ kick.T)
     stress = covariance[:2, :2] - MASS / 2 * covariance[2:4, 2:4]
     return stress[0, 1] / rate, (stress[0, 0] - stress[1, 1]) / 2 / rate**2

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Friction of 1: where the viscosity diverges without noise, how many contacts spheres have there, and which Peclet
-numbers flow between the two volume fractions of jamming."""
+"""Friction of 1: divergence of the viscosity and number of contacts without noise, and flow with noise between the two
+jamming volume fractions."""
 import math
 import sys
 from pathlib import Path
@@ -14,20 +14,20 @@ from studies.driver import viscosity_row, where, write_table
 import numpy as np
 
 TITLE = "Large friction"
-# Without noise: volume fractions by friction.
+# Volume fractions without noise, by friction.
 FRACTIONS = {0: (0.58, 0.60, 0.61, 0.62), 1: (0.40, 0.45, 0.50, 0.53, 0.54, 0.55, 0.56)}
-FITTED = 0.55  # of friction 1, the densest of the fit
-SOFT = {"guard": {"largest_overlap": 0.3}}  # jammed spheres of this stiffness overlap by more than the guard's 0.05
+FITTED = 0.55  # largest volume fraction of the fit for friction 1
+SOFT = {"guard": {"largest_overlap": 0.3}}  # jammed spheres of this stiffness overlap by more than the default, 0.05
 NETWORK = {"observables": ["stress", "contact_network"]}
 STEADY = merged(REFERENCE_SCENE, NETWORK, SOFT, in_strains(2, 4), particles={"count": 250}, contact={"friction": 0})
 SEEDS = 8
-# Spheres with fewer contacts carry nothing: forces balance with four of them without friction, with two with it.
+# Contacts that a sphere needs to carry a force: four without friction, two with friction.
 CARRYING = {0: 4, 1: 2}
-# With noise: between 0.57, where the fits for friction 1 diverge, and 0.587, that at rest.
+# Volume fraction with noise, between 0.57, where fits for friction 1 diverge, and 0.587, where those at rest diverge.
 DENSE, PECLET, LOWEST = 0.58, (1, 4.6, 10, 22, 100, 1e3, 1e4), 4.6
 SLOW_PECLET = (0.02, 0.1)
 SLOW = in_brownian_times(100, 100)
-STIFF = 4  # times
+STIFF = 4  # factor of the stiffness
 NOISY = merged(
     TABLE_SCENE,
     NETWORK,
@@ -40,7 +40,7 @@ PUBLISHED_CONTACTS = {0: 6, 1: 4}
 
 
 def carried(mean, friction):
-    """Contacts of the spheres that have enough of them to carry any, and the share of those that have not."""
+    """Returns the mean contacts of spheres that can carry a force, and the share of the other spheres."""
     shares = np.array(mean["contact_network"]["contacts"])
     count, least = np.arange(len(shares)), CARRYING[friction]
     carrying = shares[least:].sum()
@@ -102,7 +102,7 @@ def jamming_rows(table):
 
 
 def contact_rows(table):
-    """Of the densest volume fraction at which all seeds flow."""
+    """Yields statements about contacts at the largest volume fraction at which all seeds flow."""
     last = {}
     for friction, published in PUBLISHED_CONTACTS.items():
         row = last[friction] = [r for r in without_noise(table, friction) if not r["lost"]][-1]

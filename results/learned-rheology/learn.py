@@ -1,15 +1,15 @@
 #!/usr/bin/python3
-"""Maps between local quantities, learned from campaigns of your own.
+"""Learns maps between local quantities from your own campaigns.
 
-learn.py waves velocities.txt                     flow.waves through velocities at equal heights, one a line
+learn.py waves velocities.txt                     prints flow.waves through velocities at equal distances, one a line
 learn.py bins CAMPAIGN.json ... > bins.csv        a row for each bin of every point, with errors over its seeds;
-                                                  --symmetric: for each bin that the driving's symmetries leave
+                                                  --symmetric: only bins that are distinct by symmetry, averaged
 learn.py train bins.csv --inputs J Theta mean --output mu --model mu.json
-learn.py errors bins.csv --inputs J Theta mean --output mu        by method, with each flow left out
-learn.py predict mu.json bins.csv > foretold.csv
+learn.py errors bins.csv --inputs J Theta mean --output mu        errors by method, with each flow left out
+learn.py predict mu.json bins.csv > predicted.csv
 
-Campaigns need the observable `profiles`, /box/height, and flow.waves without shear. A model that is asked beyond what
-it was trained on answers, with a warning and the column `beyond`: how far, in units of the training's range.
+Campaigns need the observable `profiles`, /box/height, and flow.waves without shear. Outside of its training range a
+model predicts with a warning; the column `beyond` has the distance in units of that range.
 """
 import argparse
 import csv
@@ -31,7 +31,7 @@ from studies.tables import columns_of, read_rows, write_table
 
 import numpy as np
 
-MOST_WAVES = 64  # of a scene
+MOST_WAVES = 64  # allowed in a scene
 BINS = ["flow", "mean", "height", "y", "driving", *columns_of(*QUANTITIES)]
 
 
@@ -56,8 +56,7 @@ def asked(verb, campaign):
 
 
 def blocks_of(campaign):
-    """Volume fractions by quarter of the window, of the seeds of each point, where there are as few bins as have
-    quarters."""
+    """Returns the volume fractions by quarter of the window, a list over seeds by point, if results have quarters."""
     quarters = {}
     for line in asked("results", campaign).splitlines():
         stored = json.loads(line)
@@ -113,7 +112,7 @@ def table_of(path, names):
 
 
 def errors_of(path, name, count):
-    """Standard errors of a column, where the table has them for all of its rows."""
+    """Returns the standard errors of a column, or None unless the table has them in all rows."""
     found = [row.get(f"{name}_error") for row in read_rows(path)]
     known = len(found) == count and all(isinstance(e, float) and np.isfinite(e) for e in found)
     return np.array(found) if known else None
@@ -157,7 +156,7 @@ def train(arguments):
 
 
 def errors(arguments):
-    """With each flow left out of the training."""
+    """Prints the error of each method, with each flow left out of the training."""
     inputs, output = chosen(arguments)
     table, flows = table_of(arguments.table, [*dict.fromkeys([*inputs, output, "mean"])])
     if len(set(flows)) < 2:
@@ -198,7 +197,7 @@ def predict(arguments):
 
 
 def main():
-    signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # as other programs whose output is cut off
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # end silently if the reader of the output ends
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     verbs = parser.add_subparsers(dest="verb", required=True)
     verb = verbs.add_parser("waves")

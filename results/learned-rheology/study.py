@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Maps between local quantities of flows that vary along their gradient, learned from some and asked of others, beside
-what fitted laws and mechanics know (Li 2023, ch. 6, Figs 6.2 to 6.4).
+"""Maps between local quantities of flows that vary along their gradient, learned from some flows and tested with
+others, compared with fitted laws and mechanics (Li 2023, ch. 6, Figs 6.2 to 6.4).
 
 The bins are those of ../inhomogeneous-flow, which this study does not run again.
 """
@@ -45,7 +45,7 @@ def read_errors(name):
 
 
 def best_of(rows, map_, output, methods=LEARNED):
-    """Of the methods that there are the one that is best where each training flow is left out, and its row."""
+    """Returns the method with the smallest error when training flows are left out, and its row."""
     of = {m: rows[map_, output, m] for m in methods if (map_, output, m) in rows}
     name = min(of, key=lambda m: of[m]["left out"])
     return name, of[name]
@@ -56,8 +56,8 @@ def name_of(map_, output):
 
 
 def error_statements(rows):
-    """The published maps, by the published method and by the one that is best with flows left out. Volume fractions as
-    they are: scaled by their range, the noise of the bins alone is more than what is in print."""
+    """Yields statements about the published maps, by the published method and by the one that is best with flows left
+    out. Volume fractions are not scaled: scaled by their range, the noise of the bins exceeds the published errors."""
     for map_, output in CASES:
         printed, name, source = MAPS[map_][1][output], name_of(map_, output), f"L6.{map_ + 1}"
         what, words = ("raw", "not scaled, ") if output == "fraction" else ("published", "")
@@ -79,7 +79,7 @@ def floor_rows(rows):
 
 
 def baseline_rows(rows, distinct):
-    """The learned method over the baseline, each that which is best with training flows left out."""
+    """Yields errors of the best learned method over the best baseline, both chosen by leaving out training flows."""
     for map_, output in CASES:
         (method, best), (base, its) = best_of(rows, map_, output), best_of(rows, map_, output, BASELINES)
         text = f"{name_of(map_, output)}, flows never used: {method} over the best baseline, {base}"
@@ -180,7 +180,7 @@ def judge():
 
 
 def error_table(rows, what):
-    """A table of a page: the errors by method."""
+    """Yields the lines of a table of errors by method."""
     yield markdown_head(["method", *(name_of(*case) for case in CASES)])
     if what == "published":
         yield markdown_row(["in print", *(f"{MAPS[map_][1][output]:g}" for map_, output in CASES)])
@@ -191,7 +191,7 @@ def error_table(rows, what):
 
 
 def scale_table(rows):
-    """Of XGBoost as published, by flow and by scale."""
+    """Yields the lines of a table of errors of XGBoost as published, by flow and by scale."""
     yield markdown_head(["XGBoost as published", *(name_of(*case) for case in CASES)])
     kinds = {flow: f"{flow} alone" for flow in PUBLISHED}
     kinds |= {"own scale": "both, scaled by the tests' own range", "raw": "both, not scaled"}
@@ -233,7 +233,7 @@ def draw():
 
 
 def quick_measure(_program):
-    """Of bins that obey Eq. 6.7 exactly: learned from half of them, the law gives the others back."""
+    """Yields checks with bins that obey Eq. 6.7 exactly: methods learned from half of them predict the others."""
     draws = np.random.default_rng(1)
     fraction, j = draws.uniform(0.45, 0.62, 200), np.exp(draws.uniform(math.log(1e-4), math.log(1e-1), 200))
     table = {"fraction": fraction, "J": j, "mean": fraction, "mu": j / (4 * (0.65 - fraction) ** 2)}

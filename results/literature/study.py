@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Viscosities beside published fits, without noise, and with noise and friction for two outer gaps of lubrication."""
+"""Viscosities compared with published fits: without noise, and with noise and friction for two outer gaps."""
 import sys
 from pathlib import Path
 
@@ -16,9 +16,9 @@ STEADY = merged(
     REFERENCE_SCENE, in_strains(2, 5), particles={"count": 500}, flow={"shear_rate": 0.05}, contact={"friction": 0}
 )
 SEEDS = 8
-# With more seeds: these lie near the bound of 0.9.
+# Cases with more seeds, because they are near the bound of 0.9.
 MORE, MORE_SEEDS = [(f, 1, 0.05) for f in (0.30, 0.40, 0.45)], 24
-# What might explain that the viscosity with friction lies below the fit, at phi = 0.5 and the outer gap of 0.05.
+# Variants that may explain why the viscosity with friction is below the fit, at phi = 0.5 and an outer gap of 0.05.
 VARIANTS = {
     "N = 1000": {"particles": {"count": 1000}},
     "St = 0.005": {"flow": {"shear_rate": 0.005}},
@@ -35,7 +35,7 @@ NOISY_FRACTIONS, NOISY_GAPS = (0.45, 0.50), (0.05, 0.5)
 
 
 def steady(program, name, cases, seeds, patch=None):
-    """Rows of (fraction, friction, gap) without noise."""
+    """Returns rows for cases (fraction, friction, gap) without noise."""
     pointers = {"fraction": "/volume_fraction", "friction": "/contact/friction", "gap": "/lubrication/outer_gap"}
     others = "first_normal_difference", "second_normal_difference"
     rows = program.rows(name, merged(STEADY, patch or {}), pointers, cases, seeds, *others)
@@ -47,7 +47,7 @@ def steady(program, name, cases, seeds, patch=None):
 
 
 def noisy(program):
-    """Returns rows of (volume fraction, outer gap, Peclet number) with friction."""
+    """Returns rows with noise and friction, by volume fraction, outer gap and Peclet number."""
     cases = [(f, g, p) for f in NOISY_FRACTIONS for g in NOISY_GAPS for p in PECLET]
     pointers = {"fraction": "/volume_fraction", "gap": "/lubrication/outer_gap", "peclet": "/peclet"}
     return program.rows("noisy", NOISY, pointers, cases, NOISY_SEEDS)
@@ -58,8 +58,8 @@ def curve_of(rows, fraction, gap):
 
 
 def noisy_rows(rows):
-    """Fig. 4.7 shows "the extent to which our results depend quantitatively" on the outer gap, and agrees
-    qualitatively with others; section 3.3 says that conclusions do not depend on it."""
+    """Yields rows about the outer gap. Fig. 4.7 shows "the extent to which our results depend quantitatively" on it,
+    and agrees qualitatively with others; section 3.3 says that conclusions do not depend on it."""
     degrees = min(r["seeds"] for r in rows) - 1
     for fraction in NOISY_FRACTIONS:
         name = f"φ = {fraction:g}, μ = 1"
@@ -81,9 +81,11 @@ def noisy_rows(rows):
 
 
 def steady_rows(rows):
-    """Beside non-Brownian fits that are no part of Li's publications: a check of the engine where they hold
-    for these parameters, without friction and from 0.40 on (their 1.4 is not 1 without spheres); with friction they
-    depend on gaps that are not published."""
+    """Yields rows about non-Brownian fits from other publications than Li's.
+
+    They are a check of the engine where they are valid for these parameters: without friction and from 0.40 on (their
+    factor 1.4 is not 1 without spheres). With friction they depend on gaps that are not published.
+    """
     for row in rows:
         text = f"φ = {row['fraction']:g}, μ = {row['friction']:g}, outer gap {row['gap']:g}: η_r over the fit"
         found, degrees = number(row, "viscosity_over_fit"), row["seeds"] - 1
@@ -94,7 +96,7 @@ def steady_rows(rows):
 
 
 def jamming_rows(rows):
-    """Whether the divergence depends on the gap."""
+    """Yields findings about the divergence for two outer gaps."""
     for gap in (0.05, 0.5):
         chosen = [r for r in rows if (r["friction"], r["gap"]) == (0, gap) and r["fraction"] >= 0.4]
         fractions = [r["fraction"] for r in chosen]

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Where neighbours are in the plane of flow and gradient, from weak to strong flow."""
+"""The distribution of neighbours in the plane of flow and gradient, from weak to strong flow."""
 import math
 import sys
 from pathlib import Path
@@ -20,19 +20,23 @@ SCENE = merged(
     observables=["stress", "pair_distribution"],
     pair_distribution={"range": 5, "bin": BIN, "slab": 0.1},
 )
-RINGS = (2.0, 2.4, 2.8)  # distances at which two small spheres touch, a small and a large one, two large ones
+RINGS = (2.0, 2.4, 2.8)  # contact distances: two small spheres, a small and a large one, two large ones
 BROWNIAN = in_brownian_times(40, 20)
 SHEARED = in_strains(2, 6)
 RUNS = ((0.01, 32, BROWNIAN), (1, 48, BROWNIAN), (1e4, 64, SHEARED))
 QUICK_RUNS = ((0.01, 16, in_brownian_times(4, 8)), (1e4, 16, in_strains(1, 8)))
-SECTORS = 12  # of the angle from the flow to minus it
+SECTORS = 12  # of the angle from the flow direction to its opposite
 MAP_COLOURS = {0: "#ffffff", 0.5: "#c8daf0", 1: "#7fb0d8", 2: "#2060b0", 4: "#301860", 8: "#100020"}
 
 
 def contact_value(fraction):
-    """g of all pairs at the distance at which two small hard spheres touch: Boublik (1970) and Mansoori, Carnahan,
-    Starling & Leland (1971), g_ij = 1 / (1 - z3) + 3 z2 / (1 - z3)^2 d + 2 z2^2 / (1 - z3)^3 d^2 with d = s_i s_j /
-    (s_i + s_j), times the share of such pairs."""
+    """Returns g of all pairs at the contact distance of two small hard spheres: the share of such pairs times
+
+        g_ij = 1 / (1 - z3) + 3 z2 / (1 - z3)^2 d + 2 z2^2 / (1 - z3)^3 d^2,    d = s_i s_j / (s_i + s_j)
+
+    (Boublik 1970; Mansoori, Carnahan, Starling & Leland 1971). s are the diameters, z3 the volume fraction,
+    z2 = z3 sum x s^2 / sum x s^3 with number shares x.
+    """
     diameters, volumes = np.array([2.0, 2.8]), np.array([0.5, 0.5])
     shares = volumes / diameters**3 / (volumes / diameters**3).sum()
     z2 = fraction * (shares @ diameters**2) / (shares @ diameters**3)
@@ -41,7 +45,7 @@ def contact_value(fraction):
 
 
 class Structure:
-    """Of one point: by seed, counts and ideal counts, of shells and of the cells (y, x) of a slice in the plane of flow
+    """Pair counts and ideal counts of one point by seed: in shells, and in cells (y, x) of a slice in the plane of flow
     and gradient."""
 
     def __init__(self, point):
@@ -57,13 +61,13 @@ class Structure:
         self.radius, self.angle = np.hypot(columns, rows), np.arctan2(rows, columns)
 
     def shell(self, low, high):
-        """By seed, g averaged over the shell between two distances."""
+        """Returns g averaged over the shell between two distances (seeds,)."""
         chosen = (low < self.distance) & (self.distance < high)
         return self.counts[:, chosen].sum(axis=1) / self.ideal[:, chosen].sum(axis=1)
 
     def sectors(self, ring, count):
-        """By seed, g of the slice at the ring in equal sectors of the angle from the flow to minus it, over the
-        gradient."""
+        """Returns g of the slice at a ring (seeds, count), in equal sectors of the angle from the flow direction
+        through the gradient direction to the opposite of the flow."""
         at_ring = abs(self.radius - ring) < BIN
         sector = np.floor(self.angle / np.pi * count)
         parts = [at_ring & (sector == k) for k in range(count)]
@@ -71,9 +75,14 @@ class Structure:
         return np.array(g).T
 
     def ring(self, ring):
-        """By seed: g within 0.05 a of the distance; that just outside of it over the larger one 0.1 a before and after;
-        its sharpness, the first over g from 0.05 to 0.15 a beyond; and in the slice the compressive (x y < 0) less the
-        extensional quadrant, and that over their sum."""
+        """Returns numbers about a ring by seed:
+
+        height        g within 0.05 a of the ring
+        prominence    g just outside of the ring over the larger of g 0.1 a before and after it
+        sharpness     height over g from 0.05 to 0.15 a beyond
+        difference    g of the slice in the compressive quadrant (x y < 0) minus that in the extensional one
+        anisotropy    this difference over the sum of both
+        """
         height, beyond = self.shell(ring - BIN, ring + BIN), self.shell(ring + BIN, ring + 3 * BIN)
         edge = self.shell(ring, ring + BIN)
         around = self.shell(ring - 2 * BIN, ring - BIN), self.shell(ring + 2 * BIN, ring + 3 * BIN)
@@ -109,22 +118,21 @@ def sharpness_rows(found, degrees):
 
 
 def variation(sectors):
-    """Root of the mean square of g over the angle about its mean, over that mean, less what the noise of the sectors
-    makes; with its standard error."""
+    """Returns the relative rms variation of g over the angle, without that of noise, and its standard error."""
     numbers = [(r["g"], r["standard_error"]) for r in sectors]
     noise = np.mean([error**2 for _, error in numbers])
 
     def relative(values):
         return math.sqrt(max(0, np.var(values) - noise)) / float(np.mean(values))
 
-    # Drawn again, the values have the noise twice.
+    # Values that are drawn again have the noise twice.
     value, _ = propagated(numbers, relative)
     _, error = propagated(numbers, lambda values: float(np.std(values) / np.mean(values)))
     return value, error
 
 
 def anisotropy_rows(found, sectors, degrees):
-    """Over the whole angle: quadrants miss what pairs do along the flow."""
+    """Yields rows about anisotropy over the whole angle, because quadrants miss pairs along the flow."""
     peclets = weak, *_, strong = sorted(found)
     for ring in RINGS:
         name = f"ring at {ring:g} a"
@@ -147,7 +155,7 @@ TOUCHING = "Pe = 0.01: g up to 0.05 a beyond contact over that of hard spheres i
 
 
 def touching(structure):
-    """g just beyond contact, overlaps included, beside that of hard spheres."""
+    """Returns g just beyond contact, overlaps included, over that of hard spheres, and the degrees of freedom."""
     r, edge = structure.distance, 2 + BIN
     counts = structure.counts[:, r < edge].sum(axis=1)
     ideal = structure.ideal[:, (2 < r) & (r < edge)].sum(axis=1)
@@ -189,7 +197,7 @@ def measure(program):
     structures = {peclet: point_of(program, peclet, seeds, duration) for peclet, seeds, duration in RUNS}
     explicit = {"integrator": {"method": "explicit"}}
     strong = point_of(program, 1e4, 4, SHEARED, explicit, "microstructure-explicit-10000")
-    # Explicit steps do not reach equilibrium here; both methods from the same packings over the same time.
+    # Explicit steps do not reach equilibrium here. Both methods start from the same packings and run equally long.
     short = in_brownian_times(5, 5)
     weak = point_of(program, 0.01, 8, short, explicit, "microstructure-explicit-0.01")
     weak_implicit = point_of(program, 0.01, 16, short, None, "microstructure-short-0.01")
@@ -212,11 +220,11 @@ def measure(program):
 
 
 def map_rows(structure):
-    """(x, y, g) of the slice within 4 a, line after line."""
+    """Returns rows (x, y, g) of the slice within 4 a, line by line."""
     g = structure.cells.sum(axis=0) / structure.ideal_of_cell.sum()
     wide = abs(structure.x) < 4
     half = [(x, y, v) for y, row in zip(structure.y, g) if y < 4 for x, v in zip(structure.x[wide], row[wide])]
-    # The other half is the image in the origin.
+    # The other half is the point reflection of this one.
     return [(-x, -y, v) for x, y, v in reversed(half)] + half
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The jamming map of colloids and grains: the volume fraction at which mixtures of radii 1, 1.4, 5 and 7 jam, over the
+"""The jamming map of colloids and grains: the jamming volume fraction of mixtures of radii 1, 1.4, 5 and 7, over the
 share of grains and the Peclet number of the mean radius, found by bisection (Li 2023, Figs 5.4, 5.5 and 5.6)."""
 import math
 import sys
@@ -16,32 +16,32 @@ import numpy as np
 
 TITLE = "The jamming map of colloids and grains"
 SCENE, NOISY = MIXTURE_SCENE, merged(MIXTURE_SCENE, NOISE)
-# Times as stiff with friction, by the share of the grains: where these carry the stress, contacts of colloids would
-# soften long before the jam.
+# Factor of the stiffness with friction, by the share of the grains: if grains carry the stress, softer contacts of
+# colloids would give way long before jamming.
 STIFFER = {0.7: 2, 0.8: 4, 0.9: 10}
-# Share of the grains in the volume of all spheres, and how many spheres that takes for some thirty grains (0.4: 20).
+# Number of spheres with about thirty grains (20 at 0.4), by the share of the grains in the volume of all spheres.
 COUNTS = {0: 1000, 0.4: 4000, 0.6: 3000, 0.7: 2000, 0.8: 1500, 0.9: 1000, 1: 1000}
 SEEDS = 3
-# Rows of the map: without noise, without and with friction; with both by the Peclet number of the mean radius; and with
-# that of the colloids at 1.
+# Rows of the map: without noise, without and with friction; with noise and friction, called by the Peclet number of the
+# mean radius; and at Peclet number 1 of the colloids.
 SMOOTH, ROUGH, FIXED = "smooth", "rough", "colloids-1"
 NOISY_ROWS = {100: (*COUNTS,), 1: (0, 1), 0.1: (0,), 10: (0, 0.4, 0.7, 1)}
 FIXED_SHARES, COMMON = (0.4, 0.7), 0.69
-# Where diffusion outruns the flow of grains too: shares and volume fractions.
+# Runs with diffusion faster than the flow, for grains, too: shares and volume fractions.
 SLOW, SLOWEST, SLOW_CASES = "slow", 0.01, ((1, 0.6), (1, 0.62))
-# Where the search begins, and its steps: the volume fractions at which they jam without noise by the study mixtures.
+# First volume fractions of the search, those at which the study mixtures has jamming without noise, and its steps.
 START = {
     SMOOTH: {0: 0.63, 0.4: 0.71, 0.6: 0.755, 0.7: 0.77, 0.8: 0.75, 0.9: 0.69, 1: 0.63},
     ROUGH: {0: 0.585, 0.4: 0.66, 0.6: 0.685, 0.7: 0.68, 0.8: 0.645, 0.9: 0.605, 1: 0.585},
 }
 ABOUT, SLOWER = (-0.02, 0, 0.02), (0, 0.03, 0.06)
 ALONE = {100: (0.55, 0.58, 0.6), 10: (0.55, 0.6, 0.63), 1: (0.55, 0.6, 0.63), 0.1: (0.55, 0.6, 0.63)}
-NARROW, ROUNDS = 0.0101, 6  # a bracket that is narrower is not halved again
-SOFTEST = 0.003  # mean overlap of what counts as jammed; noise alone makes 0.0009 where it is strongest
+NARROW, ROUNDS = 0.0101, 6  # width at which the search ends; largest number of rounds
+SOFTEST = 0.003  # mean overlap from which on a point counts as jammed; noise alone gives 0.0009 at most
 
 
 def setting(alpha, fraction, row):
-    """Grains alone are as hard as colloids alone in other units."""
+    """Returns the settings of a point. Grains alone have the hardness of colloids alone, in other units."""
     alike, peclet = alpha == 1, colloids_peclet(row, alpha)
     stiffer = 5 if alike else 1 if row == SMOOTH else STIFFER.get(alpha, 1)
     besides = {"/particles/density": DENSITY, **(ALIKE if alike else {}), **windows(alpha, peclet)}
@@ -63,20 +63,20 @@ def first_fractions(row, alpha):
         return list(ALONE[row])
     steps = SLOWER if row in (10, FIXED) else ABOUT
     found = [round(START[SMOOTH if row == SMOOTH else ROUGH][alpha] + step, 4) for step in steps]
-    # One that both shares have: else the share would follow from the volume fraction, as along a line of addition.
+    # A volume fraction in common: without it the fraction would determine the share, as along a line of addition.
     return found + [COMMON] if row == FIXED and COMMON not in found else found
 
 
 def bracket(points):
-    """The largest volume fraction at which most seeds flow, and the smallest one beyond it at which half of them or
-    more jam, or contacts are soft; None for what there is none of."""
+    """Returns the largest volume fraction at which most seeds flow, and the smallest one beyond it at which they do
+    not, or contacts are soft; None for either if absent."""
     hard = (p for p in points if p["state"] in ("flowing", "partly jammed") and p["overlap"] <= SOFTEST)
     flowing = max((p["fraction"] for p in hard), default=None)
     return flowing, min((p["fraction"] for p in points if p["seeds"] and p["fraction"] > (flowing or 0)), default=None)
 
 
 def next_fraction(fractions, flowing, stuck):
-    """Half-way between the ends of a bracket, or beyond the fractions that were tried; None where it is narrow."""
+    """Returns the middle of a bracket, or a fraction beyond those that were tried; None if the bracket is narrow."""
     if stuck is None:
         return round(max(fractions) + 0.02, 4)
     if flowing is None:
@@ -86,14 +86,13 @@ def next_fraction(fractions, flowing, stuck):
 
 
 def curves_of(program, name, only=None):
-    """By the share of grains; `only` is the one of a campaign that has no other."""
+    """Returns the curves of `peclet jamming` by the share of grains; `only` is the share if it is not swept."""
     found = program.asked("jamming", name, "--by", "steepest", "--softest", str(SOFTEST))["curves"]
     return {curve["settings"].get("/particles/mixture/alpha", only): curve for curve in found}
 
 
 def search(program, hours, row, shares):
-    """Returns rows of the table and of the map: rounds of runs, each between what flows and what does not in the one
-    before."""
+    """Returns rows of the table and of the map, found by rounds of runs that bisect between flowing and jammed."""
     fractions = {alpha: first_fractions(row, alpha) for alpha in shares}
     for turn in range(ROUNDS):
         cases = [(alpha, fraction) for alpha in shares for fraction in fractions[alpha]]
@@ -108,7 +107,7 @@ def search(program, hours, row, shares):
 
 
 def run_row(program, row, cases, hours=None):
-    """Runs (share of grains, volume fraction) of a row of the map; returns rows of the table, and curves_of()."""
+    """Runs cases (share of grains, volume fraction) of a row of the map; returns rows of the table, and curves_of()."""
     scene = merged(SCENE if row in (SMOOTH, ROUGH) else NOISY, contact={"friction": 0 if row == SMOOTH else 1})
     settings = [setting(alpha, fraction, row) for alpha, fraction in cases]
     if hours:
@@ -148,7 +147,7 @@ def measure(program):
 
 
 class Map:
-    """Volume fractions of jamming, by row and share of grains, and viscosities."""
+    """Jamming volume fractions, by row of the map and share of grains, and viscosities."""
 
     def __init__(self):
         self._entries = {(str(e["row"]), e["alpha"]): e for e in read_rows(HERE / "map.csv")}
@@ -181,19 +180,19 @@ class Map:
         return [r["fraction"] for r in self.curve(row, alpha) if r["state"] == "flowing"]
 
     def largest_jump(self, row, alpha):
-        """Of the viscosity between neighbours that are no further apart than 0.01; infinite to what is jammed."""
+        """Returns the largest ratio of viscosities between neighbours up to 0.01 apart; infinite for a jammed one."""
         curve = self.curve(row, alpha)
         near = [(a, b) for a, b in zip(curve, curve[1:]) if b["fraction"] - a["fraction"] < 0.0101 and a["seeds"]]
         return max(row_ratio(b, a, "viscosity") if b["seeds"] else (math.inf, 0.0) for a, b in near)
 
 
 DEGREES = SEEDS - 1
-# Rows, where either group alone jams by the packing models, and names.
+# Rows of the map: jamming volume fraction of either group alone, and name.
 NAMES = {SMOOTH: (0.64, "μ = 0, no noise"), ROUGH: (0.57, "no noise"), 100: (0.57, "Pe_cg = 100")}
 
 
 def rows_of_curves(jams):
-    """Fig. 5.4 a: viscosities of one share of grains, and of colloids alone."""
+    """Yields statements about Fig. 5.4 a: viscosities at one share of grains, and of colloids alone."""
     both = max(set(jams.flowing(ROUGH, 0.4)) & set(jams.flowing(100, 0.4)))
     text = f"α = 0.4, φ = {both:g}, the densest that flows in both: η_r at Pe_cg = 100 over that without noise"
     yield Statement(text, "L5.4a", *jams.ratio(100, ROUGH, 0.4, both), high=1 / 3, degrees=DEGREES)
@@ -215,7 +214,7 @@ def rows_of_curves(jams):
 
 
 def rows_of_branches(jams):
-    """Fig. 5.4 b."""
+    """Yields statements about Fig. 5.4 b."""
     names = {row: name for row, (_, name) in NAMES.items()} | {row: f"Pe_cg = {row:g}" for row in (10, 1)}
     for row, name in names.items():
         ends = difference(jams.jammed(row, 0), jams.jammed(row, 1))
@@ -232,14 +231,14 @@ def rows_of_branches(jams):
 
 
 def interpolated(jams, alpha):
-    """phi_m where the Peclet number of the colloids is 1, linear in the logarithm of that of the mean radius."""
+    """Returns phi_m at Peclet number 1 of the colloids, interpolated in the logarithm of that of the mean radius."""
     ends = jams.jammed(10, alpha), jams.jammed(100, alpha)
     share = math.log10(mean_peclet(alpha, 1) / 10)
     return propagated(ends, lambda v: v[0] + share * (v[1] - v[0]))
 
 
 def rows_of_fixed_number(jams):
-    """Fig. 5.5: Pe_c = 1."""
+    """Yields statements about Fig. 5.5: Pe_c = 1."""
     start = jams.shift(1, SMOOTH, 0)
     yield Statement("Pe_c = 1, α = 0: φ_m less that without friction", "L5.5", *start, -0.01, 0.01)
     below = {alpha: jams.shift(SMOOTH, FIXED, alpha) for alpha in FIXED_SHARES}
@@ -249,7 +248,7 @@ def rows_of_fixed_number(jams):
     yield Statement(f"Pe_c = 1: how much further below at α = {high:g} than at {low:g}", "L5.5", *further, 0)
     for alpha in (0.9, 1):
         value, error = jams.shift(100, ROUGH, alpha)
-        end = round(value, 6), error  # as the table is: on a bound it must not hang on the last bit
+        end = round(value, 6), error  # as in the table, so that rounding does not decide at a bound
         text = f"Pe_c = 1 (Pe_cg = 100), α = {alpha:g}: φ_m less that with friction without noise"
         yield Statement(text, "L5.5", *end, -0.01, 0.01)
     for alpha in FIXED_SHARES:
@@ -259,7 +258,7 @@ def rows_of_fixed_number(jams):
 
 
 def rows_of_addition(jams):
-    """Fig. 5.6: what is jammed at the beginning."""
+    """Yields statements about Fig. 5.6: the jammed states before addition."""
     for fraction in (0.6, 0.62):
         room = over(jams.jammed(100, 0), fraction)
         yield Statement(f"colloids alone, Pe_c = 100: φ_m/{fraction:g} (below 1: jammed)", "L5.6", *room, high=1)
@@ -316,7 +315,8 @@ def draw():
 
 
 def quick_measure(program):
-    """Colloids alone at a volume fraction at which friction jams them, with noise that keeps them apart and without."""
+    """Yields statements about colloids alone at a volume fraction at which friction jams them: without noise, and with
+    noise that separates them."""
     for name, scene, row, jammed in (("without noise", SCENE, ROUGH, 1), ("Pe_c = 1", NOISY, FIXED, 0)):
         rough = merged(scene, contact={"friction": 1})
         program.run(f"quick-{row}", rough, [{**setting(0, 0.605, row), "/particles/count": 200}], 4)

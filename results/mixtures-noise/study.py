@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Colloids and grains with noise: flow curves while grains are added to colloids and colloids to grains, with friction
+"""Colloids and grains with noise and friction: flow curves as grains are added to colloids, and colloids to grains
 (Li 2023, Figs 5.2, 5.3 a, b and 5.6)."""
 import math
 import sys
@@ -19,23 +19,22 @@ TITLE = "Colloids and grains with noise"
 SCENE = merged(MIXTURE_SCENE, contact={"friction": 1})
 NOISY = merged(SCENE, NOISE)
 SOFTER = STIFFNESS / 4
-# Share of the grains in the volume of all spheres, and how many spheres that takes for some thirty grains, where they
-# are the more; 20 and 13 at 0.4 and 0.3.
+# Number of spheres with about thirty grains (20 at 0.4, 13 at 0.3), by the share of the grains in the spheres' volume.
 COUNTS = {0: 1000, 0.3: 4000, 0.4: 4000, 0.5: 4000, 0.6: 3000, 0.7: 2000, 0.8: 1500, 0.9: 1000, 1: 1000}
 COLLOIDS_ADDED, GRAINS_ADDED = (1, 0.9, 0.8, 0.7, 0.6, 0.5), (0, 0.3, 0.4, 0.5)
-SLOW_ADDED = COLLOIDS_ADDED[:4]  # at the smallest Peclet number, where a strain takes ten times as long
-BASE, DENSE = 0.55, 0.60  # before something is added
+SLOW_ADDED = COLLOIDS_ADDED[:4]  # shares at the smallest Peclet number, at which a strain takes ten times as long
+BASE, DENSE = 0.55, 0.60  # volume fractions before addition
 NUMBERS = (0.1, 1, 10, 100, 1e3, 1e5)  # Peclet numbers of the colloids
-FRACTION, SHARES = 0.565, (0, 0.5, 0.7, 1)  # of one volume fraction
-SLOW_MEANS = (0.3, 1)  # where a strain of mixtures takes long
-MEANS = (3, 10, 30, 100, 1e3, 1e5)  # Peclet numbers of the mean radius there
+FRACTION, SHARES = 0.565, (0, 0.5, 0.7, 1)  # a constant volume fraction, and its shares of grains
+SLOW_MEANS = (0.3, 1)  # Peclet numbers of the mean radius, for single groups only: a strain of mixtures takes long
+MEANS = (3, 10, 30, 100, 1e3, 1e5)  # Peclet numbers of the mean radius at this volume fraction
 SEEDS = 4
-# Slopes of ln eta over ln k_n: of what is jammed, which flows only because spheres are soft, and of what flows.
+# Bounds of d ln eta / d ln k_n: above the first a point is jammed but soft, below the second it flows.
 JAMMED, FLOWING = 0.5, 0.2
 
 
 def rows_of(program, part, cases, stiffness=STIFFNESS, count_times=1, besides=None):
-    """Rows of (share of grains, volume fraction, Peclet number of the colloids)."""
+    """Yields rows for cases (share of grains, volume fraction, Peclet number of the colloids)."""
     settings = []
     for alpha, fraction, peclet in cases:
         more, count = {**(besides or {}), **windows(alpha, peclet)}, round(count_times * COUNTS[alpha])
@@ -64,7 +63,7 @@ def parts(program):
     for stiffness, name in ((STIFFNESS, "dense"), (SOFTER, "dense-soft")):
         yield from rows_of(program, name, line(DENSE, (1, 100)), stiffness)
     yield from rows_of(program, "no-noise", line(BASE, (math.inf,)))
-    # Grains alone, which are colloids in other units: as hard, with as little inertia.
+    # Grains alone are colloids in other units, with the same hardness and inertia.
     grains = {"grains-alone": (BASE, (*NUMBERS, 1e4)), "fraction-grains": (FRACTION, (*SLOW_MEANS, *MEANS, 125))}
     for name, (fraction, peclets) in grains.items():
         alone = [(1, fraction, peclet / 125) for peclet in peclets]
@@ -80,13 +79,13 @@ def parts(program):
     yield from rows_of(program, "grains-added-slow", line(BASE, NUMBERS[:1], (0, 0.4), grains_added))
 
 
-LAG = 20  # Brownian times: inertia of the grains is worth 0.2 of them, a hundredth
-# Volume fractions in print as the other group is added: its share is 0, 0.1 ... 0.5.
+LAG = 20  # Brownian times; the inertia of the grains changes displacements by 0.2 of them, a hundredth
+# Published volume fractions as the other group is added: its share is 0, 0.1 ... 0.5.
 PRINTED = (0.550, 0.576, 0.604, 0.636, 0.671, 0.710)
 
 
 def composition_numbers(program):
-    """How far 10 000 spheres are from the compositions in print."""
+    """Yields the largest deviations of compositions of 10000 spheres from the published ones."""
     off_fraction, off_share = [], []
     for added in ("grains", "colloids"):
         for tenths, printed in enumerate(PRINTED):
@@ -130,10 +129,10 @@ def measure(program):
 
 
 class Table:
-    """The rows by part, share of grains and Peclet number; a viscosity that no seed has is infinite."""
+    """The rows by part, share of grains and Peclet number. A viscosity without any seed is infinite."""
 
     def __init__(self, rows):
-        # A part and its slow one have different Peclet numbers.
+        # A part and its slow part have different Peclet numbers.
         self._rows = {(r["part"].removesuffix("-slow"), r["alpha"], f"{r['peclet']:.4g}"): r for r in rows}
 
     def viscosity(self, part, alpha, peclet):
@@ -144,7 +143,7 @@ class Table:
         return quotient(*(self.viscosity(part, alpha, peclet) for alpha in alphas))
 
     def curve(self, part, alpha, numbers):
-        """Logarithms of viscosities."""
+        """Returns the logarithms of viscosities at these Peclet numbers."""
         return [logarithm(self.viscosity(part, alpha, peclet)) for peclet in numbers]
 
     def grains_added(self, alpha, peclet):
@@ -158,7 +157,7 @@ class Table:
         return {r["mean peclet"]: logarithm(number(r, "viscosity")) for r in rows}
 
     def stiffening(self, part, alpha, peclet):
-        """d ln eta / d ln k_n; 1, which is what jams, where no seed ended well with either k_n."""
+        """Returns d ln eta / d ln k_n; 1, the value of a jammed point, if no seed has means with either k_n."""
         soft, hard = self.viscosity(f"{part}-soft", alpha, peclet), self.viscosity(part, alpha, peclet)
         if math.inf in (soft[0], hard[0]):
             return 1.0, 0.0
@@ -176,19 +175,19 @@ def drops(table, peclet, part="colloids-added"):
 
 
 def factor(numbers):
-    """exp of the largest."""
+    """Returns exp of the largest of some numbers."""
     return propagated(numbers, lambda values: math.exp(max(values)))
 
 
 def minimum_of(curve):
-    """Returns that of log_minimum(), without an error where the lowest point is an end."""
+    """Returns log_minimum() of a curve, with an infinite error if the lowest point is an end."""
     places, numbers = list(curve), list(curve.values())
     value, error = propagated(numbers, lambda values: log_minimum(places, np.exp(values)))
     return value, math.inf if min(numbers) in (numbers[0], numbers[-1]) else error
 
 
 def smallest_step(viscosities):
-    """Of a viscosity over the one before it. What jams is infinite, and beyond it nothing may flow."""
+    """Returns the smallest ratio of successive viscosities up to jamming; 0 if a point beyond a jammed one flows."""
     jammed = next((k for k, (value, _) in enumerate(viscosities) if math.isinf(value)), len(viscosities))
     if any(math.isfinite(value) for value, _ in viscosities[jammed:]):
         return 0.0, 0.0
@@ -197,7 +196,7 @@ def smallest_step(viscosities):
 
 
 def rows_of_grains_added(table):
-    """Fig. 5.2 a, c: grains added to colloids."""
+    """Yields statements about Fig. 5.2 a, c: grains added to colloids."""
     thinning = propagated(table.curve("grains-added", 0, NUMBERS), lambda v: math.exp(v[0] - min(v)))
     text = "colloids alone, φ = 0.55: η_r at Pe_c = 0.1 over its minimum"
     yield Statement(text, "L5.2a", *thinning, 1, math.inf, DEGREES)
@@ -230,7 +229,7 @@ def steepness(logarithms):
 
 
 def rows_of_colloids_added(table):
-    """Figs 5.2 b, c and 5.6: colloids added to grains of 0.55."""
+    """Yields statements about Figs 5.2 b, c and 5.6: colloids added to grains at 0.55."""
     of = {peclet: drops(table, peclet) for peclet in NUMBERS}
     best, fast = factor(of[1]), factor(of[1000])
     text = "grains at φ₀ = 0.55, Pe_c = 1: η_r at α = 1 over the smallest with colloids added"
@@ -280,7 +279,7 @@ def rows_of_colloids_added(table):
 
 
 def rows_of_one_fraction(table):
-    """Fig. 5.3 a, b."""
+    """Yields statements about Fig. 5.3 a, b."""
     curves = {alpha: table.of_means(alpha) for alpha in SHARES}
     minima = [minimum_of(curve) for curve in curves.values()]
     shifts = [math.log10(mean_peclet(alpha, 1)) for alpha in SHARES]
@@ -366,7 +365,7 @@ def draw():
         return figure.panel(x, "η_r", title, log=log, y_range=(10, 1e5), **settings)
 
     def curve(one, part, x, title, colour, **equal):
-        """The rows of a part, with its slow ones, that have these values, over their x."""
+        """Draws the rows of a part and its slow part with these values, over their column x."""
         here = [r for r in where(rows, **equal) if r["part"] in (part, f"{part}-slow") and r["seeds"]]
         one.rows(sorted(here, key=lambda r: r[x]), x, "viscosity", title, colour, joined=True)
 
@@ -392,7 +391,7 @@ def draw():
 
 
 def quick_measure(program):
-    """Grains that friction holds flow many times better with colloids among them, at Pe_c = 1."""
+    """Yields the statement that colloids among grains with friction lower the viscosity, at Pe_c = 1."""
     cases = [(alpha, colloids_added(alpha, BASE), 1) for alpha in (1, 0.7)]
     of = {r["alpha"]: r for r in rows_of(program, "quick", cases, count_times=0.5)}
     ratio = row_ratio(of[0.7], of[1], "viscosity")

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Colloids and grains without noise: where mixtures of radii 1, 1.4, 5 and 7 jam, with and without friction, beside two
-models of packings; and whether dense grains flow better when colloids are added to them."""
+"""Colloids and grains without noise: jamming of mixtures of radii 1, 1.4, 5 and 7, with and without friction, compared
+with two models of packings; and the flow of dense grains as colloids are added."""
 import math
 import sys
 from pathlib import Path
@@ -16,28 +16,27 @@ import numpy as np
 
 TITLE = "Colloids and grains without noise"
 SCENE = merged(MIXTURE_SCENE, in_strains(1, 2))
-# Share of the grains in the volume of all spheres, and how many spheres that takes for some thirty grains.
+# Number of spheres with about thirty grains, by the share of the grains in the volume of all spheres.
 COUNTS = {0: 1000, 0.4: 5000, 0.5: 4000, 0.6: 3000, 0.7: 2000, 0.75: 2000, 0.8: 1500, 0.85: 1500, 0.9: 1000, 1: 1000}
-ALONE = {0: 0.64, 1: 0.57}  # in print: where one group alone jams, by friction
-# How far below the volume fractions at which a pilot had them jam.
+ALONE = {0: 0.64, 1: 0.57}  # published jamming volume fraction of one group alone, by friction
+# Distances below the jamming volume fractions of a pilot run, by friction.
 BELOW = {0: (0.10, 0.075, 0.055, 0.04, 0.025), 1: (0.12, 0.09, 0.065, 0.045, 0.03)}
 PILOT = {
     0: dict(zip(COUNTS, (0.637, 0.722, 0.745, 0.762, 0.78, 0.778, 0.76, 0.739, 0.704, 0.637))),
     1: dict(zip(COUNTS, (0.577, 0.66, 0.675, 0.69, 0.685, 0.672, 0.655, 0.64, 0.61, 0.577))),
 }
 SEEDS = 4
-# Colloids added to grains of this volume fraction, with friction: whether they leave the jam.
+# Volume fraction of grains with friction to which colloids are added; tests if they unjam.
 DENSE = 0.60
-# What may not matter, at a share of grains and so far below the jam: so many times as many spheres, contacts so many
-# times as stiff, and spheres so many times as light.
+# Tests of parameters that should not matter: factors of the number of spheres, stiffness and lightness, the share of
+# grains, and the distance below jamming by friction.
 SIZES, STIFFER, LIGHTER, TESTED, FAR = (0.5, 1, 2, 4), 4, 4, 0.5, {0: 0.055, 1: 0.09}
 ORDERED = (0.5, 0.75)  # shares of grains that are searched for layers, without friction
-LAYERED = 0.04  # so far below the jam
+LAYERED = 0.04  # distance below jamming of this search
 
 
 def stiffness_of(friction, alpha):
-    """With friction curves are needed up to larger stresses, and where grains carry these, contacts of larger
-    spheres."""
+    """Returns k_n: larger with friction, where curves reach larger stresses, and if large grains carry them."""
     if friction == 0:
         return 1e5
     return 2e5 if alpha < 0.75 else 4e5 if alpha < 0.9 else 1e6
@@ -48,7 +47,7 @@ def below(friction, alpha, distance):
 
 
 def rows_of(program, part, friction, cases, seeds=SEEDS, stiffer=1, density=SCENE["particles"]["density"]):
-    """Rows of (share of grains, number of spheres, volume fraction)."""
+    """Yields rows for cases (share of grains, number of spheres, volume fraction)."""
     scene = merged(SCENE, contact={"friction": friction}, particles={"density": density})
     settings = [setting_of(*case, stiffer * stiffness_of(friction, case[0])) for case in cases]
     for setting, point in zip(settings, program.run(f"{part}-{friction}", scene, settings, seeds)):
@@ -62,9 +61,12 @@ def rows_of(program, part, friction, cases, seeds=SEEDS, stiffer=1, density=SCEN
 
 
 def layer_peaks(path, radii):
-    """Yields, of a final configuration, the largest |sum of exp(i k r)|^2 / N of the spheres of these radii, along the
-    gradient and along the vorticity, among the waves that are 0.75 to 1.3 mean diameters long. Where nothing is ordered
-    it is the peak of a liquid's structure factor, the same for both; of perfect layers it is N."""
+    """Yields the largest |sum of exp(i k r)|^2 / N of spheres of these radii in a final configuration, along the
+    gradient and along the vorticity.
+
+    Wavelengths are 0.75 to 1.3 mean diameters. Without order this is the peak of a liquid's structure factor, equal for
+    both directions; for perfect layers it is N.
+    """
     edges, places, radius = read_final(path)
     chosen = np.isin(radius, radii)
     diameter = 2 * radius[chosen].mean()
@@ -110,8 +112,7 @@ LAW = "jammed", "prefactor", "exponent"
 
 
 def jamming_rows(program, friction):
-    """The law of the divergence through the points of each share of grains, with one exponent for all: what `peclet
-    jamming` says of the campaign."""
+    """Yields the law of divergence for each share of grains, with one exponent for all, from `peclet jamming`."""
     found = program.asked("jamming", f"curve-{friction}", "--common-exponent")
     exponent = found["common"]["exponent"]
     for curve in sorted(found["curves"], key=lambda c: c["settings"]["/particles/mixture/alpha"]):
@@ -135,12 +136,12 @@ def jammed_at(points, friction):
 
 
 def modelled(alpha, friction):
-    """Returns what the two models say."""
+    """Returns the jamming volume fractions of the two models."""
     return [model(alpha) for model in packing_models(ALONE[friction]).values()]
 
 
 def distance_from_models(of_alpha, friction):
-    """Returns the root of the mean square distance of phi_m from the nearer of the two models."""
+    """Returns the rms distance of phi_m from the nearer of the two models."""
     said = np.array([modelled(alpha, friction) for alpha in of_alpha])
 
     def found(values):
@@ -151,7 +152,7 @@ def distance_from_models(of_alpha, friction):
 
 
 def slopes(of_alpha):
-    """Returns how fast phi_m rises from grains alone over how fast from colloids alone."""
+    """Returns the slope of phi_m at grains alone over that at colloids alone."""
     least = min(alpha for alpha in of_alpha if alpha > 0)
     ends = [number(of_alpha[alpha], "jammed") for alpha in (1, 0.9, least, 0)]
     return propagated(ends, lambda v: (v[1] - v[0]) / 0.1 / ((v[2] - v[3]) / least))
@@ -182,7 +183,7 @@ def map_rows(points):
 
 
 def dense_rows(points):
-    """Whether dense grains leave the jam when colloids are added, by phi_m."""
+    """Yields statements about unjamming of dense grains by added colloids, from phi_m."""
     of = jammed_at(points, 1)
 
     def room(alpha):
@@ -247,7 +248,7 @@ def draw():
 
 
 def quick_measure(program):
-    """Grains at which friction jams colloids or grains alone, mixed."""
+    """Yields statements that mixing lowers the viscosity near the volume fraction at which either group jams."""
     for friction, fraction in ((0, 0.6), (1, 0.54)):
         alone, mixed = rows_of(program, "quick", friction, [(0, 300, fraction), (0.7, 1000, fraction)], 4)
         text = f"μ = {friction}, φ = {fraction:g}: η_r at α = 0.7 over that of colloids alone"

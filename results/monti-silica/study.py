@@ -1,6 +1,5 @@
 #!/usr/bin/python3
-"""Flow curves of silica spheres that repel and attract each other, with two concentrations of salt, of Monti et al.
-(2021), Fig. 8."""
+"""Flow curves of silica spheres with repulsion and attraction at two salt contents (Monti et al. 2021, Fig. 8)."""
 import math
 import sys
 from pathlib import Path
@@ -15,7 +14,7 @@ from studies.monti import lubrication, spheres
 
 TITLE = "Silica with two concentrations of salt"
 FRACTION, FRICTION = 0.46, 0.5
-SALTS = {0.0214: "salt-free", 0.0048: "0.4 M"}  # by the Debye length: 9 and 2 nm of 420
+SALTS = {0.0214: "salt-free", 0.0048: "0.4 M"}  # by the Debye length over the radius: 9 and 2 nm over 420 nm
 FREE, SALTED = SALTS
 SCENE = merged(SCENE, spheres(512, FRACTION, 1.1, 0.5), in_strains(2, 8), lubrication=lubrication(0.15))
 # rate / rate_0 with rate_0 = (F_R + F_A) / (eta a^2).
@@ -24,22 +23,22 @@ SEEDS = 6
 SLOPE_RATES, SLOPE_SEEDS = [10**-0.5, 10**0.5], 24  # on both sides of 1
 SCANNED = {SALTED: (PROGRAM_RATIO, 3, 1, 0.5), FREE: (PROGRAM_RATIO, 1)}
 SCAN_RATES, SCAN_SEEDS = [1e-4, 1e-3, 1e-2, 0.1, 1, 10], 3
-OTHER_LENGTH = 0.005  # of 0.4 M, another rounding
+OTHER_LENGTH = 0.005  # Debye length at 0.4 M, rounded differently
 CHECKED, CHECK_SEEDS = [(FREE, 1e-5), (SALTED, 1e-5), (FREE, 0.1)], 8
 SHORT = {"particles": {"count": 200}, **in_strains(1, 3)}
-# Where attraction wins at contact, contacts are so stiff that it presses them by a hundredth of a radius.
+# Stiffness of contacts, and its smallest ratio to the attraction, which then compresses them by 0.01 radii.
 STIFFNESS, STIFFNESS_OVER_ATTRACTION = 4e5, 100
 
 
 def patch_of(rate, length, ratio, **others):
-    """Of one point; forces are in units of the viscosity and the rate."""
+    """Returns the patch of one point; forces are in units of viscosity * rate * a^2."""
     force = 1 / rate
     stiffness = max(STIFFNESS, STIFFNESS_OVER_ATTRACTION * force / (1 + ratio))
     return {"contact": contact(stiffness, FRICTION), **electrochemistry(force, ratio, length, **others)}
 
 
 def rows_of(program, name, cases, seeds, patch=None, **others):
-    """Rows of (Debye length, F_R / F_A, rate / rate_0)."""
+    """Returns rows for cases (Debye length, F_R / F_A, rate / rate_0)."""
     patches = [patch_of(rate, length, ratio, **others) for length, ratio, rate in cases]
     settings = [{f"/{key}": block for key, block in p.items()} for p in patches]
     points = program.run(name, merged(SCENE, patches[0], patch or {}), settings, seeds)
@@ -60,12 +59,12 @@ def curve_of(rows, length, ratio):
 
 
 def slope(low, high):
-    """d ln eta / d ln rate between two rows."""
+    """Returns d ln eta / d ln rate between two rows."""
     return over(logarithm(row_ratio(high, low, "viscosity")), math.log(high["rate"] / low["rate"]))
 
 
 def shape_rows(rows):
-    """Shapes are in a picture alone; what one expects of them are findings, 1 is no thinning or no thickening."""
+    """Yields findings about the shapes of curves, published in a figure only; 1 means no thinning or thickening."""
     cases = ((FREE, TABLE_RATIO, 0), (SALTED, TABLE_RATIO, 0), (FREE, TABLE_RATIO, -1))
     for length, ratio, end in (*cases, *((SALTED, ratio, -1) for ratio in (TABLE_RATIO, *SCANNED[SALTED]))):
         curve = curve_of(rows, length, ratio)
@@ -76,7 +75,8 @@ def shape_rows(rows):
 
 
 def slope_rows(rows, ends):
-    """The rate of 1 lies "within the shear-thickening region"; by their equation (14), and as their program has it."""
+    """Yields rows about the slope at a rate of 1, published as "within the shear-thickening region": by their equation
+    (14), and in the units of their program."""
     by_rate = {round(2 * math.log10(r["rate"])): r for r in curve_of(rows, FREE, TABLE_RATIO)}
     text = "salt-free: d ln η_r/d ln γ̇ at γ̇/γ̇₀ = 1"
     found, degrees = slope(*ends), ends[0]["seeds"] - 1
@@ -86,8 +86,8 @@ def slope_rows(rows, ends):
 
 
 def change(program, name, case, patch=None, **others):
-    """The relative change of the viscosity of the same packings of 200 spheres, over short windows, and its degrees of
-    freedom."""
+    """Returns the relative change of the viscosity of the same packings of 200 spheres over short windows, its standard
+    error and degrees of freedom."""
     points = []
     for kind, block, more in (("", {}, {}), ("-changed", patch or {}, others)):
         length, rate = case
@@ -98,7 +98,7 @@ def change(program, name, case, patch=None, **others):
 
 
 def method_numbers(program):
-    """By name: value, standard error, degrees of freedom."""
+    """Yields names and (value, standard error, degrees of freedom) of tests of the method."""
     for length, rate in CHECKED:
         automatic = program.derived(merged(SCENE, patch_of(rate, length, TABLE_RATIO)))["timestep"]
         name = f"steps-{length:g}-{rate:g}"
@@ -111,7 +111,7 @@ def method_numbers(program):
 
 def judge():
     table = read_rows(HERE / "table.csv")
-    # The slope at 1 has campaigns of its own, with more seeds.
+    # The slope at a rate of 1 has its own campaigns, with more seeds.
     most = max(r["seeds"] for r in table)
     ends = sorted((r for r in table if r["seeds"] == most), key=lambda r: r["rate"])
     rows = [r for r in table if r["seeds"] < most]

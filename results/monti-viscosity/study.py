@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Viscosities without noise of the suspensions of Monti et al. (2021), without and with friction, beside the fits of
-their Fig. 7."""
+"""Viscosities of the suspensions of Monti et al. (2021) without noise, without and with friction, compared with the
+fits of their Fig. 7."""
 import itertools
 import math
 import sys
@@ -20,29 +20,30 @@ GAPS = (0.05, 0.2)
 NAMES = {0: "FL", 1: "FR"}  # of their Table 1, by friction
 COUNTS = {0: 200, 1: 1000}
 FRACTIONS = {0: (0.30, 0.40, 0.45, 0.50, 0.55, 0.57), 1: (0.30, 0.40, 0.45, 0.50, 0.53, 0.55)}
-# Where their fits are compared: 1.4 and 0.71 of them are not 1 without spheres, and near phi_J every error is large.
-COMPARED = {0: (0.40, 0.55, 0.1), 1: (0.30, 0.50, 0.15)}  # from, to, and how far off counts as agreement
-# Of free fits: all points, and those of one power of 1 - phi / phi_J (chosen after looking): not the dilute ones, nor
-# the densest with friction, where the contacts are too soft.
+# Volume fractions at which their fits are compared, and the tolerance: the fits are not 1 without spheres, and errors
+# are large near phi_J.
+COMPARED = {0: (0.40, 0.55, 0.1), 1: (0.30, 0.50, 0.15)}
+# Volume fractions of free fits: all points, and those that follow one power of 1 - phi / phi_J (chosen from the
+# results), without the dilute ones, and without the densest with friction, where contacts are too soft.
 FITTED = {"all": {0: (0.30, 0.57), 1: (0.30, 0.55)}, "one power": {0: (0.45, 0.57), 1: (0.40, 0.53)}}
 SCENE = merged(PAIRS, in_strains(2, 8))
 SEEDS = {0: 48, 1: 8}
 
-# What might move a viscosity away from the fit: of FL and FR at these fractions, at the gap of 0.05.
+# Volume fractions of variants that may move a viscosity away from the fit, at a gap of 0.05, by friction.
 VARIED = {0: (0.30, 0.50), 1: (0.30, 0.50, 0.53, 0.55)}
-SCANNED = (1e-2, 3e-4, 1e-4)  # regularisations beside 1e-3; the later two at the gap of 0.2, too
-WIDE = 0.5  # beyond either published gap
+SCANNED = (1e-2, 3e-4, 1e-4)  # regularisations besides 1e-3; the last two also at the gap of 0.2
+WIDE = 0.5  # a gap beyond the published ones
 STIFF = contact(4e6, 0)
 OTHER_COUNTS = {0: 1000, 1: 250}
 VARIANT_SEEDS = 6
 
-ROLLING = {"contact": {"rolling_stiffness": 4e5 / 7, "rolling_friction": 0.1}}  # of their program
+ROLLING = {"contact": {"rolling_stiffness": 4e5 / 7, "rolling_friction": 0.1}}  # as in their program
 ROLLED = (0.45, 0.50)
 LONG = in_strains(20, 8)
 
 
 def rows_of(program, name, cases, seeds, patch=None, block=lubrication):
-    """Rows of (friction, volume fraction, gap); block(gap) is their lubrication."""
+    """Returns rows for cases (friction, volume fraction, gap); block(gap) is the lubrication block."""
     friction = cases[0][0]
     fixed = {"particles": {"count": COUNTS[friction]}, "contact": {"friction": friction}}
     settings = [{"/volume_fraction": f, "/lubrication": block(g)} for _, f, g in cases]
@@ -75,12 +76,11 @@ def compared(rows, friction, gap):
 
 
 def distance_from(rows):
-    """Returns the root of the mean square of ln(eta / fit) with pairs counted twice, less that with pairs counted
-    once."""
+    """Returns the rms of ln(eta / fit) with pairs counted twice, minus that with pairs counted once."""
     fractions, fits = column(rows, "fraction"), column(rows, "fit")
 
     def found(pairs):
-        # Both are of the same pairs: drawn together, twice the pairs has twice the deviation.
+        # Both use the same draws of the pair stress.
         ratios = (1 + 2.5 * fractions + np.outer((2, 1), pairs)) / fits
         double, single = np.sqrt(np.square(np.log(np.maximum(ratios, 1e-9))).mean(axis=1))
         return float(double - single)
@@ -89,8 +89,8 @@ def distance_from(rows):
 
 
 def fit_rows(rows, fits):
-    """How near "satisfying" and "excellent agreement" are is not in print, nor is the regularisation on which it
-    depends: 10 and 15 %, beside the verdict."""
+    """Yields rows about the fits. "Satisfying" and "excellent agreement" have no published numbers, and depend on a
+    regularisation that is not published: they are tested to 10 and 15 %, and are not essential."""
     for friction, name in NAMES.items():
         low, high, share = COMPARED[friction]
         for gap in GAPS:
@@ -108,7 +108,7 @@ def fit_rows(rows, fits):
 
 
 def unit_numbers(program):
-    """The same point in two other systems of units; numbers that are powers of two round alike."""
+    """Yields differences of a point in two other systems of units. Units that are powers of two round equally."""
     name = "FL, φ = 0.5, gap 0.05, 8 seeds"
     base = merged(SCENE, in_strains(1, 2), particles={"count": 200})
     found = []
@@ -123,7 +123,7 @@ def unit_numbers(program):
 
 
 def unit_rows(numbers):
-    """Three groups are all that the equations have."""
+    """Yields statements that viscosities depend on the three dimensionless groups alone."""
     for text, (*found, degrees) in numbers.items():
         yield Statement(text, "M eq 11", *found, *((0, 1e-4) if "largest" in text else (-0.03, 0.03)), degrees)
 
@@ -141,13 +141,15 @@ def rolling_rows(rows, rolled):
 
 
 def regularisation_that_fits(scan):
-    """Of (regularisation, ratio of a viscosity to the fit, its error): log10 of that at which the ratio is 1, between
-    neighbours in proportion to its logarithm, and the error of that."""
+    """Returns log10 of the regularisation at which the viscosity is that of the fit, and its error.
+
+    `scan` has (regularisation, viscosity over the fit, its error); logarithms are interpolated linearly.
+    """
     scan = sorted(scan)
     places = np.log10([value for value, _, _ in scan])
 
     def found(ratios):
-        # Viscosities fall as the regularisation grows.
+        # Viscosities decrease with the regularisation.
         logs = np.log(np.maximum(ratios, 1e-9))
         return float(np.interp(0, logs[::-1], places[::-1]))
 
@@ -155,7 +157,7 @@ def regularisation_that_fits(scan):
 
 
 def regularisation_rows(of_variant):
-    """What a publication that does not print its regularisation would have had; none where the scan does not reach."""
+    """Yields findings about the regularisation that the published fits correspond to, where the scan includes it."""
     prefix = "regularisation "
     values = {float(k.removeprefix(prefix)): rows for k, rows in of_variant.items() if k.startswith(prefix)}
     values = {1e-3: of_variant[""]} | values
@@ -178,7 +180,7 @@ def judge():
     yield from regularisation_rows(of_variant)
     yield from unit_rows(read_numbers(HERE / "numbers.csv"))
     yield from rolling_rows(rows, of_variant["rolling"])
-    for row in of_variant["strain of 20 before"]:  # another start than the published one, a dense packing
+    for row in of_variant["strain of 20 before"]:  # the published start, a dense packing, is different
         early = first(rows, **{name: row[name] for name in ("system", "gap", "fraction")})
         text = f"{row['system']}, φ = {row['fraction']:g}: η_r after a strain of 20 over that after 2"
         yield Check(text, "start", *row_ratio(row, early, "viscosity"), 0.95, 1.05, row["seeds"] - 1)
@@ -189,7 +191,7 @@ def regularised(value):
 
 
 def variants_of(friction):
-    """Name, patch, lubrication, gap and, where it is not at all of VARIED, the fractions."""
+    """Yields the variants: name, patch, lubrication, gap, and volume fractions (None: those of VARIED)."""
     stiff, count = {"contact": STIFF | {"friction": friction}}, OTHER_COUNTS[friction]
     for value in SCANNED:
         for gap in GAPS if value < 1e-3 else GAPS[:1]:
@@ -230,7 +232,7 @@ def measure(program):
 
 
 def fit_row(rows, friction, gap, part):
-    """c, phi_J and lambda through these points of a curve, each with its error."""
+    """Returns the row of a fit of c, phi_J and lambda, with errors, to a part of a curve."""
     curve = between(rows, friction, gap, *FITTED[part][friction])
     fractions = [r["fraction"] for r in curve]
     row = {"system": NAMES[friction], "gap": gap, "from": min(fractions), "to": max(fractions)}

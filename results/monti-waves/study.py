@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Shear with and without a wave of the rate, large and small spheres with friction, repulsion and attraction: Monti et
-al. (2021), Table 3 and Fig. 10."""
+"""Shear with and without a wave of the rate, for large and small spheres with friction, repulsion and attraction (Monti
+et al. 2021, Table 3 and Fig. 10)."""
 import math
 import os
 import sys
@@ -18,12 +18,12 @@ TITLE = "A wave in the shear of Monti et al."
 FRACTION, SHARE, LARGE = 0.5, 0.2, 3.0  # V2/V1 = 0.25
 COUNT, SMALL_COUNT, SMALLEST_COUNT = 65536, 8192, 2048
 AMPLITUDE = 20  # of the wave at N = 65536
-STRAIN, LARGE_STRAIN = 6, 3  # of the window, from the start; of N = 65536
-BLOCKS, QUARTERS, PARTS = 32, 4, 6  # of the window; of its last three quarters, of which means are
-PROFILES = "fraction", "velocity", "small", "large"  # profiles_of()
-# Touching forces F_R + F_A of the small spheres and F_R/F_A, at rate = rate_0.
+STRAIN, LARGE_STRAIN = 6, 3  # of the window, which begins at the start; of N = 65536
+BLOCKS, QUARTERS, PARTS = 32, 4, 6  # blocks and quarters of the window; parts of its last three quarters
+PROFILES = "fraction", "velocity", "small", "large"  # as from profiles_of()
+# Force F_R + F_A of small spheres in contact, and F_R/F_A, at rate = rate_0.
 FORCES = {"table": (1.0, TABLE_RATIO), "program": (DRAG, PROGRAM_RATIO)}
-# Spheres, forces, whether there is a wave, and whether the spheres feel its curvature; seeds.
+# Runs: number of spheres, forces, with a wave, with the Faxen terms of its curvature; and seeds.
 WAVES = (False, True), (True, True)
 RUNS = {(SMALL_COUNT, "table", *wave): 6 for wave in (*WAVES, (True, False))}
 RUNS |= {(SMALLEST_COUNT, forces, *wave): 8 for forces in FORCES for wave in WAVES}
@@ -43,18 +43,18 @@ def strain_of(count):
 
 
 def edge(count):
-    """Of the cell: N spheres of mean volume 4 pi / 3 over the sum of shares / a^3."""
+    """Returns the edge of the cell with N spheres; their mean volume is 4 pi / 3 over the sum of shares / a^3."""
     volume = count * 4 * math.pi / 3 / (1 - SHARE + SHARE / LARGE**3)
     return (volume / FRACTION) ** (1 / 3)
 
 
 def amplitude(count):
-    """Of the wave that changes the rate as much as theirs does: by 20 k = 1.429 of it, k = 2 pi / L."""
+    """Returns the amplitude of a wave that changes the rate as much as theirs, by 20 k = 1.429 of it, k = 2 pi / L."""
     return AMPLITUDE * edge(count) / edge(COUNT)
 
 
 def patch_of(count, forces, wave, faxen=True):
-    """Bins of two radii."""
+    """Returns the patch of a run; bins are two radii high."""
     flow = {"shear_rate": 1.0}
     if wave:
         flow |= {"waves": [{"periods": 1, "sine": amplitude(count)}], "faxen": faxen}
@@ -63,7 +63,7 @@ def patch_of(count, forces, wave, faxen=True):
 
 
 def results_of(program, name, patch, seeds):
-    """Whole results of one point, by seed, and the paths of their final configurations."""
+    """Returns the whole results of one point, by seed, and the paths of their final configurations."""
     if seeds == 1:
         result = program.run_alone(name, merged(SCENE, patch), threads=1)
         return [result], [os.path.join(program.folder, f"{name}.final.xyz")]
@@ -72,27 +72,26 @@ def results_of(program, name, patch, seeds):
 
 
 def later_mean(result):
-    """Of eta_r over the last three quarters of the window, and its standard error within the run: of means over six
-    parts."""
+    """Returns the mean of eta_r over the last three quarters of the window, and its error from means over six parts."""
     series = np.array(result["blocks"]["relative_viscosity"])[BLOCKS // QUARTERS :]
     return estimate(series.reshape(PARTS, -1).mean(axis=1))
 
 
 def mean_of(results):
-    """Of several seeds: of their means; of a single one: within it."""
+    """Returns the mean of eta_r and its error, over seeds, or within the run for a single seed."""
     if len(results) == 1:
         return later_mean(results[0])
     return estimate([later_mean(r)[0] for r in results])
 
 
 def slowed(heights):
-    """Whether the wave lowers the rate at these heights y / L."""
+    """Returns True where the wave lowers the rate; heights are y / L."""
     return np.cos(2 * math.pi * heights) < 0
 
 
 def profiles_of(result):
-    """Volume fraction, the velocity relative to the uniform shear, and the volume fractions of the small and of the
-    large spheres, over the last half of the window."""
+    """Returns the profiles over the second half of the window: volume fraction, velocity relative to the uniform shear,
+    and volume fractions of small and of large spheres."""
 
     def late(part):
         return np.array(part)[QUARTERS // 2 :].mean(axis=0)
@@ -108,20 +107,20 @@ def middles(values):
 
 
 def followed(result, count):
-    """Returns the wave of the spheres' velocity over that of the fluid."""
+    """Returns the amplitude of the wave in the spheres' velocity over that of the fluid."""
     velocity = profiles_of(result)[1]
     return 2 * np.mean(velocity * np.sin(2 * math.pi * middles(velocity))) / amplitude(count)
 
 
 def gathered(volume):
-    """Returns the volume fraction of the half of the cell where the wave lowers the rate less that of the other half,
+    """Returns the volume fraction in the half of the cell where the wave lowers the rate, minus that of the other half,
     over the mean."""
     slow = slowed(middles(volume))
     return (volume[slow].mean() - volume[~slow].mean()) / volume.mean()
 
 
 def shares_where_slow(path):
-    """Returns, of a final configuration, the shares of the small and of the large spheres in the half of the cell where
+    """Returns the shares of the small and of the large spheres of a final configuration in the half of the cell where
     the wave lowers the rate."""
     edges, places, radius = read_final(path)
     slow = slowed(places[1] / edges[1])
@@ -145,8 +144,8 @@ def row_of(run, results, paths):
 
 
 def step_change(program, seeds):
-    """Of eta_r with half of the automatic step: nothing in a result tells the step's error in a wave. Over a strain of
-    1 packings have not forgotten their seeds."""
+    """Returns the relative change of eta_r with half of the automatic step, because results do not have the error of
+    the step in a wave. Over a strain of 1 runs with the same seed stay correlated."""
     patch = merged(patch_of(1000, "program", True), in_strains(0, 1))
     automatic = program.derived(merged(SCENE, patch))["timestep"]
     whole, half = (
@@ -194,13 +193,13 @@ def measure(program):
         series[run] = np.mean([r["blocks"]["relative_viscosity"] for r in results], axis=0)
         profiles[run] = np.mean([profiles_of(r) for r in results], axis=0)
     write_tables(rows, series, profiles)
-    # Of eta_r, by the terms of the curvature.
+    # Relative change of eta_r by the Faxen terms.
     faxen = relative_difference(*(by_seed[SMALL_COUNT, "table", True, faxen] for faxen in (True, False)), paired=True)
     write_numbers(HERE / "numbers.csv", {"faxen": faxen, "step": step_change(program, 12)})
 
 
 def strains_of(run):
-    """In the middle of the blocks."""
+    """Returns the strains in the middle of the blocks."""
     return ((np.arange(BLOCKS) + 0.5) * strain_of(run[0]) / BLOCKS).tolist()
 
 
@@ -220,7 +219,7 @@ def write_tables(rows, series, profiles):
 
 
 def read_series():
-    """Returns, by run, the viscosity of the blocks, and profiles as profiles_of() has them."""
+    """Returns the viscosities of blocks, and the profiles as from profiles_of(), both by run."""
     names = {name_of(run): run for run in RUNS | LARGE_RUNS}
     series, profiles = (groups(read_rows(HERE / f"{name}.csv"), "run") for name in ("series", "profiles"))
     return {names[name]: column(rows, "viscosity") for name, rows in series.items()}, {

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Storage and loss of a Brownian suspension by shear to and fro, beside those of linear response, and from which
-amplitude on they are no longer those."""
+"""Storage and loss moduli of a Brownian suspension in oscillatory shear, compared with linear response, and the
+amplitude at which they differ."""
 import math
 import sys
 from pathlib import Path
@@ -23,10 +23,10 @@ SCENE = merged(
     observables=["stress", "oscillation"],
     duration={"equilibration": None, "production": None},
 )
-# Over the Brownian frequency, of those that the table at rest has; cycles of the window, and seeds.
+# Frequencies over the Brownian one, from the table at rest; cycles of the window, and seeds.
 FREQUENCIES = {0.86806: (32, 96), 3.4722: (64, 24), 6.9444: (128, 24)}
 MIDDLE, SMALL = 3.4722, 0.1
-AMPLITUDES = {0.05: 48, 0.1: 24, 0.3: 12, 1.0: 12}  # at the frequency in the middle, with seeds
+AMPLITUDES = {0.05: 48, 0.1: 24, 0.3: 12, 1.0: 12}  # amplitudes at the middle frequency, with seeds
 NAMES = "storage", "loss", "third_storage", "third_loss"
 
 
@@ -42,7 +42,7 @@ def settings_of(frequency, amplitude):
 
 
 def row_of(program, frequency, amplitude, seeds):
-    """Moduli in units of kT / a^3, a = 1."""
+    """Returns the row of a frequency and an amplitude, with moduli in units of kT / a^3, a = 1."""
     name = f"{frequency:g}-{amplitude:g}"
     (point,) = program.run(name, SCENE, [settings_of(frequency, amplitude)], seeds, "loss_modulus")
     row = {"frequency": frequency, "amplitude": amplitude, "seeds": len(point.results)}
@@ -68,7 +68,7 @@ def at_rest():
 
 
 def size_of_third(row):
-    """Of the third harmonic over that of the first, and its standard error."""
+    """Returns the size of the third harmonic over that of the first, and its standard error."""
     (storage, its), (loss, of_loss) = number(row, "third_storage"), number(row, "third_loss")
     size = math.hypot(storage, loss)
     error = math.hypot(storage * its, loss * of_loss) / size
@@ -114,7 +114,7 @@ def draw():
 
 
 def quick_measure(program):
-    """Of a dilute fluid without noise the loss is that of Einstein and the storage that of inertia, none."""
+    """Yields checks of a dilute suspension without noise: its loss is Einstein's, its storage is that of inertia, 0."""
     scene = merged(
         SCENE, particles={"count": 50, "density": 1e-3}, volume_fraction=0.05, fluid={"thermal_energy": None}
     )

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Shear that is reversed, stopped or shaken across, and planar extension beside shear."""
+"""Shear that is reversed, stopped, or combined with oscillatory cross shear; planar extension compared with shear."""
 import math
 import sys
 from pathlib import Path
@@ -18,7 +18,7 @@ REVERSED, REVERSAL_SEEDS, BEFORE, AFTER, BINS = 0.50, 48, 4, 5, 100
 EXTENSION = {0.02: 8, 0.30: 12, 0.40: 12, 0.50: 16}  # volume fraction and seeds
 RATE = 1.0  # sqrt(2 E:E) of both flows
 SHAKEN, SHAKEN_SEEDS = 0.54, 8
-# Amplitude, frequency over the rate.
+# Amplitudes of the cross shear, and frequencies over the rate.
 SHAKES = (0.01, 30), (0.01, 100), (0.01, 300), (0.03, 30), (0.03, 100), (0.1, 30)
 
 
@@ -28,8 +28,10 @@ def point_of(program, name, patch, seeds, settings, observable="relative_viscosi
 
 
 def reversal_rows(program, levels):
-    """Of a flow that goes on, and of one that is reversed, with friction and without. `levels` takes their means over
-    the window and over its last fifth, with errors of the seeds."""
+    """Yields rows of a steady flow and of one that is reversed, with and without friction.
+
+    Adds to `levels` their means over the window and over its last fifth, with errors over seeds.
+    """
     turned = [{"shear_rate": RATE, "strain": BEFORE}, {"shear_rate": -RATE}]
     for name, contact in (("friction", FRICTION), ("none", {"contact": {"normal_stiffness": 2e5}})):
         for flow, segments in (("reversed", turned), ("steady", [{"shear_rate": RATE}])):
@@ -51,7 +53,7 @@ def extension_rows(program):
     for fraction, seeds in EXTENSION.items():
         patch = {"volume_fraction": fraction, "contact": {"normal_stiffness": 2e5}, **in_strains(1, 6)}
         shear = point_of(program, f"shear-{fraction:g}", patch, seeds, {"/flow/shear_rate": RATE})
-        # Hencky strains, so that the invariants of both strains are the same.
+        # Hencky strains, so that the invariants of both strains are equal.
         patch |= in_strains(0.5, 3)
         extension = point_of(program, f"extension-{fraction:g}", patch, seeds, {"/flow/extension_rate": RATE / 2})
         row = {"fraction": fraction, "seeds": min(len(shear.results), len(extension.results))}
@@ -61,7 +63,7 @@ def extension_rows(program):
 
 
 def shaken_rows(program):
-    """The dissipation is that of both shears, over that of the steady one alone without shaking."""
+    """Yields rows of cross shear. The dissipation is that of both shears over viscosity * rate^2 of the steady one."""
     patch = merged(FRICTION, contact={"normal_stiffness": 1e6}, volume_fraction=SHAKEN)
     patch |= in_strains(2, 8)
     still = point_of(program, "still", patch, SHAKEN_SEEDS, {"/flow/shear_rate": RATE})
@@ -150,7 +152,7 @@ def draw():
 
 
 def quick_measure(program):
-    """Extension of a dilute suspension has the viscosity of shear; both are of one invariant."""
+    """Yields checks that a dilute suspension has the same viscosity in extension and in shear."""
     patch = {"volume_fraction": 0.05, "particles": {"count": 50}, **in_strains(0.1, 1)}
     for name, settings in (("shear", {"/flow/shear_rate": 1}), ("extension", {"/flow/extension_rate": 0.5})):
         value = point_of(program, name, patch, 4, settings).measured("relative_viscosity")

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# packings.sh [SEEDS [COUNT]]: how many of the first SEEDS seeds (20) find a packing of COUNT spheres (1000) at each volume fraction.
+# packings.sh [SEEDS [COUNT]]: counts the seeds, of the first SEEDS (20), that find a packing of COUNT spheres (1000) at
+# each volume fraction.
 set -euo pipefail
 seeds=${1:-20} count=${2:-1000}
 folder=$(mktemp -d)

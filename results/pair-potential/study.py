@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Two spheres in a cube of edge 4 a: their distances, and the potential of mean force that follows."""
+"""Two spheres in a cube of edge 4 a: the distribution of their distances, and the potential of mean force."""
 import math
 import sys
 from pathlib import Path
@@ -11,7 +11,7 @@ from studies.driver import over, read_numbers, write_numbers, write_rows
 import numpy as np
 
 TITLE = "Potential of mean force of two spheres"
-THERMAL_ENERGY, STIFFNESS = 0.017, 170.0  # a thermal overlap sqrt(kT / k_n) of 0.01 a
+THERMAL_ENERGY, STIFFNESS = 0.017, 170.0  # thermal overlap sqrt(kT / k_n) = 0.01 a
 BIN = 0.005
 INNER, OUTER = 2.001, 2.05  # distances at the gaps of lubrication
 SCENE = {
@@ -25,19 +25,19 @@ SCENE = {
     "pair_distribution": {"range": 2.825, "bin": BIN, "slab": 0.1, "interval": 0.1},
     "guard": {"largest_overlap": 0.2},
 }
-# Method, seeds and Brownian times of each.
+# Method, seeds, Brownian times of each seed.
 RUNS = [("implicit", 64, 4000), ("explicit", 32, 1000)]
 QUICK_RUNS = [("implicit", 16, 1200)]
 
 
 def contact_energy(distance):
-    """U / kT of the contact, k_n (2 a - r)^2 / 2 kT."""
+    """Returns U / kT of the contact, k_n (2 a - r)^2 / 2 kT."""
     return STIFFNESS * np.maximum(2 - distance, 0) ** 2 / (2 * THERMAL_ENERGY)
 
 
 def densities(point):
-    """Distances and, by seed and bin: counts over ideal counts, normalised to 1 between 2.2 and 2.8 a, where there are
-    no forces."""
+    """Returns distances, and counts over ideal counts (seeds, bins), normalised to 1 between 2.2 and 2.8 a, where
+    forces are absent."""
     radial = [r["mean"]["pair_distribution"]["radial"] for r in point["realisations"]]
     distance = np.array(radial[0]["r"])
     counts, ideal = (np.array([r[name] for r in radial]) for name in ("counts", "ideal"))
@@ -47,7 +47,7 @@ def densities(point):
 
 
 def mean_density(distance, rows, low, high):
-    """Mean over the shells between two distances, with its standard error over seeds."""
+    """Returns the mean density over the shells between two distances, with its standard error over seeds."""
     chosen = (low < distance) & (distance < high)
     return estimate(np.average(rows[:, chosen], axis=1, weights=distance[chosen] ** 2))
 
@@ -58,8 +58,7 @@ def potential(distance, rows, low, high):
 
 
 def contact_ratio(distance, rows):
-    """Density of overlaps up to two thermal ones over the mean of exp(-U / kT) there, weighted with r^2 as the density
-    is."""
+    """Returns the density at overlaps up to two thermal ones over the mean of exp(-U / kT), both weighted with r^2."""
     low, parts = 1.98, 2000
     r = low + (2 - low) * (np.arange(parts) + 0.5) / parts
     expected = np.average(np.exp(-contact_energy(r)), weights=r**2)
@@ -71,13 +70,13 @@ AT_OUTER = "no step of U / kT at the outer gap, means over 0.04 and 0.1 a"
 AT_INNER = "no step of U / kT at the inner gap"
 OVERLAPS = "density of overlaps over that of U = k_n δ² / 2"
 SHELLS = "no step of U / kT from the shell of 0.005 a within the outer gap to the next one"
-# What the automatic step of a method is known to get wrong: its row is a check of the method, and the other method
-# judges. Velocity Verlet makes overlaps too rare by 1 - λ Δt / 2; an implicit step crosses the outer gap.
+# Known errors of a method at its automatic step. Their rows are checks of the method, and the other method decides.
+# Velocity Verlet has too few overlaps, by the factor 1 - λ Δt / 2; implicit steps cross the outer gap.
 KNOWN = {("explicit", OVERLAPS), ("implicit", SHELLS)}
 
 
 def numbers_of(method, distance, rows):
-    """By name: value, standard error, degrees of freedom."""
+    """Returns (value, standard error, degrees of freedom) by name."""
     inner, outer = (potential(distance, rows, *ends) for ends in ((2.005, 2.045), (2.055, 2.155)))
     touching = potential(distance, rows, 2.0, 2.005)
     inside, outside = (potential(distance, rows, *ends) for ends in ((2.045, 2.05), (2.05, 2.055)))
@@ -93,7 +92,7 @@ def numbers_of(method, distance, rows):
 
 
 def judged(numbers, tolerance):
-    """A tenth of kT, or of the density, is what the published pictures show."""
+    """Yields the rows. The tolerance, 0.1 kT or 0.1 of the density, is the resolution of the published figures."""
     for name, (*found, degrees) in numbers.items():
         method, what = name.split(" steps: ")
         kind, source = (Check, "step") if (method, what) in KNOWN else (Statement, "L4.1")

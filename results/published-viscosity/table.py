@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""peclet export campaign.json | table.py, and the same with outer-gap.json
+"""peclet export campaign.json | table.py, also with outer-gap.json
 
-Prints the relative viscosities of the campaign beside the fits of Mari et al. as quoted by Monti et al. (2021):
+Prints the relative viscosities of a campaign beside the fits of Mari et al. as quoted by Monti et al. (2021):
 1.4 (1 - phi/0.66)^-1.6 without friction and 0.71 (1 - phi/0.575)^-2.3 with friction coefficient 1.
-Every seed that has ended counts, extra ones too.
+All seeds that have ended are included.
 """
 import json
 import sys

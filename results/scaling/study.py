@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Time of a run against the number of particles."""
+"""Processor time of a run against the number of particles."""
 import statistics
 import sys
 from pathlib import Path
@@ -12,22 +12,24 @@ import numpy as np
 
 TITLE = "Time against the number of particles"
 SCENE = merged(REFERENCE_SCENE, at_peclet(1), duration={"equilibration": {"time": 0}})
-PUBLISHED = 10000  # the largest number in print
+PUBLISHED = 10000  # largest published number of particles
 COUNTS = (10, 30, 100, 300, 1000, 3000, PUBLISHED, 30000, 100000)
-QUICK_COUNTS = (100, 1000, 4000)  # with fewer spheres the price of a step itself counts
+QUICK_COUNTS = (100, 1000, 4000)  # with fewer spheres the fixed cost of a step matters
 ONE_THREAD = ("--workers", "1", "--threads", "1")
-SHORT = 36  # steps of the shorter run of a pair; automatic steps are at most a 32nd of the window
+SHORT = 36  # steps of the shorter run of a pair; a window has at least 32 steps
 CLOCKS = {"processor": "cpu_seconds", "wall": "wall_seconds"}
 
 
 def times(program, counts, rounds, particle_steps, method="implicit"):
-    """By number of particles: of every round, ns of processor and of wall time for a step of a particle, from what a
-    longer run takes more than a shorter one: packing, start and end drop out."""
+    """Returns rows by number of particles with ns of processor and wall time per particle-step, for every round.
+
+    Times are differences of a longer and a shorter run, which removes packing, start and end.
+    """
     scene = merged(SCENE, integrator={"method": method})
     step = program.derived(merged(scene, duration={"production": {"time": 1}}))["timestep"]
     settings, more = [], [max(SHORT, round(particle_steps / count)) for count in counts]
     for count, steps in zip(counts, more):
-        # Half a step less than whole ones, so that rounding makes none more.
+        # Half a step less, so that rounding does not add a step.
         for n in (SHORT, SHORT + steps):
             settings.append({"/particles/count": count, "/duration/production/time": (n - 0.5) * step})
     points = program.run(f"scaling-{method}", scene, settings, rounds, "relative_viscosity_pair", ONE_THREAD)
@@ -44,8 +46,10 @@ def row_of(count, short, longer):
 
 
 def exponent(table, largest, time):
-    """Of the time of a step against N: least squares in logarithms through the medians of the rounds; the error is that
-    of the mean of the exponents of single rounds."""
+    """Returns the exponent of the time of a step against N, from a line through logarithms of medians over rounds.
+
+    The error is that of the mean of the exponents of single rounds.
+    """
     rows = [r for r in table if r["particles"] <= largest]
     counts = np.array([r["particles"] for r in rows])
 
@@ -57,13 +61,13 @@ def exponent(table, largest, time):
 
 
 def number_of(method, table, largest, time="processor"):
-    """Name and value, standard error, degrees of freedom of an exponent."""
+    """Returns the name of an exponent, and its value, standard error and degrees of freedom."""
     name = f"{method} steps: exponent of {time} time, N = {table[0]['particles']} to {largest}"
     return name, (*exponent(table, largest, time), len(table[0][time]) - 1)
 
 
 def judge():
-    """Up to the published number of spheres, by processor time; other rows go beyond print."""
+    """Yields the statement about processor time up to the published number of spheres, and findings beyond it."""
     for name, (*found, degrees) in read_numbers(HERE / "numbers.csv").items():
         if name.endswith(f"processor time, N = 10 to {PUBLISHED}"):
             yield Statement(f"{name} (published: 1)", "L4.4", *found, 0.9, 1.1, degrees)
@@ -81,7 +85,7 @@ def table_row(method, row):
 
 def measure(program):
     implicit = times(program, COUNTS, 5, 1e6)
-    # Their steps cost little: more of them, or the difference of two packings is what is measured.
+    # Explicit steps are cheap: with few of them the difference would be that of two packings.
     explicit = times(program, [n for n in COUNTS[::2] if n <= PUBLISHED], 10, 2e7, "explicit")
     rows = [table_row(m, row) for m, table in (("implicit", implicit), ("explicit", explicit)) for row in table]
     write_rows(HERE / "table.csv", rows, 4)
@@ -92,7 +96,7 @@ def measure(program):
 
 
 def draw(rows):
-    """The table."""
+    """Draws the table."""
     figure = Figure(HERE / "chart.png", columns=2)
     axes = {"log": "xy", "key": "top left", "x_range": (5, 200000)}
     of_step = figure.panel("N", "processor time of a step, s", powers="xy", **axes)
@@ -111,7 +115,7 @@ def draw(rows):
 
 
 def quick_measure(program):
-    """Nearer to a constant number of neighbours than to none or all, which a busy machine does not change."""
+    """Returns a statement about the exponent that a busy machine does not change: nearer to 1 than to 0 or 2."""
     name, (value, error, degrees) = number_of("implicit", times(program, QUICK_COUNTS, 5, 2e5), QUICK_COUNTS[-1])
     return [Statement(name, "L4.4", value, error, 0.5, 1.5, degrees)]
 

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """lammps.py BIN [--packings 6] [--lammps lmp]
 
-The point of LAMMPS in the chart: shears packings of the reference scene by 2 with Debian's LAMMPS, in explicit steps of
-half of the largest stable one of this engine, and sixteen packings of its own with the peclet-engine in BIN at its
-default step. Viscosities are means over the second half. Writes lammps.csv beside this script; some five minutes for
-each packing of LAMMPS.
+Measures the point of LAMMPS in the chart and writes lammps.csv beside this script. Shears packings of the reference
+scene by a strain of 2 with Debian's LAMMPS, in explicit steps of half of the largest stable one of peclet-engine, and
+16 other packings with the peclet-engine in BIN at its default step. Viscosities are means over the second half. Takes
+about five minutes for each packing of LAMMPS.
 """
 import argparse
 import concurrent.futures

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""What a step costs, and what it does to the viscosity: relative difference from the reference over the processor time
-to a standard error of 2 %, and the same of the pressure where it is known. lammps.csv has points of LAMMPS."""
+"""Cost of a step and its effect on viscosity and pressure: relative difference from the reference over the processor
+time to a standard error of 2 %. lammps.csv has points of LAMMPS."""
 import math
 import sys
 from pathlib import Path
@@ -35,7 +35,7 @@ def median(values):
 
 
 def variants(case, automatic, largest):
-    """Of every variant, the finest first: method, factor, tolerance, seeds, step, integrator block."""
+    """Yields the variants of a case, the finest first: method, factor, tolerance, seeds, step, integrator block."""
 
     def block(method, factor, step, **more):
         timestep = "auto" if factor == (1 if method == "implicit" else 0.5) else step
@@ -53,7 +53,7 @@ def variants(case, automatic, largest):
 
 
 def made_of(name, case, scene, program, quick):
-    """A row for each variant, with `values` by seed and the `cost` of a realisation."""
+    """Yields a row for each variant, with `values` by seed and the `cost` of a realisation."""
     automatic = program.derived(merged(scene, integrator={"method": "implicit"}))["timestep"]
     largest = 2 * program.derived(merged(scene, integrator={"method": "explicit"}))["timestep"]
     for method, factor, tolerance, seeds, step, integrator in variants(case, automatic, largest):
@@ -70,7 +70,7 @@ def made_of(name, case, scene, program, quick):
 
 
 def relative_variance(made):
-    """Seeds decide the scatter, not the step: what an error bar costs follows from the scatter of all of them."""
+    """Returns the relative variance over seeds, mean over all variants, because it does not depend on the step."""
     scatter = []
     for m in made:
         if len(m["values"]) > 1 and not m["lost"] and not m["flags"]:
@@ -85,8 +85,8 @@ def rows_of(name, case, program, quick):
     if quick:
         scene = merged(scene, QUICK)
     made = [*made_of(name, case, scene, program, quick)]
-    # Without noise both methods follow the same trajectory for a while, and the explicit one is the reference; with
-    # noise another step draws another noise, and the reference is the finest implicit step, because explicit ones miss
+    # Without noise both methods follow the same trajectory for a while, and the explicit one is the reference. With
+    # noise another step has other noise; the reference is the finest implicit step, because explicit ones miss
     # contacts.
     noise = "peclet" in scene
     reference = made[0]
@@ -103,13 +103,13 @@ def rows_of(name, case, program, quick):
                 bias, error, degrees = relative_difference(m[quantity], reference[quantity], not noise)
                 row[f"{prefix}bias_percent"] = 100 * bias
                 row[f"{prefix}bias_half_width_percent"] = 100 * error * student_quantile(degrees, 0.975)
-                # Of the viscosity, which comes first.
+                # Set by the viscosity, which comes first.
                 row.setdefault("surely_wrong", abs(bias) > max(0.01, error * student_quantile(degrees, 1 - 0.5e-4)))
         yield row
 
 
 def print_summary(rows):
-    """The automatic step of every panel beside half of the largest stable explicit one."""
+    """Prints a table of the automatic step of every panel and half of the largest stable explicit one."""
     by_variant = {(row["panel"], row["method"], row["step"], row["tolerance"]): row for row in rows}
     print(markdown_head(SUMMARY))
     for name in dict.fromkeys(row["panel"] for row in rows):
@@ -127,9 +127,8 @@ def all_rows(program, panels, quick=False):
 
 
 def checks(rows):
-    """The automatic step may lose no seed, and change the viscosity by 1 % at most, or by what chance does in one run
-    of ten thousand. Without noise the two methods are compared, which sees half a percent; with noise it sees little.
-    """
+    """Yields checks of the automatic step: it must lose no seed, and change the viscosity by at most 1 %, unless by
+    chance, to a level of 1e-4. Without noise this resolves half a percent; with noise it resolves little."""
     automatic = [row for row in rows if row["step"] == 1]
     wrong = [row for row in automatic if row.get("surely_wrong") and not row["flags"]]
     for row in wrong:
@@ -146,7 +145,7 @@ def measure(program):
 
 
 def quick_measure(program):
-    """Two panels of small systems and few seeds, whose chart is drawn as well."""
+    """Runs two panels with small systems and few seeds, and draws their chart."""
     rows = list(all_rows(program, QUICK_PANELS, quick=True))
     path = Path(program.folder) / "table.csv"
     write_table(path, COLUMNS, rows, digits=5)
@@ -156,8 +155,8 @@ def quick_measure(program):
 
 
 ACROSS = 4
-RANGE = 6  # percent, of every panel
-TEXT = 0.06, 1.0  # width over that of a panel, height in percent
+RANGE = 6  # of the differences in every panel [%]
+TEXT = 0.06, 1.0  # width over that of a panel, height [%]
 STYLES = {  # point type, colour
     "explicit": (5, RED),
     "implicit": (7, BLUE),
@@ -175,7 +174,7 @@ def style_of(row):
 
 
 def bar_of(row, of):
-    """Place of a point, half of its bar, and what is written above it."""
+    """Returns the place of a point (x, y), the half-width of its bar, and the text above it."""
     bias = float(row[f"{of}bias_percent"] or 0)
     text = "" if row["method"] == "LAMMPS" else f"{float(row['step']):.2g}"
     if row["flags"] or row["lost"] not in ("", "0"):
@@ -188,7 +187,7 @@ def bar_of(row, of):
 
 
 def rows_of_texts(bars, span):
-    """How many rows higher than above its point each text must stand to cover none before it."""
+    """Returns the number of text rows by which each text must be raised so that it covers none before it."""
     taken, rows = [], []
     for x, y, *_ in bars:
         place, row = math.log(x, span), 0
@@ -200,7 +199,7 @@ def rows_of_texts(bars, span):
 
 
 def add_panel(figure, name, rows, of=""):
-    """`of`: nothing for the viscosity, or "pressure_"."""
+    """Draws a panel; `of` is "" for the viscosity, or "pressure_"."""
     known = [r for r in rows if r["viscosity"] and float(r["seconds_to_2_percent"]) > 0]
     chosen = [r for r in known if r.get("pressure") or not of]
     dropped = [f"{r['method']} {float(r['step']):.2g}" for r in rows if not r["viscosity"]]
@@ -218,7 +217,7 @@ def add_panel(figure, name, rows, of=""):
 
 
 def add_legend(figure):
-    """In a place of its own."""
+    """Draws the legend in its own panel."""
     panel = figure.blank()
     for k, (style, (mark, colour)) in enumerate(STYLES.items()):
         panel.points([(0.06, 0.9 - 0.12 * k)], None, colour, mark, 1.1)
@@ -240,7 +239,7 @@ def draw_chart(rows, picture):
 
 
 def draw():
-    """lammps.csv has cases that are in the table."""
+    """Draws the charts, with LAMMPS in the panels of its cases."""
     rows = read_texts(HERE / "table.csv") + read_texts(HERE / "lammps.csv")
     draw_chart(rows, HERE / "chart.png")
     draw_chart([row for name in OVERVIEW for row in rows if row["panel"] == name], HERE / "overview.png")

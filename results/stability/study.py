@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Where each method fails, and how: a row for each case, a column for each step of each method."""
+"""Failures of each method of integration: a row for each case, a column for each step of each method."""
 import collections
 import sys
 from pathlib import Path
@@ -11,7 +11,7 @@ from studies.driver import main, merged, read_texts, relative_difference, studen
 
 TITLE = "Where each method fails, and how"
 BASE = merged(REFERENCE_SCENE, in_strains(0.5, 0.75), particles={"count": 100})
-# Steps of each column: explicit ones over the largest stable step of the scene, implicit ones over the automatic one.
+# Steps of the columns: explicit ones over the largest stable step of the scene, implicit ones over the automatic one.
 EXPLICIT, IMPLICIT = (0.5, 0.999, 2), (0.25, 1, 2, 3.99, 8)
 
 
@@ -28,7 +28,7 @@ def brownian(number):
 
 
 def large_spheres(ratio):
-    # three large spheres for ratio 7 and equal volumes for the others
+    # A ratio of 7 gives three large spheres; the others have equal volumes.
     small = 0.5 if ratio < 7 else 0.22
     return {
         "particles": {
@@ -86,7 +86,7 @@ CAUSES_OF_JAMS = {"overlap", "packing"}
 
 
 def integrators(program, scene):
-    """Every column: method, factor and integrator block, or None with what was answered where the step is refused."""
+    """Yields the columns: method, factor, integrator block, and the answer if the step is refused, else None."""
     for method, factors, factor_of_auto in (("explicit", EXPLICIT, 0.5), ("implicit", IMPLICIT, 1)):
         answer = program.derived(merged(scene, integrator={"method": method}))
         for factor in factors:
@@ -95,13 +95,13 @@ def integrators(program, scene):
             yield method, factor, block, refused
 
 
-# A bias counts from this on, where it is more than chance does in one of a thousand cells.
+# Smallest relative bias that counts, if it also exceeds chance in one of a thousand cells.
 LEAST_BIAS = 0.03
 RARE = 1 - 0.5e-3
 
 
 def verdict_of(difference, values, causes):
-    """What a cell is."""
+    """Returns the verdict of a cell, from its difference to the reference, values by seed, and lost seeds by cause."""
     if sum(causes.values()) > len(values):
         cause = causes.most_common(1)[0][0]
         return "jammed" if cause in CAUSES_OF_JAMS else "blown up"
@@ -117,7 +117,7 @@ def verdict_of(difference, values, causes):
 
 
 def cells_of(name, case, scene, program):
-    """A row for each column, without its verdict, with `values` by seed and `lost` by cause."""
+    """Yields a row for each column, without verdict, with `values` by seed and `lost` by cause."""
     label, _, seeds = case
     columns = list(integrators(program, scene))
     identifier = "".join(c if c.isalnum() or c in ".-" else "-" for c in f"{name} {label}")
@@ -137,7 +137,7 @@ def cells_of(name, case, scene, program):
 def rows_of(name, case, program):
     scene = merged(BASE, case[1])
     cells = list(cells_of(name, case, scene, program))
-    # Without noise trajectories of one seed stay together for a while; with noise another step draws another one.
+    # Without noise trajectories of one seed stay together for a while; with noise another step has other noise.
     noise = "peclet" in scene
     finest = ("implicit", 0.25) if noise else ("explicit", 0.5)
     reference = next(c for c in cells if (c["method"], c["step"]) == finest)
@@ -182,7 +182,7 @@ COLOURS = {
     "no reference": "#ffffff",
 }
 WIDTH, HEIGHT = 92, 22  # of a cell, in pixels
-LABEL = 250  # of the names of the cases
+LABEL = 250  # width of the names of the cases, in pixels
 LEGEND = (
     "!: flagged;  numbers: difference of the viscosity from the reference and half of its 95 % interval, in percent"
 )
@@ -205,7 +205,7 @@ def text_of(row):
 
 
 def lines_of(rows):
-    """From the top: the name of a panel and None, or that of a case and its cells by method and step."""
+    """Returns the lines of the map from the top: (panel, None), or (case, cells by method and step)."""
     lines = {}
     for row in rows:
         lines.setdefault((row["panel"], None), None)
@@ -214,7 +214,8 @@ def lines_of(rows):
 
 
 def halves(lines):
-    """Returns two parts that stand side by side, the second one beginning with a panel; one part if there is little."""
+    """Returns the lines in two parts side by side, the second one beginning with a panel; in one part if they are
+    few."""
     half = next((k for k in range(len(lines) // 2, len(lines)) if lines[k][1] is None), 0)
     return [lines[:half], lines[half:]] if len(lines) > 30 else [lines]
 
@@ -260,7 +261,7 @@ def draw(path=HERE / "table.csv"):
 
 
 def quick_measure(program):
-    """Six cases, whose map is drawn as well."""
+    """Runs six cases, and draws their map."""
     path = Path(program.folder) / "table.csv"
     measure(program, {name: PANELS[name][:count] for name, count in QUICK.items()}, path)
     draw(path)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""How long the viscosity takes to become steady, from a random packing, in weak and in strong flow."""
+"""Time in which the viscosity becomes steady, from a random packing, in weak and in strong flow."""
 import math
 import sys
 from pathlib import Path
@@ -13,31 +13,32 @@ import numpy as np
 
 TITLE = "Time until the viscosity is steady"
 FRACTIONS = (0.45, 0.50, 0.54)
-BLOCKS = 32  # averages that a result has of consecutive parts of its window, which begins with the packing
+BLOCKS = 32  # of the window, which begins with the packing
 WEAK, STRONG = 0.1, 1e4
-# By Peclet number: seeds, length of the window in Brownian times or in strains, and of parts of it the early one, right
-# after the published 3 to 4 Brownian times or a strain of 2, and the one that stands for the steady viscosity.
+# By Peclet number: seeds, unit and length of the window, its early part, right after the published 3 to 4 Brownian
+# times or a strain of 2, and its late part, which gives the steady viscosity.
 RUNS = {WEAK: (80, "brownian_times", 96, (3, 6), (63, 96)), STRONG: (48, "strain", 8, (2, 3), (5, 8))}
-# The thesis has two Brownian times, η a³ / kT (3.57) and one with 6π (2.3): 3 to 4 of these, and what comes then. The
-# sentence does not say which; as in other studies the nearer reading decides the verdict.
+# The thesis has two Brownian times, η a³ / kT (3.57) and one with 6π (2.3), and does not say which one is meant by 3 to
+# 4 times. As in other studies the nearer reading decides. LATER: 3 to 4 times with 6π, and the rest of the window.
 DIFFUSION_TIME = 6 * math.pi
 LATER = (57, 75), (75, 96)
-JUDGED = FRACTIONS[1:]  # at the least one the signal is too weak
+JUDGED = FRACTIONS[1:]  # at the smallest volume fraction the signal is too weak
 
-TOLERANCE = 0.1  # of print: "standard deviation less than 10 %"
-LEFT = 0.05  # of the way, when 95 % are made
-MULTIPLE = math.log(1 / LEFT)  # of the time of an exponential until then
+TOLERANCE = 0.1  # published: "standard deviation less than 10 %"
+LEFT = 0.05  # remaining part when 95 % are reached
+MULTIPLE = math.log(1 / LEFT)  # of the relaxation time until then
 SCENE = merged(TABLE_SCENE, duration=None)
 
 
 def part_of(rows, length, ends):
-    """By seed: the mean over the blocks that lie between two times."""
+    """Returns the means over the blocks between two times (seeds,)."""
     middles = (np.arange(BLOCKS) + 0.5) * length / BLOCKS
     return rows[:, (ends[0] < middles) & (middles < ends[1])].mean(axis=1)
 
 
 def relaxation(values, length):
-    """Time of c + d exp(-t / time) through block means by least squares, and when |d| exp(-t / time) is 5 % of c."""
+    """Returns the time of a least-squares fit of c + d exp(-t / time) to block means, and the t at which
+    |d| exp(-t / time) is 5 % of c."""
     edges, times = np.arange(BLOCKS + 1) * length / BLOCKS, length * 10 ** (np.arange(-200, 1) / 100)
     decays = np.exp(-edges / times[:, None])
     shapes = -np.diff(decays, axis=1) * times[:, None] / np.diff(edges)
@@ -47,7 +48,8 @@ def relaxation(values, length):
 
 
 def numbers_of(rows, peclet):
-    """Early over steady viscosity, the time of the relaxation, and that to 95 %; with errors by leaving out a seed."""
+    """Returns early over steady viscosity, the relaxation time, and the time to 95 %, by name, with jackknife errors
+    and degrees of freedom."""
     _, _, length, early, late = RUNS[peclet]
 
     def share(*ends):
@@ -63,7 +65,7 @@ def numbers_of(rows, peclet):
 
 
 def measured(program, name, peclet, seeds, fractions, patch=None):
-    """By volume fraction: block means by seed."""
+    """Runs a campaign and returns the block means of the viscosity of pairs (seeds, 32) by volume fraction."""
     _, unit, length, _, _ = RUNS[peclet]
     parts = {"equilibration": {"strain": 0}, "production": {unit: length}}
     scene = merged(SCENE, {"peclet": peclet, "duration": parts}, patch or {})
@@ -87,7 +89,7 @@ def measure(program):
 
 
 def weak_rows(numbers):
-    """In weak flow; and what the correlation of the stress at rest says of a suspension in equilibrium."""
+    """Yields rows about weak flow, and about the relaxation in equilibrium from the stress correlation at rest."""
     rest, ends = table_at_rest(), (1 - TOLERANCE, 1 + TOLERANCE)
     for fraction in FRACTIONS:
         name = f"Pe = {WEAK:g}, φ = {fraction:g}"

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Flow at a given stress: beside flow at a given rate, with and without noise; what noise makes of the strain; and
-discontinuous shear thickening, which a given rate jumps over."""
+"""Flow at a given stress: comparison with a given rate, with and without noise; diffusion of the strain; and
+discontinuous shear thickening, which a given rate skips."""
 import math
 import sys
 from pathlib import Path
@@ -12,8 +12,8 @@ from studies.driver import exact_rows, in_brownian_times, in_strains, main, merg
 from studies.driver import read_rows, row_ratio, scaled, where, write_numbers, write_rows
 
 TITLE = "Flow at a given stress"
-# Lengths in radii, the solvent's viscosity 1. Of grains the critical load is the unit of force, of colloids kT the unit
-# of energy.
+# Lengths are in radii, viscosities over the solvent's. The unit of force is the critical load for grains; the unit of
+# energy is kT for colloids.
 COMMON = {"particles": {"count": 200, "density": 1e-3}, "fluid": {"viscosity": 1}, "flow": None, "duration": None}
 GRAINS = merged(
     REFERENCE_SCENE, COMMON, contact={"normal_stiffness": 5e4, "friction": 1, "critical_load": 1}, volume_fraction=0.5
@@ -22,20 +22,20 @@ COLLOIDS = merged(
     REFERENCE_SCENE, COMMON, contact={"normal_stiffness": 5e5}, fluid={"thermal_energy": 1}, volume_fraction=0.45
 )
 SEEDS = {"grains": 10, "colloids": 10}
-# Rates, and what viscosity to expect, which says how long a stress must act for a strain of ten.
+# Rates, and expected viscosities, which give the time for a strain of ten.
 RATES = {
     "grains": {0.002: 25, 0.005: 35, 0.01: 50, 0.03: 60, 0.1: 65},
     "colloids": {0.3: 9, 1: 8.5, 3: 8, 10: 8, 30: 9},
 }
 STRAIN = 10
 THICKENING = {0.50: (700, 3), 0.54: (2000, 3), 0.56: (4000, 3), 0.57: (4000, 3)}  # stress times of the window, seeds
-JUMPING = 0.56  # where rates are given as well
+JUMPING = 0.56  # volume fraction at which rates are given, too
 STRESSES = (0.1, 0.2, 0.4, 0.8, 2)
-# Discontinuous from here on in simulations of spheres of two sizes with a critical load and friction 1.
+# Published onset of discontinuous thickening for spheres of two sizes with a critical load and friction 1.
 PUBLISHED_ONSET = 0.56
 RATES_OF_THICKENING = (0.0003, 0.0005, 0.0008, 0.0012, 0.002, 0.004)
 DIFFUSING, DIFFUSION_SEEDS, DIFFUSION_WINDOW = 0.30, 24, 200
-THERMAL_ENERGY, VISCOSITY = 0.017, 0.1  # of the study at-rest, whose scene this is
+THERMAL_ENERGY, VISCOSITY = 0.017, 0.1  # as in the study at-rest
 
 
 def rate_row(program, kind, scene, rate, seeds):
@@ -47,14 +47,14 @@ def rate_row(program, kind, scene, rate, seeds):
 
 
 def stress_row(program, kind, scene, stress, times, seeds):
-    """The viscosity is that of all; a realisation that has jammed counts with its rate, 0 from then on."""
+    """Returns the row of a stress. The viscosity includes all realisations; a jammed one has the rate 0."""
     name = f"{kind}-stress-{scene['volume_fraction']:g}-{stress:g}"
     scene = merged(scene, during({"stress_times": 0.3 * times}, {"stress_times": times}))
     (point,) = program.run(name, scene, [{"/flow/stress": stress}], seeds, "shear_rate")
     means, rate = point.means, point.measured("shear_rate")
     row = {"kind": kind, "fraction": scene["volume_fraction"], "control": "stress", "at": stress, "seeds": len(means)}
     row |= entries("viscosity", quotient((stress, 0), rate) if rate[0] > 0 else (math.inf, math.inf))
-    flowing = [math.nan if m["flowing"] is None else m["flowing"] for m in means]  # of long windows only
+    flowing = [math.nan if m["flowing"] is None else m["flowing"] for m in means]  # null in short windows
     return row | {"flowing": sum(flowing) / len(means)}
 
 
@@ -77,7 +77,7 @@ def measure(program):
 
 
 def measure_diffusion(program):
-    """By the strains of blocks: D = <strain^2> / (2 t), next to no stress."""
+    """Measures the diffusion of the strain at almost zero stress from the strains of blocks, D = <strain^2> / (2 t)."""
     scene = merged(
         REFERENCE_SCENE,
         {"duration": None},
@@ -94,7 +94,7 @@ def measure_diffusion(program):
         time = result["time"]["production"] / 32
         squares.append(sum((rate * time) ** 2 for rate in result["blocks"]["shear_rate"]) / 32 / (2 * time))
     cubes = [r**3 for r in (1.0, 1.4)]
-    # Half of the volume to each size, of 100 spheres.
+    # 100 spheres; each size has half of the volume.
     shares = [1 / c for c in cubes]
     volume = 100 * sum(shares[k] / sum(shares) * cubes[k] for k in range(2)) * 4 / 3 * math.pi / DIFFUSING
     diffusion = estimate([s * volume * VISCOSITY / THERMAL_ENERGY for s in squares])
@@ -102,7 +102,7 @@ def measure_diffusion(program):
 
 
 def pairs_of(rows, kind):
-    """At the same stress: by rate, and by stress."""
+    """Returns pairs of rows at the same stress: at a given rate, and at a given stress."""
     mine = where(rows, kind=kind)
     return list(zip(mine[::2], mine[1::2]))
 
@@ -112,7 +112,7 @@ def curve_of(rows, fraction):
 
 
 def slopes(rows, fraction):
-    """Yields d ln viscosity / d ln stress between neighbours of the curve at given stresses, with errors."""
+    """Yields stress, d ln viscosity / d ln stress and its error between neighbours of the curve at given stresses."""
     curve = curve_of(rows, fraction)
     for low, high in zip(curve, curve[1:]):
         width = math.log(high["at"] / low["at"])
@@ -156,7 +156,7 @@ def judge():
 
 
 def onset_of(steep):
-    """The volume fraction at which the steepest slope is 1, by a line through the two around it."""
+    """Returns the volume fraction at which the steepest slope is 1, interpolated linearly, and its error; or None."""
     fractions = sorted(steep)
     for low, high in zip(fractions, fractions[1:]):
         (_, a, of_a), (_, b, of_b) = steep[low], steep[high]
@@ -188,7 +188,7 @@ def draw():
 
 
 def quick_measure(program):
-    """Spheres that meet nobody flow as the solvent with their stresslets, and a stress is what is asked."""
+    """Yields checks of a short run: the mean stress is the given one, and the viscosity is that of shear."""
     scene = merged(GRAINS, particles={"count": 50}, volume_fraction=0.3)
     scene = merged(scene, during({"stress_times": 1}, {"stress_times": 10}))
     (point,) = program.run("quick", scene, [{"/flow/stress": 2}], 4, "shear_rate")

@@ -1,5 +1,5 @@
-"""The viscosity at rest, Pe → 0: of the studies of it, by the correlation of the structural Brownian stress, and what
-storage and loss of linear response say of each other."""
+"""The viscosity at rest, Pe → 0: tables of the studies that measure it, its estimate from the correlation of the
+structural Brownian stress, and the Kramers-Kronig relation of storage and loss moduli."""
 from pathlib import Path
 
 import numpy as np
@@ -10,8 +10,8 @@ from studies.fits import multiples
 from studies.tables import entries, number, read_rows, where
 
 RESULTS = Path(__file__).resolve().parents[1]
-TIMES = 1e-3 * 10 ** (np.arange(400) / 80)  # the grid on which tau is looked for
-SLOWEST = 0.046  # the lowest Peclet number that slow shear knows to a few per cent
+TIMES = 1e-3 * 10 ** (np.arange(400) / 80)  # grid of the search for tau
+SLOWEST = 0.046  # lowest Peclet number at which slow shear has an error of a few per cent
 SLOW_SHEAR = f"slow shear, Pe = {SLOWEST:g}"
 
 
@@ -22,22 +22,25 @@ def slow_rows():
 
 
 def exact_rows():
-    """Returns the rows of the study at-rest, by momentum with its usual step: the best known one of each volume
-    fraction."""
+    """Returns, by volume fraction, the rows of the study at-rest with the smallest error, among those by momentum with
+    the automatic step."""
     rows = where(read_rows(RESULTS / "at-rest" / "table.csv"), by="momentum", step="automatic")
     rows.sort(key=lambda row: -row["viscosity_error"])
     return {row["fraction"]: with_pairs(row) for row in rows}
 
 
 def with_pairs(row):
-    """Returns a row with `pairs`: its viscosity without 1 + 2.5 phi."""
+    """Returns the row with a further entry `pairs`: its viscosity minus 1 + 2.5 phi."""
     value, error = number(row, "viscosity")
     return row | entries("pairs", (value - 1 - 2.5 * row["fraction"], error))
 
 
 def rows_at_rest():
-    """Returns, by volume fraction, `viscosity` with 1 + 2.5 phi and `pairs` without, with their standard errors, and
-    seeds; and where they are from: linear response, and slow shear at volume fractions that have no other row."""
+    """Returns rows by volume fraction, and a text about their source.
+
+    A row has `viscosity`, `pairs` (without 1 + 2.5 phi), their standard errors, and seeds. It is from linear response,
+    or, at volume fractions without such a row, from slow shear.
+    """
     slow, exact = slow_rows(), exact_rows()
     rest = [f for f in slow if f not in exact]
     others = f"; φ = {', '.join(f'{f:g}' for f in rest)}: {SLOW_SHEAR}" if rest else ""
@@ -45,20 +48,22 @@ def rows_at_rest():
 
 
 def table_at_rest():
-    """Returns what the zero-shear study has measured, by volume fraction: viscosity over the solvent's, time in
-    Brownian ones, and their standard errors."""
+    """Returns the rows of the study zero-shear by volume fraction: viscosity over the solvent's, relaxation time in
+    Brownian times, and their standard errors."""
     return {row["fraction"]: row for row in read_rows(RESULTS / "zero-shear" / "table.csv")}
 
 
 def viscosity_up_to(point, unit):
-    """Returns lags in this unit of time and, a row for each seed, the viscosity up to them."""
+    """Returns lags (n,) in this unit of time, and the viscosities integrated up to them (seeds, n)."""
     correlations = [mean["stress_correlation"] for mean in point.means]
     return np.array(correlations[0]["time"]) / unit, np.array([c["viscosity"] for c in correlations])
 
 
 def fitted(times, values):
-    """Returns eta_phi and tau of eta_phi (1 - exp(-t / tau)), by least squares over lags that are even in log t; tau by
-    a search over a fine grid, eta_phi as the linear coefficient."""
+    """Returns eta_phi and tau of a least-squares fit of eta_phi (1 - exp(-t / tau)) to values (n,) at times (n,).
+
+    tau is found by a search over the grid TIMES; eta_phi is the linear coefficient.
+    """
     later = times > 0
     shapes = 1 - np.exp(-times[later] / TIMES[:, None])
     scales, left = multiples(shapes, values[later])
@@ -67,17 +72,18 @@ def fitted(times, values):
 
 
 def fit_with_errors(times, seeds):
-    """Returns the fit to the mean over seeds, and its errors by leaving out one seed at a time."""
+    """Returns the fit to the mean over seeds, and its jackknife errors."""
     return jackknife(lambda chosen: fitted(times, seeds[chosen].mean(axis=0)), len(seeds))
 
 
 def storage_by_loss(frequency, loss, samples=4001):
-    """Returns the storage modulus G' by Kramers and Kronig, from the loss modulus G'' at increasing frequencies w:
+    """Returns the storage modulus G' from the loss modulus G'' at increasing frequencies w (Kramers-Kronig relation)
 
-        G'(w) / w = -(2 w / pi) P int_0^inf eta'(x) / (x^2 - w^2) dx,    eta'(x) = G''(x) / x,
+        G'(w) / w = -(2 w / pi) P int_0^inf eta'(x) / (x^2 - w^2) dx,    eta'(x) = G''(x) / x.
 
-    with eta' a cubic spline over ln x, and constant beyond both ends. Since P int_0^inf dx / (x^2 - w^2) = 0, what is
-    integrated is (eta'(x) - eta'(w)) / (x^2 - w^2), which has no pole."""
+    eta' is a cubic spline over ln x, constant beyond both ends. Because P int_0^inf dx / (x^2 - w^2) = 0, the integrand
+    is (eta'(x) - eta'(w)) / (x^2 - w^2), which has no pole.
+    """
     viscosity = loss / frequency
     spline = CubicSpline(np.log(frequency), viscosity)
     places = np.linspace(np.log(frequency[0]), np.log(frequency[-1]), samples)
@@ -97,7 +103,7 @@ def storage_by_loss(frequency, loss, samples=4001):
 
 
 def viscosity_at_high_frequency(fraction):
-    """Returns that of hard spheres with all their hydrodynamic interactions, over the fluid's: Lionberger & Russel
-    (1994), (1 + 3/2 phi S) / (1 - phi S), S = 1 + phi - 0.189 phi^2."""
+    """Returns the relative viscosity of hard spheres at high frequency, with full hydrodynamics (Lionberger & Russel,
+    1994): (1 + 3/2 phi S) / (1 - phi S), S = 1 + phi - 0.189 phi^2."""
     share = fraction * (1 + fraction - 0.189 * fraction**2)
     return (1 + 1.5 * share) / (1 - share)

@@ -1,4 +1,4 @@
-"""Campaigns, made, run and read by the program, and viscosities of their points, split by term, as rows of a table."""
+"""Makes, runs and reads campaigns, and turns viscosities of their points, split by term, into rows of a table."""
 import collections
 import functools
 import json
@@ -20,14 +20,13 @@ FLAGS = ("timestep", "solver", "overlap")
 
 
 def inflated(result, dictionary):
-    """The text of a stored result (schema/README.md, Tables and views)."""
+    """Returns the text of a stored result (schema/README.md, Tables and views)."""
     stream = zlib.decompressobj(zdict=dictionary.encode())
     return stream.decompress(result) + stream.flush()
 
 
 def read_results(folder):
-    """Returns, of the folder of a campaign, the settings and the whole results, with blocks, of every point with
-    results."""
+    """Returns a list of (settings, whole results with blocks) of the points with results, from a campaign's folder."""
     database = sqlite3.connect(f"file:{os.path.join(folder, 'campaign.db')}?mode=ro", uri=True)
     stored = database.execute(
         "SELECT place, settings, result, dictionary FROM realisations JOIN points USING (place) "
@@ -41,10 +40,11 @@ def read_results(folder):
 
 
 class Point(dict):
-    """A point of an export, by its keys, and what its realisations that ended well have."""
+    """A point of an export, a dictionary, with properties of its realisations that have means."""
 
     @property
     def results(self):
+        """Results with means."""
         return [result for result in self["realisations"] if result.get("mean")]
 
     @property
@@ -53,18 +53,22 @@ class Point(dict):
 
     @property
     def seconds(self):
-        """Processor time that its realisations took."""
+        """Processor time of all realisations [s]."""
         return sum(result["cost"]["cpu_seconds"] for result in self["realisations"])
 
     @property
     def lost(self):
+        """Number of realisations without means."""
         return len(self["realisations"]) - len(self.results)
 
     def by_seed(self, quantity="relative_viscosity"):
         return {result["seed"]: result["mean"][quantity] for result in self.results}
 
     def measured(self, quantity, *element):
-        """The export's mean over the seeds and its standard error, of an element where the quantity is a list."""
+        """Returns the mean over seeds and its standard error, as exported; `element` are the indices in a list.
+
+        Without a mean: NaN and infinity.
+        """
         found = self["quantities"].get(quantity, {"mean": None, "standard_error": None})
         mean, error = (found[key] for key in ("mean", "standard_error"))
         if mean is not None:
@@ -73,56 +77,60 @@ class Point(dict):
 
 
 def carry_out(words, allowed=(0,)):
-    """Runs a command, which says what is wrong on standard error, and ends the study where it fails."""
+    """Runs a command; exits if its code is not allowed. The command reports errors on standard error."""
     code = subprocess.run(words, stdout=subprocess.DEVNULL).returncode
     if code not in allowed:
         sys.exit(f"{' '.join(words[:3])}: ended with {code}")
 
 
 class Program:
-    """The two programs of a folder, and a folder that keeps the campaigns: a study goes on where it was."""
+    """The two programs in folder `binaries`, and the folder of a study's campaigns, which a second call continues."""
 
     def __init__(self, binaries, folder):
         self.peclet = os.path.join(binaries, "peclet")
         self.engine = os.path.join(os.path.abspath(binaries), "peclet-engine")
         self.folder = folder
-        self.commits = set()  # of the engines that the results are of
-        self.processor_seconds = 0.0  # that they took
-        self._seconds = {}  # of campaigns, by name
-        self.long = False  # whether points that take hours are wanted
-        self.times = 1  # as many seeds
+        self.commits = set()  # of the engines of the results
+        self.processor_seconds = 0.0  # of all results
+        self._seconds = {}  # processor time of campaigns, by name
+        self.long = False  # True: include points that take hours
+        self.times = 1  # factor of the number of seeds
         os.makedirs(folder, exist_ok=True)
 
     def _path(self, name):
         return os.path.join(self.folder, name)
 
     def write(self, name, scene, settings, seeds, observable="relative_viscosity"):
-        """Writes the campaign's file, as run() has it, and returns its path."""
+        """Writes the file of a campaign, arguments as for run(), and returns its path."""
         pointers = sorted(settings[0])
         sweep = [{"set": pointers, "values": [[s[p] for p in pointers] for s in settings]}] if pointers else []
         how = {"observable": observable, "realisations": seeds * self.times, "engine": [self.engine, "serve"]}
         return Campaign(name, scene, sweep, **how).write(self._path(f"{name}.json"))
 
     def run(self, name, scene, settings, seeds, observable="relative_viscosity", options=()):
-        """Runs `seeds` realisations, times `times`, with each of `settings` (objects of pointers and values) and
-        returns the Points of the export. `observable` only has to be a number that the results have; `options` are for
-        `peclet run`."""
+        """Runs `seeds` * self.times realisations of each of `settings` and returns the Points of the export.
+
+        `settings` are dictionaries of values by JSON pointer. `observable` may be any number of the results. `options`
+        are further options of `peclet run`.
+        """
         path = self.write(name, scene, settings, seeds, observable)
-        # Points that lost seeds are among what studies are made of: code 3.
+        # Exit code 3: some points lost seeds, which studies accept.
         carry_out([self.peclet, "run", path, "--quiet", *options], allowed=(0, 3))
         export = json.loads(ask(self.peclet, "export", path))
         for engine in export["engines"].values():
             self._note(engine)
         points = [Point(point) for point in export["points"]]
-        # A campaign that runs again, with more points, has the realisations of before.
+        # A campaign that runs again with more points still has its earlier realisations.
         seconds = sum(point.seconds for point in points)
         self.processor_seconds += seconds - self._seconds.get(name, 0.0)
         self._seconds[name] = seconds
         return points
 
     def rows(self, name, scene, pointers, cases, seeds, *others):
-        """Runs a campaign of cases, which are values at `pointers` (by column), and returns a row of each: these
-        columns, and viscosity_row() with `others`."""
+        """Runs a campaign and returns a row for each case: its values by column, and viscosity_row() with `others`.
+
+        `pointers` are JSON pointers by column; a case is a sequence of their values.
+        """
         settings = [dict(zip(pointers.values(), case)) for case in cases]
         points = self.run(name, scene, settings, seeds)
         return [dict(zip(pointers, case)) | viscosity_row(point, *others) for case, point in zip(cases, points)]
@@ -131,8 +139,7 @@ class Program:
         self.commits.add(engine["git_commit"][:7] + ("+" if engine["git_dirty"] else ""))
 
     def run_alone(self, name, scene, threads, seed=0):
-        """Runs a seed of a scene without a campaign and returns its whole result, with blocks; files NAME.… beside it
-        have what the scene leaves."""
+        """Runs one seed of a scene without a campaign; returns its result with blocks. The scene's files are NAME.…"""
         path, output = self._path(f"{name}.scene.json"), self._path(f"{name}.json")
         if not os.path.exists(output):
             with open(path, "w") as f:
@@ -147,22 +154,23 @@ class Program:
         return result
 
     def stored_results(self, name):
-        """Returns the whole results, with blocks, of every point of a campaign that run() made, in the order of its
-        settings; those that have means."""
+        """Returns the whole results with blocks of a campaign of run(): a list for each point with results."""
         return [results for _, results in read_results(self._path(f"{name}.peclet"))]
 
     def final_configurations(self, name, point):
-        """Returns the paths of those that a point of a campaign has left."""
+        """Returns the paths of the files that the realisations of a point have left."""
         folder = self._path(f"{name}.peclet")
         return [os.path.join(folder, f["path"]) for r in point["realisations"] for f in r.get("files") or []]
 
     def asked(self, command, name, *options):
-        """Returns what a command of `peclet` says, as JSON, of a campaign that write() or run() made."""
+        """Returns the JSON output of `peclet COMMAND` for a campaign of write() or run()."""
         return json.loads(ask(self.peclet, command, self._path(f"{name}.json"), "--json", *options))
 
     def derived(self, scene, observable="relative_viscosity"):
-        """Returns what `peclet validate` says of one scene: its time step, groups and warnings, or why it is refused.
-        `observable` only has to be a number that its results have."""
+        """Returns the answer of `peclet validate` for one scene: time step, groups and warnings; or {refused}.
+
+        `observable` may be any number of the results.
+        """
         path = self.write("scene", scene, [{}], 1, observable)
         done = subprocess.run([self.peclet, "validate", path, "--json"], capture_output=True, text=True)
         if done.returncode == 2:
@@ -173,7 +181,7 @@ class Program:
 
 
 def term(mean, *names):
-    """Sum of terms of the shear stress over viscosity and rate; those that the scene lacks are 0."""
+    """Returns the sum of the named terms of the shear stress over viscosity * rate; terms that are absent are 0."""
     return sum(mean["stress"][n][3] for n in names if n in mean["stress"])
 
 
@@ -185,13 +193,16 @@ TERMS = {
 
 
 def viscosity_row(point, *others):
-    """Returns of a point of an export the `seeds` that ended well and were `lost`, whether the window is `transient`,
-    and with its standard error (NAME_error) each of
-    viscosity     relative, with 1 + 2.5 phi
-    pairs         the same without 1 + 2.5 phi: what Li's thesis plots
-    lubrication, contact, repulsion    its terms; lubrication with the random forces
-    structural    the structural Brownian stress, which belongs to no sum
-    and of `others`: quantities of the export."""
+    """Returns a row with the viscosities of a point of an export, and their standard errors NAME_error:
+
+    viscosity     relative viscosity
+    pairs         relative viscosity without 1 + 2.5 phi, as plotted in Li's thesis
+    lubrication, contact, repulsion    terms of pairs; lubrication includes the random forces
+    structural    structural Brownian stress, not part of a sum
+    others        names of further quantities
+
+    It also has `seeds` with means, `lost` ones, and `transient` (1: the window begins too early).
+    """
     numbers = {
         "viscosity": point.measured("relative_viscosity"),
         "pairs": point.measured("relative_viscosity_pair"),
@@ -208,7 +219,7 @@ def viscosity_row(point, *others):
 
 
 def flags(point):
-    """How many completed realisations warn of what."""
+    """Returns the number of realisations with each of the warnings FLAGS."""
     warnings = [{w["code"] for w in r.get("warnings") or []} for r in point.results]
     return collections.Counter(code for codes in warnings for code in codes & set(FLAGS))
 

@@ -1,4 +1,4 @@
-"""The command lines of the drivers."""
+"""The command line of the drivers of studies."""
 import argparse
 import datetime
 import json
@@ -20,18 +20,19 @@ def processor():
 
 
 def read_arguments(folder, title, from_table):
+    """Returns the arguments of the driver in `folder`; `from_table` is true if it can judge its tables alone."""
     parser = argparse.ArgumentParser(description=title)
     parser.add_argument("binaries", help="folder of peclet and peclet-engine", nargs="?")
-    text = "folder of the campaigns, with which a second call goes on; a temporary one unless given"
+    text = "folder of the campaigns, which a second call continues; a temporary one by default"
     parser.add_argument("folder", nargs="?", help=text)
     how = parser.add_mutually_exclusive_group()
     for form, text in (
-        ("quick", "half a minute; fails where the physics is broken"),
-        ("long", "also the points that take hours, where the study has such; goes on with FOLDER"),
-        ("from-table", "judge what the tables beside study.py have, without running anything"),
+        ("quick", "run half a minute; fails if the physics is wrong"),
+        ("long", "include points that take hours, if the study has any; continues with FOLDER"),
+        ("from-table", "judge the tables beside study.py, without running anything"),
     ):
         how.add_argument(f"--{form}", action="store_true", help=text)
-    text = "N times as many seeds everywhere, for error bars smaller by the root of N; goes on with FOLDER"
+    text = "N times as many seeds, for error bars smaller by the root of N; continues with FOLDER"
     parser.add_argument("--times", type=int, default=1, metavar="N", help=text)
     arguments = parser.parse_args()
     if arguments.times < 1:
@@ -41,15 +42,16 @@ def read_arguments(folder, title, from_table):
     if not arguments.binaries and not arguments.from_table:
         parser.error("binaries: missing; must be the folder of peclet and peclet-engine, or --from-table")
     if not arguments.quick and not os.access(folder, os.W_OK):
-        # Said before hours of work, not after them.
+        # Reported before hours of work, not after them.
         parser.error(
-            f"{folder}: a whole study writes its table there, and may not; copy the folder above it, and run "
+            f"{folder}: cannot be written, and a study writes its table there; copy the folder above it, and run "
             f"COPY/{os.path.basename(folder)}/study.py"
         )
     return arguments
 
 
 def provenance(program):
+    """Returns the provenance of a study that was run now: cost, date, commits and processor."""
     return {
         "processor_hours": float(f"{program.processor_seconds / 3600:.2g}"),
         "date": datetime.date.today().isoformat(),
@@ -59,14 +61,14 @@ def provenance(program):
 
 
 def earlier_provenance(path):
-    """Of the runs that the tables are of."""
+    """Returns the provenance in a study.json, that of the runs behind the tables."""
     with open(path) as f:
         found = json.load(f)
     return {name: found[name] for name in ("processor_hours", "date", "engine", "machine")}
 
 
 def write_study(folder, title, rows, of_runs):
-    """Writes study.json, and the rows on the study's page."""
+    """Writes study.json, and the rows into the study's README.md. `of_runs` is the provenance."""
     study = {"title": title, "verdict": verdict(rows), **of_runs, "statements": [row.as_json() for row in rows]}
     with open(os.path.join(folder, "study.json"), "w") as f:
         f.write(json.dumps(study, indent=1, ensure_ascii=False) + "\n")
@@ -74,7 +76,7 @@ def write_study(folder, title, rows, of_runs):
 
 
 def with_program(arguments, run):
-    """run(program) with the programs and a folder of campaigns, and the program."""
+    """Returns run(program), and the Program of the arguments. Exits if a campaign fails."""
     with tempfile.TemporaryDirectory() as temporary:
         program = Program(arguments.binaries, arguments.folder or temporary)
         program.long, program.times = arguments.long, arguments.times
@@ -85,7 +87,7 @@ def with_program(arguments, run):
 
 
 def quick(title, rows):
-    """Prints the rows, and ends with 0 where every interval lies within its bounds."""
+    """Prints the rows, and exits with 0 if every interval lies within its bounds, else with 1."""
     print(tables_of(rows))
     unsure = [row.text for row in rows if not (row.within() and row.sure())]
     for text in unsure:
@@ -95,11 +97,15 @@ def quick(title, rows):
 
 
 def main(folder, title, measure, quick_measure, judge=None, draw=None):
-    """The command line of a study. measure(program) runs it whole and writes its tables beside study.py, and its
-    picture; judge() makes its rows of the tables alone, so that they may be judged again without a run, and draw() the
-    picture, where the tables have all of it. Without `judge` measure returns the rows. quick_measure(program)
-    is a version of half a minute: the tests run it, and the interval of each of its rows must lie within the row's
-    bounds."""
+    """Runs a study from its command line.
+
+    measure(program)          runs the complete study and writes its tables and its figure beside study.py; returns the
+                              rows if there is no `judge`
+    quick_measure(program)    runs for half a minute and returns rows, whose intervals must lie within their bounds; the
+                              tests call it
+    judge()                   returns the rows from the tables alone
+    draw()                    draws the figure from the tables alone
+    """
     arguments = read_arguments(folder, title, judge)
     if arguments.quick:
         quick(title, with_program(arguments, lambda program: list(quick_measure(program)))[0])

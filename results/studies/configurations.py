@@ -1,11 +1,11 @@
-"""Final configurations, and contacts in the frames of a trajectory: how long they last, and what they connect."""
+"""Reads final configurations and the contacts in trajectories; lifetimes and clusters of contacts."""
 import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 
 def read_final(path):
-    """Returns the edges of the cell, the places of the spheres (a row for each axis) and their radii."""
+    """Returns the edges of the cell (3,), the positions of the spheres (3 arrays, x, y, z) and their radii."""
     with open(path) as f:
         f.readline()
         lattice = [float(x) for x in f.readline().split('Lattice="')[1].split('"')[0].split()]
@@ -14,8 +14,8 @@ def read_final(path):
 
 
 def frames_of(path):
-    """Returns, for each frame of trajectory.gsd with contacts, the pairs of spheres that touch, in two columns,
-    and by how much they overlap, over the mean of their radii."""
+    """Returns, for each frame of a trajectory with contacts, the pairs of touching spheres (n, 2) and their overlaps
+    (n,) over the mean radius of the pair."""
     import gsd.hoomd  # Debian's python3-gsd: only studies of trajectories need it
 
     with gsd.hoomd.open(path, "rb") as trajectory:
@@ -26,8 +26,8 @@ def frames_of(path):
 
 
 def lifetime(frames):
-    """Returns the mean time from the first to the last frame of a contact, in frames: the mean number of contacts over
-    how many begin from one frame to the next. Infinite where none begins."""
+    """Returns the mean lifetime of a contact [frames]: the mean number of contacts over the mean number that begin
+    between two frames. `frames` are arrays of pairs. Infinite if no contact begins."""
     sets = [set(map(tuple, pairs.tolist())) for pairs in frames]
     begun = sum(len(after - before) for before, after in zip(sets, sets[1:]))
     held = sum(map(len, sets[1:]))
@@ -35,7 +35,7 @@ def lifetime(frames):
 
 
 def largest_cluster(pairs, count):
-    """Returns the share of so many spheres that the largest group has of which each touches another one."""
+    """Returns the share of `count` spheres in the largest cluster of touching spheres."""
     graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(count, count))
     _, labels = connected_components(graph, directed=False)
     return np.bincount(labels).max() / count

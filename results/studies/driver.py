@@ -1,4 +1,4 @@
-"""What most drivers of studies use."""
+"""Imports the names that most drivers of studies use."""
 # flake8: noqa: F401,F403
 from studies.at_rest import *
 from studies.campaigns import *

@@ -1,6 +1,6 @@
-"""Means, quotients and other numbers with their standard errors, and control variates.
+"""Means, ratios and other numbers with their standard errors, and control variates.
 
-A number with its standard error is a pair (value, error).
+A number with its standard error is a pair (value, error). Errors are propagated to first order.
 """
 import math
 import random
@@ -10,7 +10,7 @@ from scipy.special import stdtrit
 
 
 def estimate(values):
-    """Mean and standard error s / sqrt(n), s^2 = sum (v - mean)^2 / (n - 1); no error from a single value."""
+    """Returns mean and standard error s / sqrt(n), s^2 = sum (v - mean)^2 / (n - 1); infinite for a single value."""
     values = np.asarray(values, float)
     if len(values) < 2:
         return float(values.mean()), math.inf
@@ -18,46 +18,48 @@ def estimate(values):
 
 
 def student_quantile(degrees, probability):
-    """The t that Student's variate of so many degrees of freedom stays below with `probability`; infinite without
-    any."""
+    """Returns the quantile of Student's distribution with these degrees of freedom; infinite for less than one."""
     return math.inf if degrees < 1 else float(stdtrit(degrees, probability))
 
 
 def weighted_mean(values, errors):
-    """Of independent numbers: mean with weights 1 / error^2, and its standard error."""
+    """Returns the mean of independent numbers with weights 1 / error^2, and its standard error."""
     mean, weight = np.average(values, weights=1 / np.square(errors), returned=True)
     return float(mean), float(1 / math.sqrt(weight))
 
 
 def difference(a, b):
-    """a - b of two independent numbers, to first order in their errors, as all of these are."""
+    """Returns a - b of two independent numbers."""
     return a[0] - b[0], math.hypot(a[1], b[1])
 
 
 def quotient(a, b):
-    """a / b of two independent numbers."""
+    """Returns a / b of two independent numbers."""
     value = a[0] / b[0]
     return value, math.hypot(a[1], value * b[1]) / abs(b[0])
 
 
 def over(a, scale):
-    """A number over another one that has no error."""
+    """Returns a number divided by an exact one."""
     return a[0] / scale, a[1] / abs(scale)
 
 
 def scaled(a, factor):
-    """A number times another one that has no error."""
+    """Returns a number multiplied by an exact one."""
     return a[0] * factor, a[1] * abs(factor)
 
 
 def logarithm(a):
-    """ln of a number."""
+    """Returns ln of a number."""
     return math.log(a[0]), a[1] / a[0]
 
 
 def relative_difference(values, reference, paired):
-    """Of two objects of values by seed: the difference of their means over that of the reference, its standard error
-    and degrees of freedom; of the seeds of both where one packing decides most of the scatter, else of all."""
+    """Returns the difference of two means over that of the reference, its standard error and degrees of freedom.
+
+    values, reference    values by seed
+    paired               True: only seeds of both are compared, because equal packings share most of the scatter
+    """
     common = sorted(values.keys() & reference.keys())
     if paired and common:
         total, _ = estimate([reference[s] for s in common])
@@ -67,9 +69,12 @@ def relative_difference(values, reference, paired):
 
 
 def jackknife(function, count):
-    """function(indices) of all indices below `count`, and its standard error by leaving out one index at a time:
-    error^2 = (n - 1) / n sum (f_k - mean f_k)^2 (Efron & Tibshirani 1993, eq. 11.5). Of a function that returns several
-    numbers, both are lists."""
+    """Returns function(indices) of all indices below `count`, and its standard error, by leaving out one at a time:
+
+        error^2 = (n - 1) / n sum (f_k - mean f_k)^2    (Efron & Tibshirani 1993, eq. 11.5)
+
+    Both are lists if the function returns several numbers.
+    """
     everything = np.arange(count)
     parts = np.array([function(np.delete(everything, k)) for k in everything])
     errors = np.sqrt((count - 1) * parts.var(axis=0))
@@ -77,22 +82,25 @@ def jackknife(function, count):
 
 
 def place_of_largest(places, numbers):
-    """The place whose number is largest, and its standard error by drawing the numbers again."""
+    """Returns the place whose number is largest, and its standard error, as propagated()."""
     return propagated(numbers, lambda values: float(places[int(np.argmax(values))]))
 
 
 def propagated(numbers, function, draws=400):
-    """function([value, ...]) of independent numbers, and its standard error by drawing them again, normally
-    distributed. Of a function that returns several numbers, both are lists."""
+    """Returns function([value, ...]) of independent numbers, and its standard error from normally distributed draws.
+
+    Both are lists if the function returns several numbers.
+    """
     generator = random.Random(1)
     drawn = np.array([function([generator.gauss(v, e) for v, e in numbers]) for _ in range(draws)])
     return function([v for v, _ in numbers]), drawn.std(axis=0, ddof=1).tolist()
 
 
 def cross_fitted(values, controls, folds=10):
-    """values - controls b, a row of controls for each realisation. The coefficients b of each fold are those of a
-    linear regression over the realisations of the others: whatever they are, controls of mean zero leave the mean as
-    it is."""
+    """Returns values (n,) minus controls (n, m) times coefficients (m,), the control variates of mean zero.
+
+    The coefficients of each fold are from a linear regression over the other folds, so that the mean has no bias.
+    """
     values, controls = np.asarray(values, float), np.asarray(controls, float)
     fold = np.arange(len(values)) % folds
     found = np.empty_like(values)
@@ -105,14 +113,16 @@ def cross_fitted(values, controls, folds=10):
 
 
 def variance_ratio(plain, controlled):
-    """Variance of one over that of the other, with its standard error by leaving out one realisation at a time. A row
-    of averages for each realisation, or one number."""
+    """Returns the variance of `controlled` over that of `plain`, with its jackknife error.
+
+    Each has a number, or a row of numbers, for each realisation.
+    """
     plain, controlled = (np.asarray(rows, float).reshape(len(rows), -1) for rows in (plain, controlled))
     return jackknife(lambda chosen: controlled[chosen].var() / plain[chosen].var(), len(plain))
 
 
 def propagated_lists(lists, function, draws=400):
-    """As propagated(), of a function of several lists of values."""
+    """Returns propagated() of a function of several lists of values."""
     ends = np.cumsum([len(numbers) for numbers in lists])[:-1]
     return propagated(
         [n for numbers in lists for n in numbers], lambda values: function(np.split(np.array(values), ends)), draws

@@ -1,4 +1,4 @@
-"""Pictures of studies: panels with axes, points with error bars, and curves, drawn by matplotlib into a png."""
+"""Draws figures of studies with matplotlib as png: panels with axes, points with error bars, and curves."""
 import matplotlib
 
 matplotlib.use("Agg")
@@ -12,35 +12,37 @@ from studies.tables import number
 
 BLUE, GREEN, ORANGE, RED, PURPLE = "#2060b0", "#308030", "#d08020", "#c03028", "#8040a0"
 BLACK, GREY, LIGHT_GREY = "#000000", "#a0a0a0", "#d8d8d8"
-# By number: a marker, and whether it is filled.
+# Markers by number: matplotlib's marker, and True if it is filled.
 MARKS = {2: ("x", True), 4: ("s", False), 5: ("s", True), 6: ("o", False), 7: ("o", True), 8: ("^", False)}
 MARKS |= {9: ("^", True), 10: ("v", False), 11: ("v", True), 12: ("D", False), 13: ("D", True)}
 DASHES = {1: "-", 2: "--", 3: ":", 4: "-."}
-POINTS, DPI = 10, 100  # size of the text; dots an inch
+POINTS, DPI = 10, 100  # size of the text [points]; dots per inch
 STYLE = {"font.size": POINTS, "axes.labelsize": POINTS, "axes.titlesize": POINTS, "legend.fontsize": POINTS - 1}
 
 
 def formatted(text):
-    """A text of matplotlib. _ and ^ lower and raise what follows, as in symbols of engines."""
+    """Returns a text for matplotlib; _ and ^ begin sub- and superscripts, as in symbols of engines."""
     return mathtext(parts_of(str(text)))
 
 
 def shade(colours, position):
-    """The colour at this position, from 0 to 1, of a scale through equally distant colours."""
+    """Returns the colour at a position in [0, 1] of a scale through equally spaced colours."""
     scale = np.array([[int(c[k : k + 2], 16) for k in (1, 3, 5)] for c in colours])
     places = np.linspace(0, 1, len(scale))
     return "#" + "".join(f"{round(np.interp(position, places, channel)):02x}" for channel in scale.T)
 
 
 class Panel:
-    """Axes and what is drawn between them, in this order.
+    """A panel of a figure. Its content is drawn in the order of the calls.
 
-    log          axes that are logarithmic: "", "x", "y" or "xy"
-    powers       axes whose numbers are powers of ten
-    x_range, y_range    (from, to), each None where the data decide
-    y_step       how far apart numbers stand
-    key          place of the titles, such as "top right", or of their upper right corner, from 0 to 1; None: no titles
-    grid         lines at the numbers
+    axes         matplotlib's Axes
+    x, y, title  texts
+    log          logarithmic axes: "", "x", "y" or "xy"
+    powers       axes with powers of ten as numbers: "", "x", "y" or "xy"
+    x_range, y_range    (from, to); None: from the data
+    y_step       distance of the numbers on the y axis
+    key          place of the legend, such as "top right", or its upper right corner (x, y) in [0, 1]; None: no legend
+    grid         True: lines at the numbers
     """
 
     def __init__(
@@ -69,7 +71,7 @@ class Panel:
         self._ranges, self._step, self._titled = {"x": x_range, "y": y_range}, y_step, []
 
     def points(self, rows, title, colour, mark=7, size=1.0, joined=False, width=1.0):
-        """Rows of (x, y), (x, y, half a bar) or (x, y, lower end, upper end of a bar)."""
+        """Draws points from rows of (x, y), (x, y, half-width of the bar) or (x, y, lower end, upper end)."""
         columns = np.array(list(rows), float).T
         if not columns.size:
             return
@@ -90,7 +92,7 @@ class Panel:
         self._say(drawn, title)
 
     def rows(self, rows, x, name, title, colour, *how, **more):
-        """The points of rows of a table: the number `name` with its standard error over the column x."""
+        """Draws points from rows of a table: the number `name` with its standard error over the column x."""
         self.points([(row[x], *number(row, name)) for row in rows], title, colour, *how, **more)
 
     def _say(self, drawn, title):
@@ -98,41 +100,41 @@ class Panel:
             self._titled.append((drawn, formatted(title)))
 
     def texts(self, rows, colour, above=1.0, size=POINTS):
-        """Rows of (x, y, text): the text stands so many of its heights above the point."""
+        """Draws texts from rows of (x, y, text), `above` text heights above the point."""
         for x, y, text in rows:
             style = {"color": colour, "fontsize": size, "ha": "center", "va": "center"}
             shift = (0, 1.25 * size * above)
             self.axes.annotate(formatted(text), (x, y), shift, textcoords="offset points", **style)
 
     def line(self, rows, title, colour=BLACK, dash=1, width=1.0):
-        """Straight pieces between (x, y)."""
+        """Draws straight lines between rows of (x, y)."""
         x, y = np.array(list(rows), float).T
         (drawn,) = self.axes.plot(x, y, DASHES[dash], color=colour, linewidth=width)
         self._say(drawn, title)
 
     def curve(self, function, title, colour=BLACK, span=None, samples=600, **style):
-        """y = function(x), from one end of `span` to the other; of the range of x unless it is given."""
+        """Draws y = function(x) over `span`, by default the range of x."""
         spaced = np.geomspace if self.axes.get_xscale() == "log" else np.linspace
         places = spaced(*(span or self._ranges["x"]), samples)
         self.line([(x, function(x)) for x in places], title, colour, **style)
 
     def level(self, y, title=None, colour=BLACK, span=None, **style):
-        """A horizontal line."""
+        """Draws a horizontal line over `span`, by default the range of x."""
         self.line([(x, y) for x in span or self._ranges["x"]], title, colour, **style)
 
     def upright(self, x, low=None, high=None):
-        """A dotted vertical line, over the whole height unless its ends are given."""
+        """Draws a dotted vertical line, by default over the whole height."""
         if low is None:
             self.axes.axvline(x, linestyle=":", color=BLACK, linewidth=1)
         else:
             self.axes.vlines(x, low, high, linestyles=":", color=BLACK, linewidth=1)
 
     def text(self, text, x, y, side="left", colour=BLACK, **style):
-        """A text with this side at a place; `style` as matplotlib has it."""
+        """Draws a text whose `side` is at (x, y); `style` are matplotlib's properties."""
         self.axes.text(x, y, formatted(text), color=colour, **{"ha": side, "va": "center", **style})
 
     def box(self, left, right, bottom, top, colour, border=None):
-        """A filled rectangle behind all else, as wide as the panel where the ends are None."""
+        """Draws a filled rectangle behind everything else; as wide as the panel if `left` is None."""
         if left is None:
             self.axes.axhspan(bottom, top, color=colour, linewidth=0, zorder=0)
             return
@@ -141,8 +143,7 @@ class Panel:
         self.axes.add_patch(plt.Rectangle(corner, *size, facecolor=colour, edgecolor=border, zorder=0))
 
     def image(self, rows, colours, label=None):
-        """Rows of (x, y, value), line after line of a regular grid, in colours by value; `label` for a scale beside
-        it."""
+        """Draws values on a regular grid, rows of (x, y, value); `colours` by value. `label` adds a colour scale."""
         x, y = (np.unique([row[k] for row in rows]) for k in (0, 1))
         values = np.full((len(y), len(x)), np.nan)
         for row in rows:
@@ -156,7 +157,7 @@ class Panel:
             self.axes.figure.colorbar(drawn, cax=beside, label=formatted(label))
 
     def finish(self):
-        """Numbers at the axes, and the titles of what is drawn."""
+        """Sets the ranges, the numbers at the axes, and the legend."""
         self.axes.set(xlim=self._ranges["x"], ylim=self._ranges["y"])
         for name, axis in (("x", self.axes.xaxis), ("y", self.axes.yaxis)):
             ends = tuple(axis.get_view_interval())
@@ -175,7 +176,7 @@ class Panel:
 
 
 class Figure:
-    """Panels in rows of `columns`, in the order in which they are asked for; size in pixels."""
+    """A figure that is written to `path`: panels in rows of `columns`, in the order of the calls; size in pixels."""
 
     def __init__(self, path, columns, rows=1, size=(1100, 480)):
         self._path, self._rows, self._columns, self._panels = path, rows, columns, []
@@ -183,7 +184,10 @@ class Figure:
         self._figure = plt.figure(figsize=(size[0] / DPI, size[1] / DPI), dpi=DPI)
 
     def panel(self, *labels, place=None, **settings):
-        """In the next cell, or at a place in the picture: left, right, bottom, top, from 0 to 1."""
+        """Returns a Panel in the next cell, or at a place (left, right, bottom, top) in [0, 1]. Arguments as of Panel.
+
+        Raises ValueError if all cells are taken.
+        """
         if len(self._panels) == self._rows * self._columns and not place:
             raise ValueError(f"a figure of {len(self._panels)} panels has no room for another")
         if place:
@@ -196,7 +200,7 @@ class Figure:
         return self._panels[-1]
 
     def blank(self, x_range=(0, 1), y_range=(0, 1), place=None):
-        """A panel without axes, for texts and boxes."""
+        """Returns a Panel without axes, for texts and boxes."""
         panel = self.panel(key=None, x_range=x_range, y_range=y_range, place=place)
         panel.axes.set_axis_off()
         return panel

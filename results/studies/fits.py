@@ -1,4 +1,4 @@
-"""Lines and curves through numbers with errors."""
+"""Fits lines and curves to numbers with errors."""
 import math
 
 import numpy as np
@@ -6,22 +6,22 @@ from scipy.optimize import curve_fit
 
 
 def line_through(x, y, errors):
-    """Least squares with weights 1 / error^2: intercept, slope, and the slope's standard error."""
+    """Returns intercept, slope and the slope's standard error of a least-squares line with weights 1 / error^2."""
     coefficients, covariance = np.polyfit(x, y, 1, w=1 / np.asarray(errors, float), cov="unscaled")
     slope, intercept = coefficients.tolist()
     return intercept, slope, math.sqrt(covariance[0, 0])
 
 
 def multiples(shapes, values):
-    """Of each row of `shapes`: the factor c of least squares in c shape = values, and the sum of squares that is
-    left."""
+    """Returns, for each row of `shapes`, the factor c of least squares in c * shape = values, and the residual sum of
+    squares."""
     factors = shapes @ values / np.square(shapes).sum(axis=1)
     return factors, np.square(factors[:, None] * shapes - values).sum(axis=1)
 
 
 def lines(shapes, values):
-    """Of each row of `shapes`: constant and slope of least squares in constant + slope shape = values, and the sum of
-    squares that is left."""
+    """Returns, for each row of `shapes`, constant and slope of least squares in constant + slope * shape = values, and
+    the residual sum of squares."""
     values = np.asarray(values, float)
     centred = shapes - shapes.mean(axis=1, keepdims=True)
     slopes, left = multiples(centred, values - values.mean())
@@ -29,14 +29,16 @@ def lines(shapes, values):
 
 
 def shapes_of(fractions):
-    """Values of phi_J to be tried, and a row of -ln(1 - phi / phi_J) for each."""
+    """Returns trial values of phi_J (400,), and -ln(1 - phi / phi_J), a row for each."""
     jammed = max(fractions) + 0.0005 * np.arange(1, 401)
     return jammed, -np.log(1 - np.asarray(fractions) / jammed[:, None])
 
 
 def jammed_and_exponent(fractions, values):
-    """phi_J and lambda of (1 - phi / phi_J)^-lambda: least squares in the logarithm, all points with the same weight;
-    phi_J by a search in steps of 0.0005, lambda as the linear coefficient."""
+    """Returns phi_J and lambda of (1 - phi / phi_J)^-lambda, fitted to the logarithm with equal weights.
+
+    phi_J is found by a search in steps of 0.0005; lambda is the linear coefficient.
+    """
     jammed, shapes = shapes_of(fractions)
     exponents, left = multiples(shapes, np.log(np.maximum(values, 1e-9)))
     best = np.argmin(left)
@@ -44,8 +46,11 @@ def jammed_and_exponent(fractions, values):
 
 
 def log_minimum(abscissae, values):
-    """log10 of where a curve of positive numbers is lowest: the vertex of the parabola through the logarithms of the
-    lowest point and its neighbours; the lowest point itself where it has only one."""
+    """Returns log10 of the place of the minimum of a positive curve.
+
+    It is the vertex of the parabola through the lowest point and its neighbours, in logarithms. If the lowest point is
+    at an end, it is that point.
+    """
     x, y = np.log10(abscissae), np.log(np.maximum(values, 1e-9))
     lowest = int(np.argmin(values))
     if lowest in (0, len(x) - 1):
@@ -58,8 +63,10 @@ def log_minimum(abscissae, values):
 
 
 def log_of_rise(abscissae, values, rise):
-    """log10 of where the logarithm of a curve has risen by `rise` above its lowest point, by straight lines between its
-    points; of the last point where it does not."""
+    """Returns log10 of the place at which the logarithm of a curve has risen by `rise` above its lowest point.
+
+    Logarithms are interpolated linearly. If the rise is not reached, returns the last point.
+    """
     x, logs = np.log10(np.maximum(abscissae, 1e-9)), np.log(np.maximum(values, 1e-9))
     lowest = int(np.argmin(logs))
     level = logs[lowest] + rise
@@ -70,20 +77,22 @@ def log_of_rise(abscissae, values, rise):
 
 
 def log_of_share(abscissae, values, share):
-    """log10 of where a curve has risen by this share of ln(last / lowest) above its lowest point."""
+    """Returns log10 of the place at which a curve has risen by `share` of ln(last / lowest) above its lowest point."""
     lowest, last = (max(value, 1e-9) for value in (min(values), values[-1]))
     return log_of_rise(abscissae, values, share * math.log(last / lowest))
 
 
 def thickening_decades(abscissae, values):
-    """From the lowest point of a curve to 95 % of its rise, both in logarithms."""
+    """Returns the decades from the lowest point of a curve to 95 % of its rise in logarithms."""
     return log_of_share(abscissae, values, 0.95) - log_minimum(abscissae, values)
 
 
 def divergence(fractions, numbers, start):
-    """c, phi_J and lambda of c (1 - phi / phi_J)^-lambda through numbers with errors: least squares in the logarithm
-    with weights 1 / (relative error)^2, from the three of `start`. Each has its standard error, multiplied by the root
-    of chi^2 per degree of freedom where that is above 1: then the form, not the noise, is what is left."""
+    """Returns c, phi_J and lambda of c (1 - phi / phi_J)^-lambda, each with its standard error.
+
+    Least squares in the logarithm with weights 1 / (relative error)^2, starting from `start`. Errors are multiplied by
+    the root of chi^2 per degree of freedom if that is above 1, where the form does not describe the numbers.
+    """
     fractions, (values, errors) = np.asarray(fractions, float), np.transpose(numbers)
 
     def logarithm(fraction, factor, jammed, exponent):

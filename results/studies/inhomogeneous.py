@@ -1,9 +1,13 @@
-"""Suspensions driven by a flow u(y) that the spheres feel through their drag alone: flows, campaigns of them, and the
-local quantities of their bins (Li 2023, ch. 6).
+"""Suspensions driven by a flow u(y) through the drag on the spheres: the flows of the studies, and local quantities in
+bins (Li 2023, ch. 6).
 
-A bin is 2 a high, a the smaller radius. Of its stress, that of the pairs, are P = -tr sigma / 3, J = eta |rate| / P,
-mu = |sigma_xy| / P and Theta = eta du / (a P), du the root of the variance of u_x about its mean in slabs of a / 5;
-Delta_v = |u_driving - u| / (|u_driving| + 1e-5). The share of the largest spheres is that of their volume.
+A bin is 2 a high. From the stress sigma of pairs, the velocity u of the spheres and their rate du/dy:
+
+    P = -tr sigma / 3,  J = eta |du/dy| / P,  mu = |sigma_xy| / P,  Theta = eta du' / (a P)
+    lag = |u_driving - u| / (|u_driving| + 1e-5)
+
+a is the smaller radius, eta the solvent's viscosity, du' the root of the variance of u_x about its mean in slabs of
+a / 5. The largest share is the share of the largest spheres in the spheres' volume.
 """
 import math
 
@@ -15,7 +19,7 @@ from studies.tables import entries
 
 VISCOSITY, RADIUS, LARGER_RADIUS, BIN = 0.1, 1.0, 1.4, 2.0
 MEAN_RADIUS, MEAN_VOLUME = 1.2, 4 * math.pi / 3 * (1 + 1.4**3) / 2
-WIDTH = 17.7  # of the cell, across: that of 1000 spheres at 0.5 with a height of 50
+WIDTH = 17.7  # of the cell along x and z: that of 1000 spheres at 0.5 with a height of 50
 
 SCENE = merged(
     REFERENCE_SCENE,
@@ -32,9 +36,11 @@ def wave(sine, periods=1, cosine=0):
 
 
 def waves_of(velocities):
-    """The waves of a scene that go through velocities at equal distances over the height, the first one at 0: an odd
-    number n of them has (n - 1) / 2 waves, and an even one loses its shortest sine. The mean is no wave, and has to be
-    0, because a suspension that drifts as a whole is the same."""
+    """Returns the waves of a scene that interpolate velocities (n,) at equal distances over the height, from y = 0.
+
+    An odd n gives (n - 1) / 2 waves; an even one loses the shortest sine. Raises ValueError unless the mean is 0,
+    because a uniform drift has no effect.
+    """
     values = np.asarray(velocities, float)
     parts = np.fft.rfft(values) / len(values)
     largest = np.max(np.abs(values))
@@ -51,13 +57,23 @@ def waves_of(velocities):
 
 
 class Driving:
-    """Waves in a cell of this height, of spheres whose radius of reference is `radius`, in equal bins."""
+    """A driving flow.
+
+    name        of the flow
+    waves       as in a scene
+    height      of the cell
+    fraction    mean volume fraction
+    bins        number of equal bins over the height
+    viscosity   of the solvent
+    radius      of reference of the spheres
+    """
 
     def __init__(self, name, waves, height, fraction, bins, viscosity=VISCOSITY, radius=RADIUS):
         self.name, self.waves, self.height, self.fraction = name, waves, height, fraction
         self.bins, self.viscosity, self.radius = bins, viscosity, radius
 
     def driving(self, y):
+        """Returns the driving velocity at heights y."""
         return sum(
             w.get("sine", 0) * np.sin(2 * math.pi * w["periods"] * y / self.height)
             + w.get("cosine", 0) * np.cos(2 * math.pi * w["periods"] * y / self.height)
@@ -65,7 +81,7 @@ class Driving:
         )
 
     def driving_of_bins(self):
-        """Means over the bins."""
+        """Returns the means of the driving velocity over the bins (bins,)."""
         fine = (np.arange(20 * self.bins) + 0.5) * self.height / (20 * self.bins)
         return self.driving(fine).reshape(self.bins, 20).mean(axis=1)
 
@@ -75,7 +91,7 @@ class Driving:
 
 
 def driving_of_scene(name, scene):
-    """Of the scene of a point in an export. Throws ValueError where it is another kind of flow."""
+    """Returns the Driving of a scene, such as that of a point in an export. Raises ValueError for other flows."""
 
     def of(pointer):
         value = scene
@@ -103,8 +119,12 @@ def driving_of_scene(name, scene):
 
 
 class Flow(Driving):
-    """Of the studies: also how long it takes to become steady and is measured, in strains of its largest rate, and what
-    else it has, as settings."""
+    """A driving flow of the studies.
+
+    before, during    strains, at the largest rate, before and in the window
+    width             of the cell along x and z
+    more              further settings
+    """
 
     def __init__(self, name, waves, height, fraction, before, during, width=WIDTH, more=None):
         super().__init__(name, waves, height, fraction, round(height / BIN))
@@ -125,11 +145,12 @@ class Flow(Driving):
         }
 
 
-# Strains of the largest rate: before the window, of a height of 50, and as its square; and within it.
+# Strains at the largest rate: before the window at a height of 50 (it grows as height^2), and in the window.
 BEFORE, DURING = 40, 100
 
 
 def flow(name, waves, height, fraction, **more):
+    """Returns a Flow with the usual strains."""
     return Flow(name, waves, height, fraction, BEFORE * (height / 50) ** 2, DURING, **more)
 
 
@@ -140,7 +161,7 @@ TRAINING = [
     for height in (50, 100)
     for fraction in FRACTIONS
 ]
-# 0.1 sin^3 is 0.075 sin less 0.025 sin of three periods.
+# 0.1 sin(x)^3 = 0.075 sin(x) - 0.025 sin(3 x)
 PUBLISHED = [
     flow("sine-and-cosine", [wave(0.1, cosine=0.2)], 80, 0.54),
     flow("cube-of-sine", [wave(0.075), wave(-0.025, 3)], 100, 0.54),
@@ -153,7 +174,7 @@ BEYOND = [
     flow(f"sine-{height}-{100 * fraction:.0f}", [wave(0.1)], height, fraction)
     for height, fraction in ((50, 0.57), (50, 0.58), (120, 0.54))
 ]
-# Beside sine-50-52. The Peclet number of the largest rate is 10.
+# Variants of sine-50-52. The Peclet number at the largest rate is 10.
 OTHER = [
     flow("friction", [wave(0.1)], 50, 0.52, more={"/contact/friction": 0.5}),
     flow("noise", [wave(0.1)], 50, 0.52, more={"/fluid/thermal_energy": 0.00237}),
@@ -166,13 +187,13 @@ def heights(flow):
 
 
 class Profile:
-    """Of one realisation or of the mean of several: what a result has by bin, in the units of the scene."""
+    """The profiles of one realisation, or of the mean of several, by bin, in the units of the scene."""
 
     PARTS = "fraction", "velocity", "stress", "variance", "largest"
 
     def __init__(self, flow, fraction, velocity, stress, variance, largest):
         self.flow, self.fraction, self.velocity = flow, fraction, velocity
-        self.stress, self.variance = stress, variance  # rows xx, yy, zz, xy; x, y, z
+        self.stress, self.variance = stress, variance  # rows xx, yy, zz, xy; rows x, y, z
         self.largest = largest  # volume fraction of the spheres of the largest radius
         self.driving = flow.driving_of_bins()
         width = flow.height / flow.bins
@@ -180,7 +201,7 @@ class Profile:
         self.pressure = -stress[:3].mean(axis=0)
 
     def columns(self):
-        """The local quantities, by name."""
+        """Returns the local quantities by name, arrays (bins,)."""
         pressure = self.pressure
         return {
             "fraction": self.fraction,
@@ -204,7 +225,7 @@ QUANTITIES = (
 
 
 def profile_of(flow, profiles):
-    """Of mean.profiles of a result."""
+    """Returns the Profile of mean.profiles in a result."""
     fraction = np.array(profiles["volume_fraction"], float)
     velocity = np.array(profiles["velocity"]["flux"], float) / fraction
     stress, variance = (np.array(rows, float) for rows in (profiles["stress"]["pairs"], profiles["velocity_variance"]))
@@ -212,14 +233,16 @@ def profile_of(flow, profiles):
 
 
 def mean_profile(flow, profiles):
-    """Of several realisations: means of what is a mean."""
+    """Returns the Profile with the means of several realisations."""
     return Profile(flow, *(np.mean([getattr(p, part) for p in profiles], axis=0) for part in Profile.PARTS))
 
 
 def symmetries(driving):
-    """Of a driving by bin, the maps of the bins onto each other that leave it as it is but for its sign: a list of
-    (bins, sign of velocities, sign of the shear stress), the identity first. A velocity that is turned round turns the
-    shear stress round, and so does looking from the other side."""
+    """Returns the maps of bins onto bins that leave a driving (bins,) unchanged except for its sign.
+
+    A list of (bins, sign of velocities, sign of the shear stress), the identity first. The shear stress changes its
+    sign with the velocity, and with the direction of y.
+    """
     bins, tolerance = np.arange(len(driving)), 1e-9 * np.max(np.abs(driving))
     found = []
     for side in (1, -1):
@@ -232,7 +255,7 @@ def symmetries(driving):
 
 
 def symmetric(profile):
-    """The mean of a profile over the symmetries of its driving."""
+    """Returns the mean of a Profile over the symmetries of its driving."""
     images = symmetries(profile.driving)
 
     def mean(values, signs):
@@ -245,8 +268,11 @@ def symmetric(profile):
 
 
 def distinct_bins(driving):
-    """The first bin of each set whose bins are images of each other; without those that a symmetry turns into
-    themselves with the other shear stress, in whose means neither that nor a rate is left."""
+    """Returns the first bin of each set of bins that are images of each other.
+
+    Bins that a symmetry maps onto themselves with the opposite shear stress are left out: their means have neither
+    stress nor rate.
+    """
     images = symmetries(driving)
     return [
         k
@@ -257,14 +283,13 @@ def distinct_bins(driving):
 
 
 def symmetric_bin_rows(flow, profiles):
-    """bin_rows() of profiles that are averaged over the symmetries of the driving: of each distinct bin a row."""
+    """Returns bin_rows() of profiles averaged over the symmetries of the driving, one row for each distinct bin."""
     rows = list(bin_rows(flow, [symmetric(p) for p in profiles]))
     return [rows[k] for k in distinct_bins(flow.driving_of_bins())]
 
 
 def bin_rows(flow, profiles):
-    """A row for each bin: the quantities of the mean of the realisations, each with its standard error by the
-    jackknife over them."""
+    """Yields a row for each bin: the quantities of the mean Profile and their jackknife errors over realisations."""
     columns, errors = jackknife(
         lambda chosen: list(mean_profile(flow, [profiles[k] for k in chosen]).columns().values()), len(profiles)
     )
@@ -277,9 +302,11 @@ def bin_rows(flow, profiles):
 
 
 def growth(quarters):
-    """Of a profile by seed, quarter of the window and bin: how much more it stands out in the second half of the window
-    than in the first, relative, and the standard error over the seeds. The change of each seed is projected on the mean
-    profile less its own mean: noise that has another shape drops out."""
+    """Returns the relative growth of a profile from the first to the second half of the window, and its standard error.
+
+    `quarters` has the profile by seed, quarter of the window, and bin. The change of each seed is projected on the mean
+    profile less its mean over the bins, which removes noise of another shape.
+    """
     values = np.asarray(quarters, float)
     shape = values.mean(axis=(0, 1))
     shape = shape - shape.mean()

@@ -1,5 +1,5 @@
-"""Numbers of maps that are learned from the bins of the study inhomogeneous-flow: errors of every map and method, and
-what Li's section 6.2 says of them in words."""
+"""Numbers of maps learned from the bins of the study inhomogeneous-flow: errors of every map and method, and numbers
+for the statements of Li's section 6.2."""
 import math
 import time
 from pathlib import Path
@@ -17,9 +17,9 @@ NAMES = ("mean", "y", "height", "fraction", "rate", "shear stress", "normal stre
 NAMES += ("lag", "driving", "velocity", "largest share", "mu_error", "fraction_error")
 KINDS = "TRAINING", "PUBLISHED", "UNSEEN", "BEYOND", "OTHER"
 TRAINING, PUBLISHED, UNSEEN, BEYOND, OTHER = ([f.name for f in getattr(inhomogeneous, kind)] for kind in KINDS)
-# What maps are asked of, by name of the columns in errors.csv.
+# Flows that maps are tested with, by names of columns in errors.csv.
 TESTED = {"published": PUBLISHED, "unseen": UNSEEN, "beyond": BEYOND, **{name: [name] for name in PUBLISHED + OTHER}}
-# Inputs and outputs, and the errors in print.
+# Inputs, and outputs with their published errors.
 MAPS = {
     1: (("J", "fraction", "mean"), {"mu": 0.085}),
     2: (("J", "Theta", "mean"), {"fraction": 0.007, "mu": 0.064}),
@@ -27,11 +27,12 @@ MAPS = {
 }
 CASES = [(map_, output) for map_, (_, outputs) in MAPS.items() for output in outputs]
 BALANCE = "momentum balance"
-PIECES = 4  # of each flow, which errors are drawn from
-DEGREES = 2 * PIECES - 1  # of what is asked of two flows
+PIECES = 4  # parts of each flow for jackknife errors
+DEGREES = 2 * PIECES - 1  # degrees of freedom of numbers from two flows
 
 
 def bins_by_flow(path):
+    """Returns the bins in a table, columns by name, by flow."""
     return {flow: columns_of_rows(rows, NAMES) for flow, rows in groups(read_rows(path), "flow").items()}
 
 
@@ -40,23 +41,24 @@ def joined(*tables):
 
 
 def together(tables, flows):
+    """Returns one table with the rows of these flows."""
     return joined(*(tables[flow] for flow in flows))
 
 
 def pieces_of(tables, flows):
-    """A number for each row of together(): the part of its flow, one bin after the other."""
+    """Returns the number of the piece that each row of together() belongs to: PIECES consecutive parts of each flow."""
     counts = [len(tables[flow]["y"]) for flow in flows]
     return np.concatenate([PIECES * k + np.arange(count) * PIECES // count for k, count in enumerate(counts)])
 
 
 def by_pieces(value, pieces):
-    """value(rows) of all rows, and its standard error by leaving out a piece at a time."""
+    """Returns value(rows) of all rows, and its jackknife error over the pieces."""
     names = np.unique(pieces)
     return jackknife(lambda chosen: value(np.isin(pieces, names[chosen])), len(names))
 
 
 def errors(found, table, output, scale, pieces):
-    """Of values that are scaled by the ends of `scale`, with the standard error."""
+    """Returns the relative_error() of found values, scaled by the ends of `scale`, and its standard error."""
     return by_pieces(lambda rows: relative_error(found[rows], table[output][rows], *scale), pieces)
 
 
@@ -71,18 +73,19 @@ def error_ratio(found, other, table, output, scale, pieces):
 
 
 def floor_of(table, output, scale):
-    """What a map without an error of its own would be said to have: the noise of the tests' own bins."""
+    """Returns the error that an exact map would have, from the noise of the tested bins."""
     noise, true = table[f"{output}_error"] / (scale[1] - scale[0]), (table[output] - scale[0]) / (scale[1] - scale[0])
     return math.sqrt(float(np.sum(noise**2) / np.sum(true**2)))
 
 
 def scale_of(tables, output):
+    """Returns the smallest and the largest value of an output in the training flows."""
     values = together(tables, TRAINING)[output]
     return float(values.min()), float(values.max())
 
 
 def balance_of_momentum(tables):
-    """Returns mu, by flows, of bins whose u and phi are known all along y, without any fit."""
+    """Returns a function of flows that gives mu in their bins from u and phi along y, without a fit."""
 
     def of(flows):
         chosen = (tables[flow] for flow in flows)
@@ -92,7 +95,11 @@ def balance_of_momentum(tables):
 
 
 def error_row(tables, found_of, left, map_, output, method):
-    """`found_of(flows)` is what the method says of them, `left` what it says of each training flow without that."""
+    """Returns the row of errors of a method.
+
+    found_of(flows)    returns the method's values for flows
+    left               its values for each training flow, fitted to the others
+    """
     scale = scale_of(tables, output)
     row = {"map": map_, "output": output, "method": method}
     for what, flows in TESTED.items():
@@ -111,7 +118,7 @@ def error_row(tables, found_of, left, map_, output, method):
 
 
 def left_out_of_training(tables, make):
-    """What a method says of each training flow when it is fitted to the others."""
+    """Returns the values of a method for each training flow, fitted to the others; make() returns the method."""
     train, names = together(tables, TRAINING), [flow for flow in TRAINING for _ in tables[flow]["y"]]
     found = np.empty(len(names))
     for _, own, others in left_out(names):
@@ -120,12 +127,12 @@ def left_out_of_training(tables, make):
 
 
 def have_all_bins(tables):
-    """Not of those alone that symmetries leave: no stress can be integrated through these."""
+    """Returns True if the tables have all bins, not only distinct ones, so that stresses can be integrated."""
     return all(len(t["y"]) * inhomogeneous.BIN == t["height"][0] for t in tables.values())
 
 
 def error_rows(tables):
-    """Of every map and method. The rows of momentum balance need velocities all along y, as map 3 has them."""
+    """Yields a row of errors for every map and method. Momentum balance needs velocities along y, as map 3 has them."""
     train = together(tables, TRAINING)
     for map_, output in CASES:
         inputs = MAPS[map_][0]
@@ -151,12 +158,13 @@ def fitted(tables, method, inputs, output):
 
 
 def slow_bins(tables, flow):
+    """Returns True for bins with a rate below a tenth of the largest."""
     rate = np.abs(tables[flow]["rate"])
     return rate < 0.1 * rate.max()
 
 
 def centre_numbers(tables):
-    """Where the rate of the second published flow is below a tenth of its largest."""
+    """Yields numbers about the slow bins of the second published flow."""
     flow = PUBLISHED[1]
     table, slow, pieces = tables[flow], slow_bins(tables, flow), pieces_of(tables, [flow])
     off = fitted(tables, "published", MAPS[1][0], "mu").predict(table) - table["mu"]
@@ -166,7 +174,7 @@ def centre_numbers(tables):
 
     yield "slow over fast", (*by_pieces(ratio, pieces), PIECES - 1)
     train = together(tables, TRAINING)
-    # As many slow bins again, of the flows that are no test here.
+    # Further slow bins, from flows that are not tested here.
     more = [taken(tables[f], slow_bins(tables, f)) for f in (*UNSEEN, BEYOND[0])]
     for name, table_of in (("signed where slow", train), ("signed with more slow bins", joined(train, *more))):
         less = METHODS["published"](MAPS[2][0], "mu").fit(table_of).predict(table) - table["mu"]
@@ -174,7 +182,7 @@ def centre_numbers(tables):
 
 
 def comparison_numbers(tables):
-    """Maps 3 and 1 over map 2, flows beyond the training over those within."""
+    """Yields errors of maps 3 and 1 over those of map 2, and errors beyond the training range over those within."""
     test, pieces = together(tables, PUBLISHED), pieces_of(tables, PUBLISHED)
     far, its = together(tables, BEYOND), pieces_of(tables, BEYOND)
     for output in ("fraction", "mu"):
@@ -189,7 +197,7 @@ def comparison_numbers(tables):
 
 
 def uniform_points(count):
-    """Of uniform flow, which has one J for each volume fraction, `count` points between those that were measured."""
+    """Returns a table of `count` points of uniform flow, interpolated between measured volume fractions."""
     known = columns_of_rows(read_rows(BINS_FOLDER / "uniform.csv"), ("fraction", "J", "mu", "Theta"))
     order = np.argsort(known["fraction"])
     fraction = np.linspace(0.48, 0.60, count)
@@ -202,8 +210,8 @@ def uniform_points(count):
 
 
 def uniform_numbers(tables):
-    """Error of mu in the unseen flows, by map 1, with uniform flow added to the training or in the place of half of
-    it, over that without."""
+    """Yields the error of mu in the unseen flows by map 1, with uniform flow added to the training or replacing half of
+    it, over the error without."""
     train, test, pieces = together(tables, TRAINING), together(tables, UNSEEN), pieces_of(tables, UNSEEN)
     scale = scale_of(tables, "mu")
     half = taken(train, np.arange(len(train["y"])) % 2 == 0)
@@ -216,7 +224,7 @@ def uniform_numbers(tables):
 
 
 def tuning_numbers(tables):
-    """The settings of boosting that are best with each training flow left out, asked of the tests."""
+    """Yields test errors of boosting with settings tuned by leaving out training flows, over those of the defaults."""
     train = together(tables, TRAINING)
     test, pieces = together(tables, PUBLISHED), pieces_of(tables, PUBLISHED)
     grid = [{"max_depth": d, "n_estimators": n, "learning_rate": 0.05} for d in (2, 3, 5) for n in (100, 300, 600)]
@@ -235,7 +243,7 @@ def tuning_numbers(tables):
 
 
 def pair_numbers(tables):
-    """Two of Theta, mu, J and phi given, and the mean fraction: error of each of the others in the published tests."""
+    """Yields errors in the published flows of maps from two of Theta, mu, J, phi, and the mean fraction, to a third."""
     four = ("Theta", "mu", "J", "fraction")
     test, pieces = together(tables, PUBLISHED), pieces_of(tables, PUBLISHED)
     for k, one in enumerate(four):
@@ -247,7 +255,7 @@ def pair_numbers(tables):
 
 
 def candidates_of(table):
-    """In the place of the lag: what else tells how far a bin is from uniform flow."""
+    """Returns alternatives to the lag that measure how far a bin is from uniform flow, by name."""
     width = inhomogeneous.BIN
     slope = (np.roll(table["rate"], -1) - np.roll(table["rate"], 1)) / (2 * width)
     bend = (np.roll(table["driving"], -1) - 2 * table["driving"] + np.roll(table["driving"], 1)) / width**2
@@ -266,12 +274,12 @@ CANDIDATES = "curvature of u", "curvature of the driving", "distance to where u 
 
 
 def candidate_numbers(tables):
-    """Error of map 3 with a candidate in the place of the lag, over that with the lag."""
+    """Yields the error of map 3 with an alternative to the lag over the error with the lag."""
     test, pieces = together(tables, PUBLISHED), pieces_of(tables, PUBLISHED)
     for output in ("fraction", "mu"):
         scale, found = scale_of(tables, output), {}
         for name in ("lag", *CANDIDATES):
-            # The column of the lag has the candidate, which is positive too.
+            # The candidate, which is positive, replaces the column of the lag.
             with_it = tables
             if name != "lag":
                 with_it = {f: {**t, "lag": np.maximum(candidates_of(t)[name], 1e-6)} for f, t in tables.items()}
@@ -282,8 +290,8 @@ def candidate_numbers(tables):
 
 
 def momentum_numbers(tables):
-    """The shear stress as the integral of the drag, without a fit: rms of its difference over that of the stress, mean
-    of four flows."""
+    """Yields the relative rms difference of the integrated drag from the shear stress, without a fit, mean over four
+    flows."""
     values = []
     for flow in PUBLISHED + UNSEEN:
         stress = tables[flow]["shear stress"]
@@ -293,6 +301,7 @@ def momentum_numbers(tables):
 
 
 def all_numbers(tables):
+    """Yields all numbers as (name, (value, standard error, degrees of freedom))."""
     for some in (centre_numbers, comparison_numbers, uniform_numbers, tuning_numbers, pair_numbers):
         yield from some(tables)
     yield from candidate_numbers(tables)
@@ -300,7 +309,7 @@ def all_numbers(tables):
 
 
 def solver_rows(tables):
-    """The profile solver and the simulation, of the flows that were not in its law."""
+    """Yields rows of the profile solver and the simulation, for flows that its law was not fitted to."""
     uniform = columns_of_rows(read_rows(BINS_FOLDER / "uniform.csv"), ("fraction", "J", "mu", "Theta"))
     law = Law([tables[f] for f in TRAINING], uniform, [tables[f]["height"][0] for f in TRAINING])
     for flow in inhomogeneous.PUBLISHED + inhomogeneous.UNSEEN:

@@ -1,8 +1,8 @@
-"""Maps between local quantities of inhomogeneous flows: methods that are fitted to the bins of some flows and say what
-those of others have.
+"""Maps between local quantities of inhomogeneous flows: methods that are fitted to bins of some flows and predict the
+bins of others.
 
-A table is a dict of columns. A method works on logarithms of J, mu, Theta and the lag, and on volume fractions as they
-are, except `published`, which has min-max scaled values as in print. Flows, never bins, are left out.
+A table is a dictionary of columns, arrays (n,). Methods work on logarithms of J, mu, Theta and the lag, and on volume
+fractions. `published` works on min-max scaled values, as in the publication. Tests leave out whole flows, never bins.
 """
 import json
 import math
@@ -28,6 +28,7 @@ def columns_of_rows(rows, names):
 
 
 def taken(table, chosen):
+    """Returns the table of the chosen rows, by index or a boolean array."""
     return {name: values[chosen] for name, values in table.items()}
 
 
@@ -40,23 +41,27 @@ def out_of_logarithms(name, values):
 
 
 def matrix(table, names):
+    """Returns the columns as a matrix (n, columns), those of LOGARITHMIC as logarithms."""
     return np.column_stack([in_logarithms(name, table[name]) for name in names])
 
 
 def relative_error(found, true, lowest, highest):
-    """Of min-max scaled values (Li's Eqs 6.4 and 6.6): |y' - y^'| / |y'| as Euclidean norms."""
+    """Returns |y' - y^'| / |y'| (Euclidean norms) of min-max scaled values (Li, Eqs 6.4 and 6.6)."""
     scaled = [(np.asarray(values) - lowest) / (highest - lowest) for values in (found, true)]
     return math.sqrt(float(np.sum((scaled[0] - scaled[1]) ** 2) / np.sum(scaled[1] ** 2)))
 
 
 def not_zero(spans):
-    """For divisions: what does not vary stays as it is."""
+    """Returns the spans with 1 for 0, so that constant columns can be divided by them."""
     return np.where(spans > 0, spans, 1.0)
 
 
 class Method:
-    """Fitted by `fit(table)`; `predict(table)` gives the output. Inputs beyond those of the training are told by
-    `beyond(table)`: by how much of its range the farthest input of each row lies outside."""
+    """A map from columns `inputs` of a table to the column `output`.
+
+    fit(table)       fits it and returns it
+    predict(table)   returns the output (n,)
+    """
 
     def __init__(self, inputs, output):
         self.inputs, self.output = inputs, output
@@ -68,13 +73,14 @@ class Method:
         return self
 
     def beyond(self, table):
+        """Returns how far the inputs of each row lie outside of the training range, in units of that range (n,)."""
         x = matrix(table, self.inputs)
         outside = np.maximum(self.lowest - x, x - self.highest) / not_zero(self.highest - self.lowest)
         return np.maximum(outside.max(axis=1), 0)
 
 
 class Regression(Method):
-    """A regressor of scikit-learn's kind on standardised inputs and output."""
+    """A regressor with scikit-learn's interface on standardised inputs and output; make() returns it."""
 
     def __init__(self, inputs, output, make):
         super().__init__(inputs, output)
@@ -85,7 +91,7 @@ class Regression(Method):
         self._shift, self._scale = x.mean(axis=0), not_zero(x.std(axis=0))
         self._mean, self._spread = y.mean(), not_zero(y.std())
         with warnings.catch_warnings():
-            # Of a process: that an input does not matter, whose length then has no bound. Of a network: enough steps.
+            # A Gaussian process warns of irrelevant inputs with unbounded lengths, a network of its number of steps.
             warnings.simplefilter("ignore", ConvergenceWarning)
             self._model = self._make().fit((x - self._shift) / self._scale, (y - self._mean) / self._spread)
 
@@ -95,7 +101,7 @@ class Regression(Method):
 
 
 class Published(Method):
-    """XGBoost with its defaults on min-max scaled values."""
+    """XGBoost with default settings on min-max scaled values."""
 
     def _fit(self, table):
         x, y = self._values(table), table[self.output]
@@ -112,7 +118,7 @@ class Published(Method):
 
 
 class LawOfFraction(Method):
-    """mu = J / (alpha (phi_J - phi_loc)^2), Eq. 6.7: two parameters, by least squares in ln mu."""
+    """mu = J / (alpha (phi_J - phi_loc)^2) (Eq. 6.7), with alpha and phi_J from least squares in ln mu."""
 
     def _fit(self, table):
         def left(parameters):
@@ -130,8 +136,8 @@ class LawOfFraction(Method):
 
 
 class LawOfFluctuations(Method):
-    """The output, or its logarithm, as a polynomial of second degree in ln J and the second input, and linear in the
-    mean fraction: seven parameters, in the place of the pieces of Eqs 6.8 and 6.9."""
+    """The output, or its logarithm, as a polynomial of second degree in ln J and the second input, linear in the mean
+    fraction: seven parameters, instead of the pieces of Eqs 6.8 and 6.9."""
 
     def _terms(self, table):
         j = in_logarithms("J", table["J"])
@@ -147,7 +153,7 @@ class LawOfFluctuations(Method):
 
 
 class OfStressAlone(Method):
-    """mu(J) of the training, by a cubic in logarithms: no other input counts."""
+    """The output as a cubic in logarithms of J alone."""
 
     def _fit(self, table):
         y = in_logarithms(self.output, table[self.output])
@@ -168,7 +174,7 @@ def boosted(**settings):
 
 
 def regression(make):
-    """Returns how to make a method of a regressor of so many inputs."""
+    """Returns a function that makes a Regression; make(n) returns a regressor of n inputs."""
     return lambda inputs, output: Regression(inputs, output, lambda: make(len(inputs)))
 
 
@@ -184,14 +190,14 @@ METHODS = {
 
 
 def left_out(flows):
-    """Of the flow of each row: for each flow the rows of it and those of the others."""
+    """Yields each flow with boolean arrays of its rows and of the other rows; `flows` has the flow of each row."""
     for name in dict.fromkeys(flows):
         own = np.array([flow == name for flow in flows])
         yield name, own, ~own
 
 
 def all_methods(inputs, output):
-    """Of METHODS and of the fitted laws, what can have these inputs and this output, by name."""
+    """Returns the METHODS and fitted laws that can have these inputs and this output, by name."""
     made = {name: make(inputs, output) for name, make in METHODS.items()}
     if output == "mu" and {"J", "fraction"} <= set(inputs):
         made["Eq. 6.7"] = LawOfFraction(inputs, output)
@@ -206,8 +212,10 @@ MODEL_FORMAT = "peclet-map-1"
 
 
 def save_model(path, method, inputs, output, table, provenance):
-    """A model is what it was trained on, as JSON: it is fitted again when it is opened, which takes a second and gives
-    the same numbers with the same libraries."""
+    """Writes a model as JSON: its method and its training data.
+
+    open_model() fits it again, in about a second, with the same numbers if the libraries are the same.
+    """
     names = [*dict.fromkeys([*inputs, output, "mean"])]
     model = {
         "format": MODEL_FORMAT,
@@ -224,7 +232,7 @@ def save_model(path, method, inputs, output, table, provenance):
 
 
 def open_model(path):
-    """The fitted method, and the file's own words on it. Throws ValueError with a reason."""
+    """Returns the fitted method of a file, and the content of the file. Raises ValueError with the fault."""
     with open(path) as f:
         try:
             model = json.load(f)

@@ -1,12 +1,12 @@
-"""Profiles of a driven flow from its driving alone: balance of momentum, a law of mu and phi, and how far fluctuations
-reach.
+"""Solves for the profiles of a driven flow, from momentum balance, a law of mu and phi, and a range of fluctuations.
 
     d sigma / dy = -c phi (u_driving - u),  c = 6 pi eta <a> / <4 pi a^3 / 3>    (the drag on the spheres)
-    sigma = mu P du/dy / |du/dy|,  P uniform, of the right mean volume fraction
-    du' = G_l * (q(phi) a |du/dy|),  Theta = eta du' / (a P)                      (closure: the reach l)
+    sigma = mu P du/dy / |du/dy|,  P uniform, for the given mean volume fraction
+    du' = G_l * (q(phi) a |du/dy|),  Theta = eta du' / (a P)                      (closure with the reach l)
     mu and phi: functions of J = eta |du/dy| / P and Theta
 
-q(phi) is that of uniform flow, and G_l, exp(-|y| / l) / 2 l, spreads what a layer makes over those around it.
+q(phi) is from uniform flow. G_l(y) = exp(-|y| / l) / (2 l) spreads the fluctuations of a layer over its surroundings;
+* is the convolution over y.
 """
 import math
 
@@ -18,14 +18,16 @@ DRAG = 6 * math.pi * VISCOSITY * MEAN_RADIUS / MEAN_VOLUME
 
 
 def spread(values, height, reach):
-    """G_l * values of a periodic function on equal bins."""
+    """Returns the convolution G_l * values of a periodic function on equal bins (bins,)."""
     waves = 2 * math.pi * np.fft.rfftfreq(len(values), height / len(values))
     return np.fft.irfft(np.fft.rfft(values) / (1 + (reach * waves) ** 2), len(values))
 
 
 def velocity_of(driving, fraction, viscosity, width):
-    """u of d/dy (viscosity du/dy) = -c phi (u_driving - u), periodic: viscosities between the bins, by second
-    differences."""
+    """Returns u (bins,) from d/dy (viscosity du/dy) = -c phi (u_driving - u), periodic, by second differences.
+
+    `width` is that of a bin. Viscosities between the bins are harmonic means.
+    """
     count = len(driving)
     between = 2 / (1 / viscosity + 1 / np.roll(viscosity, -1)) / width**2  # above bin k
     drag = DRAG * fraction
@@ -43,14 +45,16 @@ def rates_of(velocity, width):
 
 
 def drag_by_share(largest_share):
-    """6 pi eta a n per volume fraction, of bins where the larger spheres have this share of the spheres' volume."""
+    """Returns the drag coefficient 6 pi eta a n per volume fraction; `largest_share` is that of the larger spheres."""
     of = [6 * math.pi * VISCOSITY * radius / (4 * math.pi / 3 * radius**3) for radius in (RADIUS, LARGER_RADIUS)]
     return of[0] + (of[1] - of[0]) * largest_share
 
 
 def stress_of_drag(table, width):
-    """sigma_xy in the bins of a flow from its velocities and volume fractions alone: the integral of the drag by
-    trapezia, 0 where the rate changes its sign."""
+    """Returns sigma_xy in the bins of a flow from its velocities and volume fractions alone.
+
+    It is the integral of the drag by the trapezoidal rule, with a mean of 0 where the rate changes its sign.
+    """
     density = drag_by_share(table["largest share"]) * table["fraction"] * (table["driving"] - table["velocity"])
     steps = -width * 0.5 * (density + np.roll(density, -1))  # from the middle of a bin to that of the next one
     steps -= steps.mean()
@@ -62,11 +66,14 @@ def stress_of_drag(table, width):
 
 
 class Law:
-    """ln mu and phi as polynomials of second degree in ln J and ln Theta, fitted to bins and to uniform flow; q(phi) of
-    uniform flow; the reach that makes Theta right in the bins."""
+    """The law of mu and phi: ln mu and phi are polynomials of second degree in ln J and ln Theta.
+
+    tables     of the bins of flows, to which the law and the reach are fitted
+    uniform    table of uniform flow, which gives q(phi) and takes part in the fit
+    heights    of the cells of the flows
+    """
 
     def __init__(self, tables, uniform, heights):
-        """`tables` of flows, `heights` of them, and the same of uniform flow."""
         together = {
             name: np.concatenate([table[name] for table in (*tables, uniform)])
             for name in ("J", "Theta", "mu", "fraction")
@@ -86,6 +93,7 @@ class Law:
         return np.column_stack([np.ones_like(j), j, theta, j * j, j * theta, theta * theta])
 
     def source(self, fraction, rate):
+        """Returns the fluctuations q(phi) |du/dy| of uniform flow, over a."""
         return np.exp(np.polyval(self._source, np.minimum(fraction, self._densest))) * np.abs(rate)
 
     def _fitted_reach(self, tables, heights):
@@ -101,24 +109,28 @@ class Law:
         return float(reaches[int(np.argmin([left(r) for r in reaches]))])
 
     def __call__(self, j, theta):
-        """mu and phi, at the border of what was seen where it is beyond."""
+        """Returns mu and phi. Arguments beyond the fitted range are taken at its border."""
         inside = [np.clip(np.log(np.maximum(v, 1e-12)), *limits) for v, limits in zip((j, theta), self._limits)]
         terms = self._terms(*inside)
-        # Below the smallest J that was seen mu goes on with its slope there.
+        # Below the smallest fitted J, mu is extrapolated with its slope there.
         slope = self._mu[1] + 2 * self._mu[3] * inside[0] + self._mu[4] * inside[1]
         beyond = np.log(np.maximum(j, 1e-12)) - inside[0]
         return np.exp(terms @ self._mu + slope * np.minimum(beyond, 0)), terms @ self._fraction
 
 
 class Solution:
+    """Profiles by bin, the pressure, and the number of iterations."""
+
     def __init__(self, velocity, fraction, rate, pressure, mu, steps):
         self.velocity, self.fraction, self.rate, self.pressure = velocity, fraction, rate, pressure
         self.mu, self.steps = mu, steps
 
 
 def solve(flow, law, most=4000, tolerance=1e-6):
-    """The profile of a studies.inhomogeneous.Flow, by iteration with a damping of a tenth. Raises ArithmeticError where
-    that comes to no end."""
+    """Returns the Solution for a studies.inhomogeneous.Flow, by damped iteration with a factor of 0.1.
+
+    Raises ArithmeticError if it does not converge within `most` iterations.
+    """
     driving, width = flow.driving_of_bins(), flow.height / flow.bins
     velocity, fraction = 0.9 * driving, np.full(flow.bins, flow.fraction)
     pressure = 20 * VISCOSITY * flow.largest_rate()
@@ -134,7 +146,7 @@ def solve(flow, law, most=4000, tolerance=1e-6):
         )
         velocity = velocity + 0.1 * (found - velocity)
         fraction = fraction + 0.1 * (wanted - fraction)
-        # Denser at a larger pressure.
+        # The volume fraction grows with the pressure.
         pressure *= math.exp(np.clip(3 * (flow.fraction - float(wanted.mean())), -0.1, 0.1))
         if change < tolerance and abs(float(wanted.mean()) - flow.fraction) < tolerance:
             return Solution(velocity, fraction, rates_of(velocity, width), pressure, mu, step)

@@ -1,22 +1,23 @@
-"""Fits to viscosities, and models of packings, that others have published."""
+"""Published fits to viscosities, and published models of packings."""
 import heapq
 import math
 
 import numpy as np
 from scipy.optimize import brentq
 
-# c, phi_J and lambda of c (1 - phi / phi_J)^-lambda, relative viscosities without noise, with solvent and stresslet, by
-# friction coefficient: Mari et al. (2014), as Monti et al. (2021) quote them.
+# c, phi_J and lambda of fits c (1 - phi / phi_J)^-lambda to relative viscosities without noise, with solvent and
+# stresslet, by friction coefficient: Mari et al. (2014), as quoted by Monti et al. (2021).
 MARI_FITS = {0: (1.4, 0.66, 1.6), 1: (0.71, 0.575, 2.3)}
 
 
 def mari_fit(fraction, friction):
+    """Returns the relative viscosity by MARI_FITS."""
     factor, jammed, exponent = MARI_FITS[friction]
     return factor * diverging(fraction, jammed, exponent)
 
 
 def diverging(fraction, jammed, exponent=1.5):
-    """(1 - phi / phi_J)^-lambda, the form of the fits of Li's thesis to viscosities of the pairs."""
+    """Returns (1 - phi / phi_J)^-lambda, the form of the fits of Li's thesis to viscosities of pairs."""
     return (1 - fraction / jammed) ** -exponent
 
 
@@ -37,26 +38,32 @@ TABLE_4_1 = (
 )
 DENSITY, VISCOSITY, STIFFNESS = 0.1, 0.1, 1e4
 
-RODS = 20000  # of the one-dimensional packing: volume fractions come out to 2e-4
+RODS = 20000  # of the one-dimensional packing; volume fractions are then exact to 2e-4
 
 
 def linear_mixture(alpha, ratio, dense_small, dense_large):
-    """Volume fraction of a mixture of small and large spheres whose radii are in the `ratio` small over large and which
-    alone pack to the two volume fractions; `alpha` is the share of the large ones in the volume of the spheres. The
-    linear packing model with the interactions of Yu & Standish (1991): of the volumes 1 / phi that either size gives as
-    the one that carries, the larger."""
+    """Returns the packing fraction of a mixture by the linear packing model of Yu & Standish (1991).
+
+    alpha    share of the large spheres in the volume of the spheres
+    ratio    small over large radius
+    dense_small, dense_large    packing fractions of either size alone
+
+    Either size gives a specific volume 1 / phi if it carries the packing; the larger one counts.
+    """
     small, large = 1 / dense_small, 1 / dense_large
-    filling = (1 - ratio) ** 3.3 + 2.8 * ratio * (1 - ratio) ** 2.7  # of small ones in the holes of large ones
-    taking = (1 - ratio) ** 2 + 0.4 * ratio * (1 - ratio) ** 3.7  # of the place of small ones by large ones
+    filling = (1 - ratio) ** 3.3 + 2.8 * ratio * (1 - ratio) ** 2.7  # small spheres fill holes between large ones
+    taking = (1 - ratio) ** 2 + 0.4 * ratio * (1 - ratio) ** 3.7  # large spheres replace small ones
     carried_by_large = large + (1 - alpha) * (small * (1 - filling) - large)
     carried_by_small = small + alpha * (large - (large - 1) * taking - small)
     return 1 / max(carried_by_large, carried_by_small)
 
 
 def rod_lengths(radii, shares, count):
-    """Lengths of chords of spheres that a straight line cuts, `shares` being of volume: quantiles of their
-    distribution, from long to short. A line meets a sphere in proportion to its number and cross-section, and a chord
-    of a sphere of diameter D is shorter than l with the probability (l / D)^2."""
+    """Returns `count` quantiles of the distribution of chords that a straight line cuts from spheres, longest first.
+
+    `shares` are those of the volume. A line hits spheres in proportion to their number and cross-section. A chord of a
+    sphere of diameter D is shorter than l with the probability (l / D)^2.
+    """
     diameters, shares = 2 * np.asarray(radii, float), np.asarray(shares, float)
     weights = shares / diameters
     weights = weights / weights.sum()
@@ -66,9 +73,11 @@ def rod_lengths(radii, shares, count):
 
 
 def rods(radii, shares, gap, count=RODS):
-    """Volume fraction of spheres of these radii and shares of volume by the packing of rods of Farr & Groot (2009):
-    the longest first, each is put into the largest gap, and has a free length of `gap` times the shorter of two
-    neighbours between them at least. 0.7654 belongs to random close packing of spheres of one size at 0.6435."""
+    """Returns the packing fraction of spheres of these radii and volume shares by the rods of Farr & Groot (2009).
+
+    Rods are placed by length, the longest first, into the largest gap. The free length between two neighbours is at
+    least `gap` times the shorter one. gap = 0.7654 gives random close packing of equal spheres, 0.6435.
+    """
     lengths = rod_lengths(radii, shares, count).tolist()
     gaps = [-gap * lengths[0]]
     for length in lengths[1:]:
@@ -80,5 +89,5 @@ def rods(radii, shares, gap, count=RODS):
 
 
 def gap_of(radii, shares, fraction, count=RODS):
-    """The `gap` with which these spheres pack to a volume fraction."""
+    """Returns the `gap` for which rods() gives this packing fraction."""
     return brentq(lambda gap: rods(radii, shares, gap, count) - fraction, 0.2, 3, xtol=1e-4)

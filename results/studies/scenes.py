@@ -1,9 +1,11 @@
-"""Scenes that several studies start from, and patches of them."""
+"""Scenes that several studies share, and patches of them."""
 
 
 def merged(base, *patches, **more):
-    """Returns `base` with each patch in it, objects key by key, and last the keys that are given by name; None removes
-    a key."""
+    """Returns a copy of `base` with the patches merged into it, objects key by key, and last the keyword arguments.
+
+    None removes a key.
+    """
     result = dict(base)
     for key, value in (pair for patch in (*patches, more) for pair in patch.items()):
         if value is None:
@@ -15,7 +17,7 @@ def merged(base, *patches, **more):
     return result
 
 
-# The published system without noise and friction, at a Stokes number of 0.045.
+# The published system without noise and friction, at Stokes number 0.045.
 REFERENCE_SCENE = {
     "particles": {
         "count": 1000,
@@ -30,9 +32,9 @@ REFERENCE_SCENE = {
     "duration": {"equilibration": {"strain": 1}, "production": {"strain": 2}},
 }
 
-# Table 4.1 of Li's thesis, with N = 250 and windows that end with a strain or, at small Peclet numbers, with Brownian
-# times. Ten of these are no equilibration: the viscosity at Pe = 0.1 and phi = 0.5 still rises after 50
-# (results/steady-state); a^2 / D_0 is 19.
+# Table 4.1 of Li's thesis with N = 250. Windows are in strain or, at small Peclet numbers, in Brownian times. Ten
+# Brownian times are too few for equilibration: the viscosity at Pe = 0.1 and phi = 0.5 still rises after 50
+# (results/steady-state); a^2 / D_0 is 19 Brownian times.
 TABLE_SCENE = merged(
     REFERENCE_SCENE,
     {
@@ -49,13 +51,12 @@ TABLE_SCENE = merged(
 
 
 def at_peclet(number):
-    """A patch: noise and flow at this Peclet number, as in the published table but five times as fast where kT allows
-    it."""
+    """Returns a patch: noise and flow at this Peclet number, up to five times as fast as in the published table."""
     return {"flow": None, "peclet": number, "limits": {"shear_rate": 0.045, "thermal_energy": 0.017}}
 
 
 def during(equilibration, production):
-    """A patch: the two parts of a realisation."""
+    """Returns a patch with the two durations of a realisation."""
     return {"duration": {"equilibration": equilibration, "production": production}}
 
 

@@ -1,4 +1,4 @@
-"""What the chart of results/speed-accuracy has panels of, and the columns of the tables that it is drawn from."""
+"""The panels of the chart of results/speed-accuracy, and the columns of its tables."""
 import dataclasses
 
 from studies.scenes import at_peclet, during
@@ -10,8 +10,14 @@ COLUMNS += "pressure_bias_half_width_percent", "seconds_per_strain", "seconds_to
 
 @dataclasses.dataclass
 class Case:
-    """What differs from the reference scene, and steps: explicit ones over the largest stable one, implicit ones over
-    the automatic one, each with its seeds where those are others; tolerances at the automatic step."""
+    """A panel of the chart.
+
+    patch         difference from the reference scene
+    seeds         number of seeds
+    explicit      explicit steps over the largest stable one, with their seeds if different
+    implicit      implicit steps over the automatic one, with their seeds if different
+    tolerances    of the solver, at the automatic step
+    """
 
     patch: dict
     seeds: int

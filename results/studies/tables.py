@@ -1,4 +1,4 @@
-"""csv files, and rows that have numbers NAME with standard errors NAME_error."""
+"""Reads and writes csv files whose rows have numbers NAME with standard errors NAME_error."""
 import csv
 
 import numpy as np
@@ -7,7 +7,8 @@ from studies.estimates import quotient
 
 
 def write_table(path, columns, rows, digits):
-    """`columns` may be a text: names behind commas, NAME± of a number with its standard error."""
+    """Writes rows with `digits` significant digits. `columns` are names, or a text of names with commas between them;
+    NAME± stands for a number and its standard error."""
     if isinstance(columns, str):
         names = (name.strip() for name in columns.split(","))
         columns = [c for n in names for c in (columns_of(n[:-1]) if n[-1] == "±" else [n])]
@@ -21,18 +22,18 @@ def write_table(path, columns, rows, digits):
 
 
 def write_rows(path, rows, digits):
-    """Writes all that the rows have, in the order of the first one."""
+    """Writes all columns of the rows, in the order of the first row."""
     write_table(path, list(rows[0]), rows, digits)
 
 
 def read_texts(path):
-    """Returns the rows of a table as they are written."""
+    """Returns the rows of a table as dictionaries of texts."""
     with open(path, newline="") as f:
         return list(csv.DictReader(f))
 
 
 def read_rows(path):
-    """Returns the rows of a table; what is a number becomes one, an empty cell nan."""
+    """Returns the rows of a table as dictionaries; cells are numbers where possible, NaN if empty, or texts."""
 
     def value(text):
         try:
@@ -44,7 +45,7 @@ def read_rows(path):
 
 
 def write_numbers(path, numbers):
-    """Writes numbers that only the seeds tell, by name: value, standard error, degrees of freedom."""
+    """Writes numbers by name: (value, standard error, degrees of freedom)."""
     rows = [dict(zip(("name", "value", "standard_error", "degrees"), (name, *of))) for name, of in numbers.items()]
     write_rows(path, rows, 5)
 
@@ -81,17 +82,17 @@ def number(row, name):
 
 
 def row_ratio(a, b, name):
-    """Returns the quotient of a number in two independent rows."""
+    """Returns the ratio of a number in two independent rows, with its standard error."""
     return quotient(number(a, name), number(b, name))
 
 
 def entries(name, pair):
-    """Returns what a row has of a number and its standard error."""
+    """Returns the entries of a row for a number and its standard error."""
     return {name: pair[0], f"{name}_error": pair[1]}
 
 
 def number_text(pair, digits):
-    """Returns a number with its standard error as a page has it."""
+    """Returns a number and its standard error as text for a page."""
     return f"{pair[0]:.{digits}f} ± {pair[1]:.{digits}f}"
 
 

@@ -1,15 +1,21 @@
-"""Rows of a study, its verdict, and what a program writes on the page of a study, between two marks that it has.
+"""Rows of a study, its verdict, and the parts of its page that a program writes between two marks.
 
-    Statement   a published sentence, by a number with its standard error and a bound that the sentence gives:
-                "holds", or "does not hold"
-    Check       of our own methods and their consistency: "ok" or "failed"; it says nothing about the publication
-    Finding     a number where nothing is published, or where what is tested is a reading of ours: no answer
+    Statement   a published sentence, tested by a number with its standard error and a bound from the sentence:
+                "holds" or "does not hold"
+    Check       a test of our own methods, independent of the publication: "ok" or "failed"
+    Finding     a number without a published one, or with an interpretation of ours: no answer
 
-A row answers when its whole interval of 95 % lies on one side of each bound; until then the answer is "open". The
-study's verdict follows from its statements: "does not hold" when one that is marked essential does not; "not yet"
-when one is open; "holds with a difference" when another one does not hold; "holds" when all do; "findings only"
-without any. Checks that failed are counted behind it: "holds (2 checks failed)". A statement is not essential when
-its bound hangs on a number, a definition or a word like "weakly" that is not in print.
+A row has an answer if its whole 95 % interval lies on one side of each bound; otherwise the answer is "open". The
+verdict of a study follows from its statements, by the first rule that applies:
+
+    "findings only"             there are no statements
+    "does not hold"             an essential statement does not hold
+    "not yet"                   a statement is open
+    "holds"                     all statements hold
+    "holds with a difference"   a statement that is not essential does not hold
+
+Failed checks are counted behind it: "holds (2 checks failed)". A statement is not essential if its bound depends on a
+number or a definition that is not published, or on a vague word such as "weakly".
 """
 import math
 
@@ -22,7 +28,7 @@ HEADS = {
     "finding": ("finding", "about", "value ± standard error"),
 }
 BEGIN, END = "<!-- rows, written by study.py -->", "<!-- end of rows -->"
-ROUNDING = 1e-12  # an error below this share of its value is that of floating point
+ROUNDING = 1e-12  # a relative error below this is due to floating point
 
 
 def five_digits(x):
@@ -30,7 +36,7 @@ def five_digits(x):
 
 
 def value_in_json(value):
-    """To five digits; "infinite" or "-infinite", as of a viscosity that jams; None where it was not measured."""
+    """Returns a number with five digits; "infinite" or "-infinite" (a jammed viscosity); None if not measured."""
     if math.isinf(value):
         return "infinite" if value > 0 else "-infinite"
     return five_digits(value)
@@ -42,7 +48,7 @@ def value_of_json(entry):
 
 
 def with_error(value, error):
-    """ "1.235 ± 0.12"; the value alone where it has no error."""
+    """Returns "1.235 ± 0.12", or the value alone if its error is 0."""
     if math.isnan(value):
         return "not measured"
     if math.isinf(value):
@@ -53,8 +59,10 @@ def with_error(value, error):
 
 
 class Row:
-    """`value` with its standard error, of so many degrees of freedom. An error of 0 is that of a number that seeds do
-    not change: a count, a time, a place on a grid, a difference in standard errors."""
+    """A row: a text, its source, and a value with its standard error and degrees of freedom.
+
+    The error is 0 for numbers without scatter: a count, a time, a place on a grid, a difference in standard errors.
+    """
 
     kind = None
 
@@ -75,7 +83,7 @@ class Row:
         }
 
     def cells(self):
-        # Of what study.json has, so that a page can be held to it.
+        # Rounded as in study.json, with which tests compare the page.
         value, error = value_of_json(value_in_json(self.value)), five_digits(self.error)
         return [self.text, self.source, with_error(value, math.nan if error is None else error)]
 
@@ -85,7 +93,7 @@ class Finding(Row):
 
 
 class Judged(Row):
-    """A value that must lie between `low` and `high`."""
+    """A row whose value must lie between `low` and `high`."""
 
     yes, no = None, None
 
@@ -97,7 +105,7 @@ class Judged(Row):
         return self.low <= self.value <= self.high
 
     def sure(self):
-        """Whether the whole interval of 95 % lies on the side of the bounds that the value lies on."""
+        """Returns True if the whole 95 % interval lies on the same side of the bounds as the value."""
         ends = self.value - self.half_width, self.value + self.half_width
         if self.within():
             return bool(self.low <= ends[0] and ends[1] <= self.high)
@@ -135,7 +143,7 @@ class Check(Judged):
 
 
 def rows_of(study):
-    """The rows that a study.json is made of, to five digits."""
+    """Yields the rows of a study.json, with five digits."""
     kinds = {row.kind: row for row in (Statement, Check, Finding)}
     for entry in study["statements"]:
         bounds = {}
@@ -165,7 +173,7 @@ def verdict_of_statements(rows):
 
 
 def with_failed_checks(text, rows):
-    """ "holds (2 checks failed)" """
+    """Returns a verdict with the number of failed checks, if any: "holds (2 checks failed)"."""
     failed = sum(row.kind == "check" and row.answer() == "failed" for row in rows)
     return f"{text} ({failed} check{'s' if failed > 1 else ''} failed)" if failed else text
 
@@ -175,7 +183,7 @@ def verdict(rows):
 
 
 def tables_of(rows):
-    """A table for each kind of rows that there is."""
+    """Returns a Markdown table for each kind of rows that is present."""
     parts = []
     for kind, head in HEADS.items():
         lines = [markdown_row(row.cells()) for row in rows if row.kind == kind]
@@ -185,19 +193,19 @@ def tables_of(rows):
 
 
 def with_part(page, begin, end, text):
-    """The page with this text between two marks."""
+    """Returns the page with `text` between two marks."""
     before, rest = page.split(begin + "\n")
     _, after = rest.split(end)
     return f"{before}{begin}\n{text}\n{end}{after}"
 
 
 def with_rows(page, rows):
-    """The page with these rows between its marks."""
+    """Returns the page with these rows between its marks."""
     return with_part(page, BEGIN, END, tables_of(rows))
 
 
 def rewrite(path, rows):
-    """Of a page that has the marks."""
+    """Writes the rows into a page, if it has the marks."""
     with open(path) as f:
         page = f.read()
     if BEGIN in page:
@@ -206,7 +214,7 @@ def rewrite(path, rows):
 
 
 def rewrite_part(path, name, text):
-    """Another part, which has this name in its marks."""
+    """Writes another part of a page, with this name in its marks."""
     with open(path) as f:
         page = f.read()
     with open(path, "w") as f:

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """table.py RUNS.jsonl ...
 
-Prints what each step does to the stress: means over windows of the relative difference from the reference step, with
-their standard errors, beside what the gate says of the windows.
+Prints the effect of each step on the stress: means over windows of the relative difference from the reference step,
+with standard errors, and the answers of the gate about these windows.
 """
 import collections
 import json
@@ -14,7 +14,7 @@ from studies.estimates import estimate
 from studies.tables import markdown_head, markdown_row
 
 REFERENCE = 5e-5
-LARGEST_OF_SCENE = 3.138e-4  # of the scene's stiffest pair: larger steps are refused before anything runs
+LARGEST_OF_SCENE = 3.138e-4  # stable for the scene's stiffest pair; larger steps are refused before a run
 TOLERANCE = 0.3  # guard.energy_imbalance
 HEAD = (
     "μ",
@@ -66,7 +66,7 @@ def verdicts(rows):
 
 
 def measured(pairs):
-    """Cells of windows and their references."""
+    """Returns the cells for pairs of windows and their references."""
     if not pairs:
         return [""] * 5
     imbalance = [row["energy_imbalance"] for row, _ in pairs]

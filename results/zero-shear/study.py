@@ -14,7 +14,7 @@ TITLE = "Zero-shear viscosity by Green and Kubo"
 FRACTIONS = (0.30, 0.40, 0.45, 0.48, 0.50, 0.52, 0.54, 0.56)
 VISCOSITY, THERMAL_ENERGY = 0.1, 0.017
 BROWNIAN_TIME = VISCOSITY / THERMAL_ENERGY
-# The longest lag is between an eighth and a quarter of the window: 15 samples times a power of two.
+# The longest lag is 15 samples times a power of two, between an eighth and a quarter of the window.
 SCENE = merged(
     REFERENCE_SCENE,
     in_brownian_times(20, 200),
@@ -40,19 +40,19 @@ def measured(program, fractions, seeds, patch=None, name="zero-shear"):
 
 
 def growth(low, high):
-    """ln of the time in one row over that in another, for each unit of volume fraction; with the errors of both."""
+    """Returns d ln(time) / d phi between two rows, and its errors from either row."""
     width = high["fraction"] - low["fraction"]
     (a, da), (b, db) = (over(logarithm(number(row, "time")), width) for row in (low, high))
     return b - a, da, db
 
 
 def growth_rows(rows, degrees):
-    """τ_φ is "short and weakly varying" below 0.5 and "grows quickly" above: no number, but one rate against the
-    other."""
+    """Yields statements about τ_φ, published as "short and weakly varying" below 0.5 and "grows quickly" above: without
+    numbers, so that the two rates are compared."""
     lowest, dense, densest = rows[min(rows)], rows[max(f for f in rows if f <= 0.5)], rows[max(rows)]
     below, low_error, before_error = growth(lowest, dense)
     above, after_error, high_error = growth(dense, densest)
-    # The time at 0.5 is in both rates.
+    # The time at 0.5 enters both rates.
     error = np.hypot(np.hypot(low_error, high_error), before_error + after_error)
     text = "growth rate d ln τ_φ / dφ above φ = 0.5 less that below: weakly varying, then growing quickly"
     yield Statement(text, "L4.3b", above - below, float(error), low=0, degrees=degrees)
@@ -63,7 +63,7 @@ def growth_rows(rows, degrees):
 
 
 def distance_of(row, points):
-    """Largest distance of the curve from the fitted exponential, over η_φ."""
+    """Returns the largest distance of the curve from the fitted exponential, over η_φ, with its error."""
     t, values, errors = np.array(points).T
     distances = abs(values - row["viscosity"] * (1 - np.exp(-t / row["time"])))
     worst = np.argmax(distances)
@@ -80,7 +80,7 @@ def judge():
     for fraction, row in rows.items():
         yield Finding(f"φ = {fraction:g}: τ_φ over ηa³/k_BT", "L4.3b", *number(row, "time"), degrees)
     for name, (value, error, seeds) in numbers.items():
-        # An exponential is what is fitted; how near the curve is to one is not in print.
+        # The agreement of the curve with an exponential is not published.
         yield Finding(name, "method" if name == EXPLICIT_NAME else "L4.3b", value, error, seeds)
 
 

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""layering.py [--picture FILE.svg]      may every room include what it includes?
+"""layering.py [--picture FILE.svg]      checks the includes between rooms
 
-A room is a folder of engine/ or runner/. It may include the rooms before it in add_rooms() of their CMakeLists.txt, and
-contract/. An include that runs upward is an error, a circle of headers too. A class has its functions in one file. SQL
-stands in runner/store alone. --picture draws the rooms and their includes (needs graphviz); a file of more than 600
-lines is named on standard error, because it may hide a second subject.
+A room is a folder of engine/ or runner/. It may include contract/ and the rooms before it in add_rooms() of the
+CMakeLists.txt there. Errors are: an include of a later room, a cycle of headers, a class with functions in several
+files, SQL outside of runner/store. A file of more than 600 lines is named on standard error, because it may have a
+second subject. --picture draws the rooms and their includes with graphviz.
 """
 import argparse
 import collections
@@ -29,13 +29,13 @@ def read(source, path):
 
 
 def layers(source, program):
-    """The folders that a program's files lie in, from below to above."""
+    """Returns the folders with a program's files, from bottom to top."""
     rooms = ROOMS.search(read(source, f"{program}/CMakeLists.txt"))[1].split()
     return ["contract", *(f"{program}/{room}" for room in rooms), program]
 
 
 def sources(source, top):
-    """Paths of the C++ files below a folder."""
+    """Yields the paths of the C++ files below a folder."""
     for folder, _, names in os.walk(os.path.join(source, top)):
         for name in sorted(names):
             if name.endswith(CXX):
@@ -43,7 +43,7 @@ def sources(source, top):
 
 
 def includes(source, top):
-    """Each include of our own below a folder: path, line number, path that it includes."""
+    """Yields the includes of project headers below a folder: path, line number, included path."""
     for path in sources(source, top):
         for number, line in enumerate(read(source, path).splitlines(), 1):
             found = INCLUDE.match(line)
@@ -52,6 +52,7 @@ def includes(source, top):
 
 
 def upward(source):
+    """Yields faults: includes of rooms above, and of folders that are not rooms."""
     for program in PROGRAMS:
         place = {layer: i for i, layer in enumerate(layers(source, program))}
         for path, number, included in includes(source, program):
@@ -65,7 +66,7 @@ def upward(source):
 
 
 def absent(source):
-    """Without this a check of an empty folder would find nothing to say."""
+    """Yields rooms without files, so that a check of an empty folder fails."""
     for program in PROGRAMS:
         for layer in layers(source, program)[:-1]:
             if not any(os.path.dirname(path) == layer for path in sources(source, layer)):
@@ -73,7 +74,7 @@ def absent(source):
 
 
 def circles(source):
-    """Headers that include each other: all that remain when those without an include of the others are taken away."""
+    """Yields headers in a cycle: those that remain when headers without includes of others are removed repeatedly."""
     below = collections.defaultdict(set)
     for top in ("contract", *PROGRAMS):
         for path, _, included in includes(source, top):
@@ -90,7 +91,7 @@ def circles(source):
 
 
 def scattered(source):
-    """Classes whose functions stand in several files."""
+    """Yields classes with functions in several files."""
     for top in ("contract", *PROGRAMS):
         files = collections.defaultdict(set)
         for path in sources(source, top):
@@ -115,11 +116,11 @@ def long_files(source):
         for path in sources(source, top):
             lines = read(source, path).count("\n")
             if lines > LONG:
-                yield f"{path}: {lines} lines: is there a second subject in it?"
+                yield f"{path}: {lines} lines: it may have a second subject"
 
 
 def picture(source):
-    """The rooms from below to above and their includes, for dot."""
+    """Returns the rooms from bottom to top and their includes as text for dot."""
     text = (
         'digraph rooms {\n  node [shape=box, style=filled, fillcolor="#eef3f8", fontname="sans"]; '
         'edge [color="#7090b0"];\n'

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Does layering.py see what it is for? Each fault is put into a small tree of its own."""
+"""Tests that layering.py finds each kind of fault, in a small tree with this fault alone."""
 import os
 import subprocess
 import sys

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""tidy.py BUILD [PART...]      clang-tidy of all that BUILD compiles, or of the files that have PART in their path
-tidy.py BUILD --programs     of all but the tests: half of the files
+"""tidy.py BUILD [PART...]      runs clang-tidy on all files that BUILD compiles, or on those with PART in their path
+tidy.py BUILD --programs     runs it on all files but the tests: half of them
 
-A unity build is looked through as it is compiled: the files of a folder at once, for a third of the time of one by one.
-Two checks see files one by one only: misc-unused-using-decls and misc-unused-alias-decls (build/dev).
-The exit code is 1 where something was found, or where nothing was looked through.
+A unity build is checked as it is compiled, all files of a folder at once, in a third of the time. Two checks work only
+on single files (build/dev): misc-unused-using-decls and misc-unused-alias-decls. The exit code is 1 if something was
+found, or if no file was checked.
 """
 import concurrent.futures
 import json
@@ -12,7 +12,7 @@ import os
 import subprocess
 import sys
 
-# A unity source includes sources: that is what it is.
+# A unity source includes sources.
 CHECKS = "--checks=-bugprone-suspicious-include"
 
 
