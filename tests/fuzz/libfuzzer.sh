@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# libfuzzer.sh spheres SECONDS [FOLDER]   searches spheres_target.cpp for inputs that it does not stand, with clang's libFuzzer
+# libfuzzer.sh spheres SECONDS [FOLDER] fuzzes spheres_target.cpp with clang's libFuzzer
 #
-# Needs clang-14 and libclang-rt-14-dev. FOLDER, build/fuzz/NAME unless given, keeps what has been found out for the next
-# search; findings are left in build/fuzz. Put those that were mended into tests/fuzz/corpus/NAME: tests read them.
+# Needs clang-14 and libclang-rt-14-dev. FOLDER (default build/fuzz/NAME) keeps the corpus for the next
+# search; findings are left in build/fuzz. Put repaired ones into tests/fuzz/corpus/NAME: tests read them.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 [ "${1-}" = spheres ] && [ $# -ge 2 ] || { sed -n '2,6s/^# \{0,1\}//p' "$0" >&2; exit 2; }

@@ -1,10 +1,11 @@
 #!/usr/bin/python3
-"""layering.py [--picture FILE.svg]      may every room include what it includes?
+"""layering.py [--picture FILE.svg]
 
-A room is a folder of engine/ or runner/. It may include the rooms before it in add_rooms() of their CMakeLists.txt, and
-contract/. An include that runs upward is an error, a circle of headers too. A class has its functions in one file. SQL
-stands in runner/store alone. --picture draws the rooms and their includes (needs graphviz); a file of more than 600
-lines is named on standard error, because it may hide a second subject.
+Checks the includes between rooms, the folders of engine/ and runner/. A room may include contract/ and the
+rooms before it in add_rooms() of their CMakeLists.txt. Reports includes that run upward, circles of
+headers, classes whose functions are in several files, and SQL outside runner/store. --picture draws the
+rooms and their includes (needs graphviz). A file of more than 600 lines is named on standard error,
+because it may hide a second subject.
 """
 import argparse
 import collections
@@ -29,13 +30,13 @@ def read(source, path):
 
 
 def layers(source, program):
-    """The folders that a program's files lie in, from below to above."""
+    """Returns the folders of a program's files, from below to above."""
     rooms = ROOMS.search(read(source, f"{program}/CMakeLists.txt"))[1].split()
     return ["contract", *(f"{program}/{room}" for room in rooms), program]
 
 
 def sources(source, top):
-    """Paths of the C++ files below a folder."""
+    """Yields the paths of the C++ files below a folder."""
     for folder, _, names in os.walk(os.path.join(source, top)):
         for name in sorted(names):
             if name.endswith(CXX):
@@ -43,7 +44,7 @@ def sources(source, top):
 
 
 def includes(source, top):
-    """Each include of our own below a folder: path, line number, path that it includes."""
+    """Yields each include of our own files below a folder: path, line number, included path."""
     for path in sources(source, top):
         for number, line in enumerate(read(source, path).splitlines(), 1):
             found = INCLUDE.match(line)
@@ -65,7 +66,7 @@ def upward(source):
 
 
 def absent(source):
-    """Without this a check of an empty folder would find nothing to say."""
+    """Yields rooms without a file, whose other checks would pass unnoticed."""
     for program in PROGRAMS:
         for layer in layers(source, program)[:-1]:
             if not any(os.path.dirname(path) == layer for path in sources(source, layer)):
@@ -73,7 +74,8 @@ def absent(source):
 
 
 def circles(source):
-    """Headers that include each other: all that remain when those without an include of the others are taken away."""
+    """Yields headers that include each other: those left after repeatedly removing headers without such an
+    include."""
     below = collections.defaultdict(set)
     for top in ("contract", *PROGRAMS):
         for path, _, included in includes(source, top):
@@ -90,7 +92,7 @@ def circles(source):
 
 
 def scattered(source):
-    """Classes whose functions stand in several files."""
+    """Yields classes whose functions are in several files."""
     for top in ("contract", *PROGRAMS):
         files = collections.defaultdict(set)
         for path in sources(source, top):
@@ -119,7 +121,7 @@ def long_files(source):
 
 
 def picture(source):
-    """The rooms from below to above and their includes, for dot."""
+    """Returns the rooms from below to above and their includes, for dot."""
     text = (
         'digraph rooms {\n  node [shape=box, style=filled, fillcolor="#eef3f8", fontname="sans"]; '
         'edge [color="#7090b0"];\n'

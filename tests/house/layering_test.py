@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Does layering.py see what it is for? Each fault is put into a small tree of its own."""
+"""layering.py reports each fault, put into a small tree of its own."""
 import os
 import subprocess
 import sys

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""tidy.py BUILD [PART...]      clang-tidy of all that BUILD compiles, or of the files that have PART in their path
-tidy.py BUILD --programs     of all but the tests: half of the files
+"""tidy.py BUILD [PART...]      runs clang-tidy on all that BUILD compiles, or on files with PART in their path
+tidy.py BUILD --programs     on all but the tests: half of the files
 
-A unity build is looked through as it is compiled: the files of a folder at once, for a third of the time of one by one.
-Two checks see files one by one only: misc-unused-using-decls and misc-unused-alias-decls (build/dev).
-The exit code is 1 where something was found, or where nothing was looked through.
+A unity build is checked as it is compiled, a folder at once, in a third of the time of single files. Two
+checks need single files: misc-unused-using-decls and misc-unused-alias-decls (build/dev). The exit code is
+1 if something was found or no file was checked.
 """
 import concurrent.futures
 import json
@@ -12,7 +12,7 @@ import os
 import subprocess
 import sys
 
-# A unity source includes sources: that is what it is.
+# A unity source includes sources on purpose.
 CHECKS = "--checks=-bugprone-suspicious-include"
 
 
