@@ -1,5 +1,4 @@
-// A double that counts its operations. The kernel's code, instantiated with it, counts the operations of a
-// pair.
+// A double that counts its operations. The kernel's code, instantiated with it, gives those of a pair.
 #pragma once
 
 #include "engine/kernels/lane_access.h"

@@ -13,8 +13,7 @@ namespace peclet::engine {
 std::optional<Operations> count_operations(const Physics& physics, System system, double timestep);
 
 // Returns the bytes per particle that one step moves if caches keep nothing between loops. Rows, classes,
-// identities, pairs, springs and crossing loads are read once per loop over them; overwritten memory is
-// fetched.
+// identities, pairs, springs and crossing loads are read once per loop over them; written memory is fetched.
 double bytes_per_particle(const Physics& physics, const System& system, int threads);
 
 }  // namespace peclet::engine
