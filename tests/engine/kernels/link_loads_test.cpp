@@ -1,5 +1,4 @@
-// The loads left by the assembly of links equal those of an evaluation, which reference_forces_test.cpp
-// tests.
+// The assembly of links leaves the loads of an evaluation, which reference_forces_test.cpp tests.
 #include <gtest/gtest.h>
 
 #include <limits>
