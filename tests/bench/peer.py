@@ -78,8 +78,7 @@ def bench_median(table, case):
 
 
 def loop_seconds(output):
-    """Returns the processor time of the loop (wall-clock time times processor share) and its particle
-    steps."""
+    """Returns the processor time of the loop (wall-clock time times share) and its particle steps."""
     loop = re.search(r"Loop time of (\S+) on 1 procs for (\d+) steps with (\d+) atoms", output)
     share = re.search(r"([\d.]+)% CPU use", output)
     return float(loop[1]) * float(share[1]) / 100, int(loop[2]) * int(loop[3])
@@ -121,8 +120,7 @@ class Lammps:
 
 
 def bench(engine):
-    """Returns the command that times cases: engine_bench beside the engine, or the verb of an older
-    engine."""
+    """Returns the command that times cases: engine_bench beside the engine, or an older engine's verb."""
     beside = os.path.join(os.path.dirname(engine), "engine_bench")
     return [beside] if os.path.exists(beside) else [engine, "bench"]
 

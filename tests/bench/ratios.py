@@ -63,8 +63,7 @@ SECONDS_OF_A_PANEL = 2
 
 
 def read_panels():
-    """Returns for each panel patches of the published scene for some seconds of run time, and its seconds
-    to 2 %."""
+    """Returns for each panel patches for some seconds of run time, and its seconds to 2 %."""
     scenes, seconds = {}, {}
     with open(SPEED_ACCURACY / "table.csv", encoding="utf-8", newline="") as file:
         for row in csv.DictReader(file):

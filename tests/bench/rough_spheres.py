@@ -37,8 +37,7 @@ HEAD = (
 
 
 class Memory(threading.Thread):
-    """Polls the peak memory of a process until it ends. Its resource usage would include this program's
-    memory at fork."""
+    """Polls the peak memory of a process until it ends. Its usage includes this program's at fork."""
 
     def __init__(self, pid):
         super().__init__()

@@ -74,8 +74,7 @@ def absent(source):
 
 
 def circles(source):
-    """Yields headers that include each other: those left after repeatedly removing headers without such an
-    include."""
+    """Yields headers that include each other, by removing all others one after the other."""
     below = collections.defaultdict(set)
     for top in ("contract", *PROGRAMS):
         for path, _, included in includes(source, top):

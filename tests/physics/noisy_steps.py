@@ -3,8 +3,7 @@
 
 Measures the effect of the size of an implicit step with noise. Prints at each STEP means over seeds, with
 standard errors, of the viscosity (without its control variate), the pressure and the contacts per sphere.
-ENGINE is the peclet-engine; phi = 0.5, radii 1 and 1.4, limits of the rate and kT as in Table 4.1. One
-core.
+ENGINE is a peclet-engine; phi = 0.5, radii 1 and 1.4, limits of the rate and kT as in Table 4.1. One core.
 """
 import argparse
 import json

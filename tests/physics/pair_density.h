@@ -30,8 +30,7 @@ struct PairDensityRun {
 constexpr double pair_density_outer_gap = 0.05;
 
 // Returns the edges of the bins of the distance d. Bins of overlaps are in units of the thermal overlap; bins
-// of gaps cover the inner and outer gap. The bin beyond the last edge is not counted: the others determine
-// it.
+// of gaps cover the inner and outer gap. The last bin, beyond these edges, is not counted.
 std::vector<double> pair_density_edges(const PairDensityRun& run);
 
 // Returns the share of steps in each bin, one row per realisation. Each realisation starts at a random

@@ -1,5 +1,4 @@
-// Power balance in shear with waves: the power of shear and waves equals dissipation plus the rate of
-// storage.
+// Power balance in shear with waves: the power of shear and waves is dissipated and stored.
 //
 // With c = U - (rate y, 0, 0), w = Omega + rate / 2 z, and all forces F and torques T of a configuration. A
 // wave u'_x(y) gives a sphere u* = u'(y_i) (1 - a^2 k^2 / 6) and w* = -u''(y_i) / 2 z. At every instant
