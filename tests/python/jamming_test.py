@@ -148,8 +148,7 @@ class Coverage(unittest.TestCase):
         return held / curves, within / curves
 
     # Binomial bounds at a probability of one in a thousand: 0.95 ± 3.3 sqrt(0.95 0.05 / 1000) = ± 0.023, and
-    # for one standard error 0.683 ± 0.049. The factor max(1, chi^2 / degrees) widens intervals by up to 0.01
-    # and 0.05.
+    # 0.683 ± 0.049 for one standard error. The factor max(1, chi^2 / degrees) adds up to 0.01 and 0.05.
     def test_of_eight_seeds(self):
         held, within = self.coverage(lambda generator, mean: sampled(generator, mean, 8))
         self.assertTrue(0.95 - 0.023 <= held <= 0.95 + 0.033, held)

@@ -1,5 +1,4 @@
-"""One function for each law. Sources as in engine/PHYSICS.md: L is Li, Royer & Ness (2023), M is Monti et al.
-(2021).
+"""One function for each law. Sources: L is Li, Royer & Ness (2023), M is Monti et al. (2021).
 
 A pair law takes Pairs and its own parameters. It returns the force on i, and for laws with torques those on i
 and j. The force on j is opposite.

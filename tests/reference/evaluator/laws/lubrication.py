@@ -5,9 +5,9 @@ PI = np.pi
 
 
 def resistances(pairs, viscosity, inner_gap):
-    """Returns X_A, Y_A, Y_B11, Y_B21, Y_C11, Y_C12, Y_C22 (L 9-12, 15-18), with eta, at xi = 2
-    h / (a_i + a_j) or at the inner gap if that is larger. Y_B times q and Y_C times q^2, q = r / (a_i + a_j),
-    leave rigid motion without resistance."""
+    """Returns X_A, Y_A, Y_B11, Y_B21, Y_C11, Y_C12, Y_C22 (L 9-12, 15-18), with eta. They are taken at
+    xi = 2 h / (a_i + a_j), or at the inner gap if that is larger. The factors q = r / (a_i + a_j) of Y_B and
+    q^2 of Y_C leave rigid motion without resistance."""
     a_i, a_j = pairs.radius_i, pairs.radius_j
     b, c = a_j / a_i, a_i / a_j
     xi = np.maximum(2 * pairs.surface_distance / (a_i + a_j), inner_gap)

@@ -8,8 +8,8 @@ PI = np.pi
 
 
 def mari_coefficients(a_i, a_j):
-    """Returns g of X_A, Y_A, Y_B, Y_C, X_G, Y_G, Y_H for ii, ij, ji, jj; X = 6 pi eta g / d and Y = 6 pi eta
-    g ln(1/d). b is the size ratio; those of j follow by exchanging the spheres, b to 1/b."""
+    """Returns g of X_A, Y_A, Y_B, Y_C, X_G, Y_G, Y_H for ii, ij, ji, jj, with X = 6 pi eta g / d and
+    Y = 6 pi eta g ln(1/d). b is the size ratio; those of j follow by exchanging the spheres, b to 1/b."""
     b, c, s = a_j / a_i, a_i / a_j, a_i + a_j
 
     def own(power, shape):
@@ -52,8 +52,8 @@ def mari_coefficients(a_i, a_j):
 
 
 def mari_lubrication(pairs, viscosity, regularisation, flow):
-    """Returns F_i, T_i and T_j. With u and w relative to the flow, P = n.E.n, Q = 2 E.n - 2 (n.E.n) n, H = 2
-    n x (E.n):
+    """Returns F_i, T_i and T_j. With u and w relative to the flow and P = n.E.n, Q = 2 E.n - 2 (n.E.n) n,
+    H = 2 n x (E.n):
 
     F_i = -A_ii u_i - A_ij u_j - n x (YB_ii w_i + YB_ji w_j)
           + (XG_ii P_i + XG_ji P_j) n + YG_ii Q_i + YG_ji Q_j
