@@ -257,7 +257,7 @@ class ThermoOutput(unittest.TestCase):
             self.assertEqual(ending_of(lammps.LammpsError(heard(said).error)), cause)
 
 
-# What each line is for LAMMPS is printed by it; `hidden` must never be.
+# The output shows how LAMMPS reads each line; `hidden` must not appear.
 SCRIPT = b"""# a comment
 variable a index 1   # of the run
 

@@ -9,8 +9,8 @@ an incomplete realisation is reported and left out.
 
 --instruction-sets  by default avx2 and avx512, if this machine and both engines have them
 --large             also N = 16384 and 65536, which take minutes a round
---panels            only the panels of results/speed-accuracy, some seconds each, with the seconds to a standard
-                    error of 2 %: for NOW from table.csv there, for BEFORE these over the ratio
+--panels            only the panels of results/speed-accuracy, some seconds each, with the seconds to a
+                    standard error of 2 %: for NOW from table.csv there, for BEFORE these over the ratio
 """
 import argparse
 import csv

@@ -98,7 +98,7 @@ TEST_F(OutputFile, ADeviceIsWrittenToAndStays) {
   EXPECT_EQ(entries(), geteuid() == 0 ? 2U : 1U);
 }
 
-// As in `{ echo before; peclet export --output /dev/stdout; echo after; } > file`.
+// The case of `{ echo before; peclet export --output /dev/stdout; echo after; } > file`.
 TEST_F(OutputFile, ADescriptorOfTheProcessIsUsedAsItIs) {
   const fs::path file = folder() / "f";
   const Descriptor open = open_file(file, O_WRONLY | O_CREAT);

@@ -55,7 +55,7 @@ class CampaignFolder:
             return f.read()
 
     def export(self):
-        """Returns the canonical export. Throws AssertionError if there is none."""
+        """Returns the canonical export. Raises AssertionError if the verb fails."""
         done = self.say("export", self.file, "--json", "--canonical")
         assert done.returncode == 0, done.stderr.decode(errors="replace")
         return done.stdout

@@ -56,7 +56,7 @@ def main():
     if arguments.list:
         print("\n".join(case.name for case in chosen))
         return 0
-    # In memory if possible: the shim makes a power cut, not the disk.
+    # Uses a file system in memory if possible: the shim makes a power cut, not the disk.
     memory = "/dev/shm" if os.path.isdir("/dev/shm") and os.access("/dev/shm", os.W_OK) else None
     folder = tempfile.mkdtemp(prefix="fault-drill-", dir=memory)
     tallies = []

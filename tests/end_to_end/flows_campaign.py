@@ -117,7 +117,7 @@ def every_flow(programs, folder):
 
 
 def share_that_flows(programs, folder):
-    """A stress below that of a viscosity of 1 + 2.5 φ moves no suspension."""
+    """Relative viscosities exceed 1 + 2.5 φ, so a jammed viscosity of 1.5 makes the first point jam."""
     flows = [{"stress": 5, "jammed_viscosity": 1.5}, {"stress": 5, "jammed_viscosity": 100}]
     scene = SCENE | {"duration": lasting(stress_times=2)}
     campaign = Campaign(programs, folder, "still", scene, "shear_rate", "/flow", flows)

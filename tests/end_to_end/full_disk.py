@@ -91,7 +91,7 @@ class FullDisk(Drill):
                 pass
 
     def keep_full(self, seconds):
-        """Fills again whatever is freed, for `seconds` seconds."""
+        """Refills all freed room for `seconds` seconds."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             self.fill()

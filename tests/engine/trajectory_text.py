@@ -36,7 +36,7 @@ SCENE = {
     "files": {"final_configuration": True},
 }
 COLUMNS = {"I": int, "R": float, "S": str}
-# As LAMMPS documents it; radii are read as charges. Read and written with all digits, for each frame.
+# The script by LAMMPS' manual; radii are read as charges. Read and written with all digits, for each frame.
 SCRIPT = """
 units lj
 atom_style charge

@@ -1,9 +1,7 @@
 // TARGET [--seed K] [--runs N] [--seconds S] [--findings FOLDER] [FILE | FOLDER]...
 //
 // Reads every file, then N mutations of valid inputs and files, or mutations for S seconds. Mutation n of
-// seed K is reproducible. An input that ends the program is saved as FOLDER/K-n, by default in the current
-// folder.
-// given.
+// seed K is reproducible. An input that ends the program is saved as K-n in FOLDER (default: current folder).
 #include <fcntl.h>
 #include <sys/time.h>
 #include <unistd.h>

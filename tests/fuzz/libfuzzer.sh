@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# libfuzzer.sh spheres SECONDS [FOLDER] fuzzes spheres_target.cpp with clang's libFuzzer
+# libfuzzer.sh spheres SECONDS [FOLDER]   fuzzes spheres_target.cpp with clang's libFuzzer
 #
 # Needs clang-14 and libclang-rt-14-dev. FOLDER (default build/fuzz/NAME) keeps the corpus for the next
 # search; findings are left in build/fuzz. Put repaired ones into tests/fuzz/corpus/NAME: tests read them.

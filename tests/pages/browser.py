@@ -31,7 +31,7 @@ class Browser:
         self.profile = tempfile.mkdtemp(prefix="peclet-browser-")
         to_browser, self.commands = os.pipe()
         self.answers, from_browser = os.pipe()
-        # The browser reads from descriptor 3 and writes to 4, whatever numbers the pipes have here.
+        # The browser reads from descriptor 3 and writes to 4, for any numbers of the pipes here.
         into = [os.dup2(to_browser, 100), os.dup2(from_browser, 101)]
         words = [
             PROGRAM,

@@ -6,7 +6,7 @@ import json
 from campaign_page import choose, rows
 from page_case import PageTest, Stage, main
 
-# A stress below that of a viscosity of 1 + 2.5 phi moves no suspension: the first point stands still.
+# Relative viscosities exceed 1 + 2.5 phi, so the first jammed viscosity, 1.5, makes the first point jam.
 CAMPAIGN = {
     "name": "still",
     "scene": {

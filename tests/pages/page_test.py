@@ -30,7 +30,7 @@ class Numbers(PageTest):
         for line, row in zip(cells, exported.values()):
             self.assertEqual([float(line[0]), float(line[1])], [float(row["/peclet"]), float(row["/volume_fraction"])])
             mean, half = map(float, line[3].split(" ± "))
-            # The half-width has two digits, and the mean as many decimals.
+            # The half-width has two digits, and the mean an equal number of decimals.
             self.assertLessEqual(abs(half / float(row["half_width"]) - 1), 0.05)
             decimals = len(line[3].split(" ± ")[1].partition(".")[2])
             self.assertLessEqual(abs(mean - float(row["mean"])), 0.5001 * 10**-decimals)

@@ -1,11 +1,13 @@
 // Power balance in shear: the power of the stress equals dissipation plus the rate of storage.
 //
 // With peculiar velocities c = U - (rate y, 0, 0), spins w = Omega + rate / 2 z, and all forces F and torques
-// T of a configuration, at every instant: V rate sigma_xy = Phi + dE/dt + sum (zeta c^2 + zeta_r w^2) + sum
-// (F.c + T.w), Phi: dissipation by lubrication, the sum over pairs of v.R.v E: energy of contacts and
-// repulsion sum (zeta c^2 + zeta_r w^2): dissipation by drag sum (F.c + T.w): power of inertia; its long-time
-// mean is that of rate sum m c_x c_y The identity ties the symmetrised stress to forces, torques, images and
-// levers: each pair counts once.
+// T of a configuration, at every instant
+//   V rate sigma_xy = Phi + dE/dt + sum (zeta c^2 + zeta_r w^2) + sum (F.c + T.w),
+//   Phi: dissipation by lubrication, the sum over pairs of v.R.v
+//   E: energy of contacts and repulsion
+//   sum (zeta c^2 + zeta_r w^2): dissipation by drag
+//   sum (F.c + T.w): power of inertia; its long-time mean is that of rate sum m c_x c_y
+// The identity ties the symmetrised stress, with each pair once, to forces, torques, images and levers.
 #include <gtest/gtest.h>
 
 #include "engine/integrators/spurious_energy.h"
@@ -142,7 +144,7 @@ TEST(EnergyBalance, HoldsAtEveryInstantOfASheardSuspension) {
   const double timestep = 5e-3;
   Laboratory laboratory = sheared_suspension(timestep);
   for (int moment = 0; moment < 14; ++moment) {
-    for (int step = 0; step < 1000; ++step) {  // a strain of 0.05: the box flips on the way
+    for (int step = 0; step < 1000; ++step) {  // a strain of 0.05: the box flips meanwhile
       laboratory.step();
     }
     System system = laboratory.system();

@@ -1,5 +1,4 @@
-// The drift kT div M of noise whose resistance depends on the position. Without it, pairs gather at low
-// mobility.
+// The drift kT div M of noise with position-dependent resistance. Without it, pairs gather at low mobility.
 //
 // False failures with a fresh seed: 6e-7, for five standard errors.
 #include <gtest/gtest.h>

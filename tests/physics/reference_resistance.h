@@ -1,5 +1,4 @@
-// The resistance of a pair from the formulas of Jeffrey & Onishi, written independently of the engine: the
-// reference for sampled noise and dissipated power.
+// Calculates the resistance of a pair from the formulas of Jeffrey & Onishi, independently of the engine.
 #pragma once
 
 #include "tests/engine/linear_algebra.h"

@@ -5,9 +5,8 @@
 // k_n = 1e4, gaps 1e-3 to 0.05. STRESS is sigma a^3 / kT; WINDOW [Brownian times] follows 20 Brownian times
 // of equilibration. Prints for each seed, with m the mean rate and M the inertia at each step:
 //   - <(rate - m)^2> M / kT, which must be 1
-//   - D V eta / kT, which must be 1 / eta_r at small stress; D from the squared strains of parts of 6
-//   Brownian
-//     times, less the mean
+//   - D V eta / kT, which must be 1 / eta_r at small stress, with the variance of strains over parts of 6
+//     Brownian times
 //   - the smallest and the largest M / (V dt eta)
 //   - the strain
 // README.md lists the results.

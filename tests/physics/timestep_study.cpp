@@ -1,9 +1,9 @@
 // The effect of the step on the stress, also beyond the largest step that a scene may have.
 //
 // A suspension of Table 4.1 of Li (2023) at rate 0.045 without noise follows a reference at a small step.
-// Windows of strain start from states of the reference and are run at larger steps, whatever the stability
-// check says. Differences between stresses of a window come from the step until chaos separates the runs.
-// Prints one JSON object per window and step; results/timestep-gate has the table.
+// Windows of strain start from states of the reference and are run at larger steps, without regard to the
+// stability check. Differences between stresses of a window come from the step until chaos separates the
+// runs. Prints one JSON object per window and step; results/timestep-gate has the table.
 #include <fmt/format.h>
 
 #include <chrono>

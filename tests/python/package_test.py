@@ -45,7 +45,7 @@ def export_of(path):
     return json.loads(subprocess.run([PECLET, "export", path], check=True, capture_output=True).stdout)
 
 
-# A stress below that of a viscosity of 1 + 2.5 phi moves no suspension: the first point stands still.
+# Relative viscosities exceed 1 + 2.5 phi, so the first jammed viscosity, 1.5, makes the first point jam.
 UNDER_STRESS = SCENE | {
     "fluid": {"viscosity": 1},
     "particles": SCENE["particles"] | {"density": 0.001},

@@ -26,7 +26,7 @@ class CrossFitting(unittest.TestCase):
         self.assertAlmostEqual(np.mean(means), 0, delta=0.03)
 
     def test_never_uses_a_realisation_for_its_own_coefficients(self):
-        # With as many controls as other values a common fit would leave nothing.
+        # A common fit with 30 controls would leave little; each value is fitted by 30 others.
         generator = np.random.default_rng(3)
         values, controls = generator.normal(size=40), generator.normal(size=(40, 30))
         self.assertGreater(cross_fitted(values, controls).var(), values.var())

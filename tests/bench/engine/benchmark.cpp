@@ -21,9 +21,9 @@ namespace {
 
 // Work of a contestant per round: long for the clock's resolution, short between disturbances.
 constexpr std::size_t particle_steps_per_round = 100000;
-// An implicit step costs as much as tens of explicit ones.
+// An implicit step costs tens of explicit ones.
 constexpr std::size_t implicit_particle_steps_per_round = 10000;
-// In this strain the contacts of the packing give way to those of the flow.
+// The strain in which contacts of the packing are replaced by those of the flow.
 constexpr double warm_up_strain = 0.2;
 
 void advance(Simulation& simulation, std::uint64_t steps) {

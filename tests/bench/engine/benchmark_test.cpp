@@ -43,7 +43,7 @@ TEST(Tiling, LeavesEveryParticleTheForcesThatItHas) {
   EXPECT_EQ(27 * of_small.sums.contacts, of_large.sums.contacts);
 }
 
-// By the formulas: each near pair needs a distance and ln(1/xi), and at least one quotient each for the
+// The formulas of each near pair need a distance and ln(1/xi), and at least one quotient each for the
 // normal and for 1/xi. Noise needs two more roots, of the squeeze mode and of the logarithm.
 TEST(Operations, OfEachNearPairAreOneLogarithmAndTheRootsOfItsFormulas) {
   for (const bool noise : {false, true}) {

@@ -102,7 +102,7 @@ def litter(spool, name, chance):
         "too-large.json": b"{",
     }
     copies = {f"{point}-{seed}-{9100 + copy}.json": good for copy in range(3)}
-    unfinished = {f"{point}-{other}-9200.json.{2 ** 22 + 1}.0.tmp": good[:100]}  # no such writer
+    unfinished = {f"{point}-{other}-9200.json.{2 ** 22 + 1}.0.tmp": good[:100]}  # dead writer
     for file, content in {**bad, **copies, **unfinished}.items():
         with open(os.path.join(spool, file), "wb") as f:
             f.write(content)

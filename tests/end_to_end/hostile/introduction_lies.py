@@ -5,7 +5,7 @@ import time
 from hostile.catalogue import ESCAPE, way
 
 
-# Lies about the engine, told by workers only, from the second process on.
+# Lies about the engine, sent by workers only, from the second process on.
 
 
 def hello(name, fate="ends", codes=(1, 6), **changed):

@@ -5,6 +5,8 @@
 //   PECLET_FAULT_BOARD    file of one page made by the drill: counts, shared by all processes
 //   PECLET_FAULT_PLAN     "role=owner call=any number=17 action=kill path=.peclet/ for=1"
 //   PECLET_FAULT_JOURNAL  folder of records of changes, so that a power cut can undo them
+//
+// Fields of the plan:
 //   role    owner (a process called peclet), worker (any other), any
 //   call    a name below, or `any` for those that change something
 //   number  the first call that fails, from 1, counted over all processes of the role; 0 only counts
@@ -28,7 +30,7 @@ constexpr int longest_wait_seconds = 60;
 enum class Action {
   kill,    // SIGKILL of the calling process
   cut,     // SIGKILL of owner and workers, the caller last
-  stop,    // SIGSTOP of the calling process, which goes on with SIGCONT
+  stop,    // SIGSTOP of the calling process, which SIGCONT continues
   wait,    // the calling process hangs in the call until the board's `off`
   eio,     // the call fails with EIO
   enospc,  // the call fails with ENOSPC

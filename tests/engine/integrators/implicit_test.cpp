@@ -270,7 +270,7 @@ TEST(Implicit, LeavesNoLargerResidualThanItsTolerance) {
   }
 }
 
-// Half steps taken beside the system: steps as the system will take them, and steps of half the size.
+// Steps on copies of the system: the steps that it will take, and steps of half the size.
 TEST(Implicit, ComparesStepsWithHalfSteps) {
   Json document = small_scene(
       {{"fluid", {{"thermal_energy", 0}}}, {"integrator", {{"method", "implicit"}, {"timestep", "auto"}}}});

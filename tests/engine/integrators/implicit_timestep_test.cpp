@@ -111,7 +111,7 @@ TEST(ImplicitTimestep, IsBoundByARepulsionBeyondLubrication) {
     "repulsion": {"strength": 1e5, "relative_length": 0.5}})"));
   const double drag = 0.5 * 6 * pi * 0.1, stiffness = 1e5 * std::exp(-0.1);
   EXPECT_NEAR(automatic_timestep(scene) / (20 * drag / stiffness), 1, 1e-12);
-  // A repulsion that ends within the range of lubrication sets no such bound.
+  // A repulsion that ends within the range of lubrication sets no bound.
   const Scene short_scene = scene_with(Json::parse(R"({
     "contact": {"friction": null, "rolling_stiffness": null, "rolling_friction": null},
     "repulsion": {"strength": 1e5, "relative_length": 0.5, "cutoff_lengths": 0.09}})"));

@@ -11,7 +11,8 @@
 namespace peclet::engine {
 namespace {
 
-// Returns a dense system of many blocks after some steps; velocities are read before those that `look` names.
+// Returns a dense system of many blocks after some steps; `look` selects steps before which velocities are
+// read.
 template <class Look>
 System after_steps(InstructionSet set, int threads, Look&& look) {
   const Physics physics =

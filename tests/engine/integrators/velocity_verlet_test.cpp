@@ -86,8 +86,7 @@ TEST(VelocityVerlet, SpheresRelaxToTheStreamingFlow) {
 
 // Returns the relative error of the velocity at t = 1 / l of two unit spheres at a gap of 0.01. They move
 // slowly apart along their line of centres, or independently without lubrication: V ~ exp(-l t),
-// l = (zeta + 2 X_A) / m. X_A = 6 pi eta (1 / (4 xi) + 9/40 ln(1 / xi)), Jeffrey & Onishi (1984) as in Li,
-// Royer & Ness (2023).
+// l = (zeta + 2 X_A) / m. X_A = 6 pi eta (1 / (4 xi) + 9/40 ln(1 / xi)), see Li, Royer & Ness (2023).
 double error_of_slowing(bool lubrication, int steps) {
   Physics physics;
   physics.viscosity = 0.1;

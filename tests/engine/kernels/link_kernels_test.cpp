@@ -32,7 +32,7 @@ INSTANTIATE_TEST_SUITE_P(EverySet, LinkKernelsOf, testing::ValuesIn(available_se
 TEST_P(LinkKernelsOf, MultiplyByTheDerivativeOfTheLoads) {
   for (const Terms& terms : tried) {
     const Physics physics = sticking(physics_with(terms));
-    // With normal_time > 0 the levers of friction would change as well, which the system leaves out.
+    // A normal_time > 0 would change the levers of friction as well, which the system leaves out.
     LinkWeights of_links = weights;
     of_links.normal_time = terms.friction ? 0 : weights.normal_time;
     Links links(physics, dense_suspension(physics, 203, 7), GetParam(), of_links);

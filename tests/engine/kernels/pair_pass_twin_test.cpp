@@ -211,7 +211,7 @@ TEST(PairPass, RemembersNoForceOfPairsThatHaveParted) {
   }
 }
 
-// Without noise, which depends on particle ids.
+// The test leaves out noise, which depends on particle ids.
 TEST(PairPass, NumberingTheParticlesOtherwiseOnlyRenamesTheForces) {
   const Physics physics =
       physics_with({.lubrication = true, .contact = true, .damping = true, .conservative = true});

@@ -11,8 +11,8 @@ namespace peclet::engine {
 namespace {
 
 // Uniform points have the ideal counts. Each bin's count is Poisson to good accuracy (twice that of unordered
-// pairs, of variance 2 per ordered pair). Fresh seeds exceed 6 standard errors in 3240 bins once in 10^5
-// runs.
+// pairs, of variance 2 per ordered pair). Fresh seeds exceed 6 standard errors in 3240 bins with probability
+// 1e-5.
 TEST(PairDistribution, OfUniformPointsIsIdeal) {
   System system = loose_spheres(200);
   const auto observable = observable_of(

@@ -115,7 +115,7 @@ TEST(StressProfile, HasTheStressOfTheBoxAsItsMean) {
   }
 }
 
-// A bin gains the momentum of its spheres, m (u_end - u_begin), small beside the exchange in a long window.
+// A bin gains the momentum of its spheres, m (u_end - u_begin), small against the exchange in a long window.
 TEST(StressProfile, BalancesTheDrag) {
   Json patch = Json::parse(R"({"particles": {"density": 1e-3}, "box": {"height": 14},
       "flow": {"shear_rate": 0, "waves": [{"periods": 1, "sine": 5}], "faxen": true},

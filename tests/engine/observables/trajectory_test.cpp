@@ -195,8 +195,7 @@ TEST(Trajectory, HasPlacesAndMotionOfEverySphereInTheCell) {
   EXPECT_GT(wrapped, 1000U);
 }
 
-// The cell of an extension or a cross shear rotates, with basis changes. log/axes maps back to the flow's
-// axes.
+// The cell of an extension or a cross shear rotates, with basis changes. log/axes maps to its axes.
 TEST(Trajectory, HasPlacesAndMotionAlongTheAxesOfATurnedCell) {
   const Json extension = Json::parse(R"({"shear_rate": null, "extension_rate": 2})");
   const Json across = Json::parse(R"({"shear_rate": 2, "cross_shear": {"amplitude": 0.3, "frequency": 10}})");

@@ -41,7 +41,7 @@ Measured measured(const Scene& scene, double begin) {
   return {mean_of(*made).at("transient"), made->quantities()};
 }
 
-// Reversal from rate 2 to -2, with 0.2 as the unit: pairs still push the old way and count negative.
+// Reversal from rate 2 to -2, with 0.2 as the unit: pairs still push in the old direction and count negative.
 TEST(Transient, IsThatOfTheReversedFlow) {
   const Scene scene = flowing(
       Json::parse(R"({"segments": [{"shear_rate": 2, "time": 1}, {"shear_rate": -2}]})"), {{"time", 1}});

@@ -65,7 +65,7 @@ std::vector<NamedPatch> flows() {
   return all;
 }
 
-// Patches of the scene, each applied by itself beside the others.
+// Patches of the scene, applied one at a time.
 std::vector<NamedPatch> surroundings() {
   const char* const texts[][2] = {
       {"as it is", "{}"},

@@ -86,7 +86,7 @@ TEST_F(GsdFile, WithANameTwiceIsRefused) {
       << refusal(bytes);
 }
 
-// Nothing is allocated for these counts, which exceed the machine's memory.
+// No memory is allocated for these counts, which exceed the machine's.
 TEST_F(GsdFile, OfCountsBeyondItsLengthIsRefused) {
   const auto index = value_at<std::uint64_t>(whole_, 8);
   for (const std::uint64_t huge : {std::uint64_t{1} << 20, std::uint64_t{1} << 40, ~std::uint64_t{0}}) {
