@@ -100,7 +100,7 @@ class Names(unittest.TestCase):
 class OverASweep(unittest.TestCase):
     def test_axes_are_logarithmic_where_numbers_lie_more_evenly_then(self):
         for numbers, expected in (
-            ([2.2, 2.9, 4.1, 7.0, 21], True),  # a viscosity towards jamming
+            ([2.2, 2.9, 4.1, 7.0, 21], True),  # a viscosity near jamming
             ([1000, 1, 10, 100], True),
             ([0.1, 0.2, 0.3, 0.4, 0.5, 0.6], False),
             ([0.01, 1, 2, 3, 4], False),

@@ -77,7 +77,7 @@ class Pairs:
 
     @property
     def surface_distance(self):
-        """h = r - a_i - a_j, negative in overlap."""
+        """Returns h = r - a_i - a_j, negative in overlap."""
         return self.distance - self.radius_i - self.radius_j
 
     @property
