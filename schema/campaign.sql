@@ -109,7 +109,7 @@ CREATE TABLE number_layout (
   layout    TEXT NOT NULL UNIQUE CHECK (json_valid(layout))
 ) STRICT;
 
--- Numbers of each completed result as a JSON array, with null for undefined ones: looks, and the means of a point, need
+-- Numbers of each completed result as a JSON array, with null for undefined ones: stop tests, and the means of a point, need
 -- no result to be inflated.
 CREATE TABLE numbers (
   point_id  INTEGER NOT NULL,

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """lammps_drill.py BIN [--kills 6] [--seed 1] [--launcher COMMAND]
 
-Runs a small ensemble of the dumbbells of results/lammps-ensemble undisturbed with one worker, then with two while
-peclet, a worker or a LAMMPS process is killed with SIGKILL at random moments. The canonical exports must be the same
-bytes, no kill may be blamed on the engine, and neither a LAMMPS process nor its folder may be left behind. With a
-launcher (mpirun -np 2) ranks are struck too, and a SIGTERM to the adapter.
+Runs a small ensemble of the dumbbells of results/lammps-ensemble undisturbed with one worker. Then runs it
+with two workers while peclet, a worker or a LAMMPS process is killed with SIGKILL at random moments. The
+canonical exports must agree byte for byte, no kill may be blamed on the engine, and no LAMMPS process or
+folder may remain. With a launcher (mpirun -np 2) ranks are killed, too, and the adapter gets a SIGTERM.
 """
 import argparse
 import os
@@ -37,14 +37,14 @@ CAMPAIGN = {
 
 
 def processes_in(folder):
-    """LAMMPS runs in a folder of its own below this one."""
+    """Returns the LAMMPS processes that run in a folder below this one."""
     found = []
     for process in filter(str.isdigit, os.listdir("/proc")):
         try:
             if os.readlink(f"/proc/{process}/cwd").startswith(folder):
                 found.append(int(process))
         except OSError:
-            pass  # gone, or not ours
+            pass  # ended, or another user's
     return found
 
 
@@ -60,7 +60,7 @@ class Drill(CampaignFolder):
         return super().start("run", "drill.json", "--workers", self.workers, "--checkpoint", "0.01")
 
     def workers_at_work(self, process):
-        """Those of its children that have a seed."""
+        """Returns the workers that have a seed."""
         try:
             busy = {row[0] for row in self.query("SELECT process FROM attempt WHERE outcome = 'running'")}
         except sqlite3.Error:
@@ -68,13 +68,13 @@ class Drill(CampaignFolder):
         return [child for child in children(process.pid) if child in busy]
 
     def left_behind(self):
-        """After a while in which the orphans of a killed run may leave by themselves."""
+        """Returns what is left once the orphans of a killed run have had time to leave."""
         comes_true(lambda: not processes_in(self.scratch), nap=0.05)
         return [*processes_in(self.scratch), *os.listdir(self.scratch)]
 
 
 def candidates(drill, process, whom):
-    """peclet while it has given out seeds, the workers that have them, or the LAMMPS processes of these."""
+    """Returns peclet while seeds are running, the workers that run them, or their LAMMPS processes."""
     workers = drill.workers_at_work(process)
     return {
         "peclet": [process.pid] if workers else [],
@@ -86,8 +86,7 @@ def candidates(drill, process, whom):
 
 
 def strike(drill, process, whom, chance, longest_delay):
-    """Kills one of them some time after there has been one. Returns whether it did; there is none when the campaign is
-    through."""
+    """Kills a candidate some time after the first appears. Returns False if the campaign ends before."""
     while not candidates(drill, process, whom):
         if process.poll() is not None:
             return False
@@ -111,7 +110,7 @@ def main():
     parser.add_argument("--launcher", default="")
     arguments = parser.parse_args()
     chance = random.Random(arguments.seed)
-    seeds = max(5, arguments.kills)  # so that the campaign outlasts them
+    seeds = max(5, arguments.kills)  # so that the campaign outlasts the kills
     with tempfile.TemporaryDirectory() as folder:
         undisturbed = Drill(arguments.bin, os.path.join(folder, "undisturbed"), 1, seeds, arguments.launcher)
         started = time.monotonic()
@@ -134,7 +133,7 @@ def main():
                     process.wait()
                     process = drill.start()
             elif process.poll() is not None:
-                break  # through before it could be struck as often as asked
+                break  # the campaign ended before all kills
         code = process.wait()
         same = drill.export() == undisturbed.export()
         done, results, blamed = (drill.ask(query) for query in (ENDED, RESULTS, BLAMED))

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Claims about the parts of adapters/lammps that need no LAMMPS: python3 -m unittest, or this file."""
+"""Tests of the parts of adapters/lammps that need no LAMMPS: python3 -m unittest, or this file."""
 import json
 import os
 import signal
@@ -24,7 +24,7 @@ GOOD = {
 }
 POINT = "ab" * 32
 
-# As the version of Debian 12 prints it: a run of the set-up, then the one that counts.
+# Output of Debian 12's version: a set-up run, then the run that counts.
 OUTPUT = """LAMMPS (29 Sep 2021 - Update 2)
 thermo ${every}
 thermo 50
@@ -147,7 +147,7 @@ class ThermoOutput(unittest.TestCase):
         self.assertEqual((thermo.steps_done(), thermo.timestep, thermo.atoms), (100, 0.005, 500))
 
     def refusal(self, text, steps=100):
-        """What is wrong with this output."""
+        """Returns the error of this output."""
         with self.assertRaises(lammps.LammpsError) as caught:
             heard(text, steps).check()
         return str(caught.exception)
@@ -181,7 +181,7 @@ class ThermoOutput(unittest.TestCase):
         self.assertIn("2 rows of 3", self.refusal(OUTPUT.replace("       100   1.5", "       100   1.5 WARNING")))
 
     def test_a_run_whose_rows_are_not_plain_numbers_is_refused(self):
-        named = OUTPUT  # as by thermo_modify format 1 "step=%d"
+        named = OUTPUT  # thermo_modify format 1 "step=%d"
         for row in ("        50   1   ", "       100   1.5", "       150   2   "):
             named = named.replace(row, "step=" + row.strip())
         self.assertIn("has no row of plain numbers", self.refusal(named))
@@ -257,7 +257,7 @@ class ThermoOutput(unittest.TestCase):
             self.assertEqual(ending_of(lammps.LammpsError(heard(said).error)), cause)
 
 
-# What each line is for LAMMPS is printed by it; `hidden` must never be.
+# The output shows how LAMMPS reads each line; `hidden` must not appear.
 SCRIPT = b"""# a comment
 variable a index 1   # of the run
 
@@ -352,7 +352,7 @@ class Endings(unittest.TestCase):
 
 class Samples(unittest.TestCase):
     def run_through(self, folder):
-        """All chunks, with LAMMPS' part played here: v_eta counts rows from 1, c_msd[4] squares them."""
+        """Runs all chunks in LAMMPS' place: v_eta counts rows from 1, c_msd[4] squares them."""
         run = realisation(folder)
         count = 0
         while not run.has_ended():
@@ -380,7 +380,7 @@ class Samples(unittest.TestCase):
         )
         self.assertEqual(list(result["blocks"]), ["viscosity"])
         self.assertEqual(len(result["blocks"]["viscosity"]), 32)
-        self.assertEqual(result["blocks"]["viscosity"][0], 2)  # of 1, 2, 3
+        self.assertEqual(result["blocks"]["viscosity"][0], 2)  # mean of 1, 2, 3
 
     def test_a_checkpoint_is_taken_over_and_a_torn_or_strange_one_is_not(self):
         with tempfile.TemporaryDirectory() as folder:

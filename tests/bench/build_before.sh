@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # build_before.sh [COMMIT [DIR]]
 #
-# Builds the peclet-engine of COMMIT (by default 950c12b, the last with one pair after the other) from a clone in DIR (by default
-# build/before-COMMIT) and prints its path: the yardstick of `peer.py --before`.
+# Builds the peclet-engine of COMMIT from a clone in DIR (by default build/before-COMMIT) and prints its path.
+# The default COMMIT, 950c12b, is the last that treats one pair after the other. For `peer.py --before`.
 set -euo pipefail
 repository=$(git -C "$(dirname "${BASH_SOURCE[0]}")" rev-parse --show-toplevel)
 wanted=${1:-950c12b}

@@ -1,11 +1,12 @@
 #!/usr/bin/python3
 """error_bar.py ENGINE --before ENGINE [--rounds N] [--seeds N] [--seeds-before N] [--count N] [--window TIMES]
 
-What an error bar costs: processor time per unit of strain and, with noise, the variance of the relative viscosity times
-the processor time, of ENGINE at its defaults and of the engine of an earlier commit (build_before.sh) with its explicit
-steps, in the same scenes and in turn. The costs are those of a whole run from a packing, a hundredth as long before.
-Variances are those of averages of 1, 2, 4 ... of the 32 blocks of a window (of 40 Brownian times, after a quarter of
-that): the longer they are, the less the control variate takes away. Their errors take averages for independent.
+The cost of an error bar: processor time per unit of strain and, with noise, the variance of the relative
+viscosity times processor time. Compares ENGINE at its defaults with the engine of an earlier commit
+(build_before.sh) at its explicit steps, in the same scenes and in turn. Costs are those of a whole run
+from a packing; the earlier engine gets a shorter one. Variances are those of averages over 1, 2, 4 ... of
+the 32 blocks of a window (by default 40 Brownian times, after a quarter of that). Longer averages gain
+less from the control variate. Errors of variances take averages as independent.
 """
 import argparse
 import json
@@ -26,7 +27,7 @@ SCENE = {
     "fluid": {"viscosity": 0.1},
     "lubrication": {"form": "kim-karrila", "inner_gap": 1e-3, "outer_gap": 0.05},
 }
-# name, what drives it, friction, time of a run now and before (in the unit of the second column)
+# Name, driving, friction, duration of a run now and before (in the unit of the fourth column).
 QUIET = {"flow": {"shear_rate": 0.01}}
 COST_CASES = [
     ("no noise, St = 0.01", QUIET, 0, "strain", 2, 0.02),
@@ -86,8 +87,8 @@ def costs(engines, rounds, folder):
 
 
 def blocks_of(result):
-    """Of each block the viscosity without and with the stress of the random forces; an engine of before this was a
-    part of the stress has it as a control variate."""
+    """Returns for each block the viscosity without and with the stress of the random forces. An earlier
+    engine, whose viscosity leaves this stress out, reports it as a control variate."""
     rows = result["blocks"]
     if "control_variates" in rows:
         noise = rows["control_variates"]["brownian_pairwise"]
@@ -97,7 +98,7 @@ def blocks_of(result):
 
 
 def variance_of_averages(series, together, which):
-    """Of averages of `together` consecutive blocks about the mean of all, and their number."""
+    """Returns the variance of averages over `together` consecutive blocks, and the number of averages."""
     averages = [
         statistics.mean(block[which] for block in row[i : i + together])
         for row in series

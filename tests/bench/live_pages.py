@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """live_pages.py BIN [--pages 10] [--seconds 5] [--rounds 5] [--browser]
 
-Whether open live pages slow the owner of a campaign: it takes in results of jobs that take no time (BIN/fake_engine),
-in turn with no page and with so many that ask once a second as a page does (--browser: real ones), within one run.
-Says what a result costs the owner, in processor time, how many it takes in a second, and what the server takes; the
-median and extremes of the rounds, and of the ratios within a round.
+Measures whether open live pages slow the owner of a campaign. The owner takes in results of jobs that take
+no time (BIN/fake_engine), in turn without pages and with pages that ask once a second (--browser: real
+pages), in one run. Prints the owner's processor time per result, its results per second and the server's
+share: the median and extremes of the rounds, and of the ratios within a round.
 """
 import argparse
 import contextlib
@@ -26,7 +26,7 @@ from campaign_folder import ENDED, query  # noqa: E402
 
 
 class Asking(threading.Thread):
-    """Asks as a page does: what has changed, and once in five seconds for more of a point."""
+    """Sends the requests of a page: changes every second, and details of a point every five seconds."""
 
     def __init__(self, server, stop):
         super().__init__(daemon=True)
@@ -45,7 +45,7 @@ class Asking(threading.Thread):
                 count += 1
                 if count % 5 == 0:
                     self.server.ask("point?hash=" + hashes[0])
-        except Exception as error:  # told by whoever waits for the thread
+        except Exception as error:  # reported by the thread that joins this one
             self.failure = error
 
 

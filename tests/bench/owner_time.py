@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """owner_time.py BIN [--maximum N ...] [--points N] [--seconds S] [--padding N]
 
-What `peclet run` itself costs a result, with engines that only pretend (BIN/fake_engine): processor time of the owner,
-and its largest memory. BIN may be a folder of another build, to be called in turn.
+Prints the processor time of `peclet run` per result, and its largest memory, with jobs that take no time
+(BIN/fake_engine). BIN may be a folder of another build, to be called in turn.
 """
 import argparse
 import json
@@ -21,7 +21,7 @@ SCENE = os.path.join(TESTS, "runner", "small_scene.json")
 
 
 def document(binaries, points, maximum):
-    """Returns a campaign of the fake engine that ends at the maximum of seeds."""
+    """Returns a campaign of the fake engine that ends at the maximum number of seeds."""
     with open(SCENE, encoding="utf-8") as scene:
         return {
             "name": "campaign",

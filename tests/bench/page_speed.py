@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 """page_speed.py BIN [--points 100] [--seeds 800]
 
-How long `peclet report` takes for a large campaign, how long a browser takes to open the page, and the same of the live
-page of `peclet serve`: to open it, and from the question what has changed, when a seed of each of eight points has
-ended, until it is drawn. The campaign is real
-but for its seeds: a few are run, and copied in the database with other numbers until there are enough; `peclet run`
-then looks at them. Five repetitions: the median, and all of them.
+Measures for a large campaign how long `peclet report` takes and how long a browser takes to open the page.
+Measures the same for the live page of `peclet serve`: opening it, and an update after a seed of each of
+eight points has ended, from the request until it is drawn. The campaign is real but for its seeds: two per
+point are run and copied in the database with other numbers, and `peclet run` takes these in. Five
+repetitions: the median, and all of them.
 """
 
 import argparse
@@ -60,7 +60,7 @@ def deflated(text, dictionary):
 
 
 def copies(database, point, seeds, columns):
-    """Rows of seeds that the point lacks, each a copy of its first one with other numbers."""
+    """Yields rows of the seeds that the point lacks, each a copy of its first one with other numbers."""
     row = dict(database.execute("SELECT * FROM realisation WHERE point_id = ? AND seed = 0", (point,)).fetchone())
     layout, stored = database.execute(
         "SELECT layout_id, numbers FROM numbers WHERE point_id = ? AND seed = 0", (point,)
@@ -112,7 +112,7 @@ def said(what, seconds):
     print(f"{what}: {middle:.2f} s ({', '.join(f'{one:.2f}' for one in sorted(seconds))})", flush=True)
 
 
-# Asks, takes the answer, and waits until it is drawn; null while there is nothing new, or it may not be read yet.
+# Asks, takes the answer and waits until it is drawn; null if there is no news yet or it is not readable yet.
 UPDATE = """(async () => { const live = Live.current, begun = performance.now();
     const response = await Live.fetch('state?since=' + live.token);
     if (response.status !== 200) return null;
@@ -122,12 +122,12 @@ UPDATE = """(async () => { const live = Live.current, begun = performance.now();
 
 
 def live_page(folder, browser, seeds):
-    """Seconds that it takes to open the live page, and to bring it up to date."""
+    """Returns the seconds to open the live page, and to update it."""
     with folder.serve("large.json") as server:
         opened = [browser.open(server.address) for _ in range(REPETITIONS)]
         page, updates = opened[-1], []
         for one in opened:
-            one.evaluate("Live.prototype.ask = async () => {}")  # asks when it is told to, and never by itself
+            one.evaluate("Live.prototype.ask = async () => {}")  # asks only when told to
         time.sleep(2)
         for more in range(1, REPETITIONS + 1):
             fill(folder.file("large.peclet/campaign.db"), seeds + more, most_points=8)

@@ -1,14 +1,13 @@
 #!/usr/bin/python3
 """peer.py ENGINE [--before ENGINE] [--repetitions 7] [--strain 0.2] [--skins 0.05] [--lammps lmp]
 
-How fast ENGINE (a peclet-engine) is beside LAMMPS on the nearest scenes that LAMMPS has, each on one core. Every round
-runs all contestants in turn, so that what else the machine does falls on all of them; ratios are taken within a round.
-README.md says what is the same in both programs and what is not.
+Compares the speed of ENGINE (a peclet-engine) with that of LAMMPS on the nearest scenes that LAMMPS has,
+each on one core. Every round runs all contestants in turn, so that disturbances hit all of them; ratios
+are taken within a round. README.md says what is the same in both programs and what is not.
 
---before   another peclet-engine, for example of build_before.sh, that takes part in every round
---strain   of the warm-up of LAMMPS; relative viscosity and temperature of each program are averaged over its second
-           half
---skins    of the neighbour list of LAMMPS; one contestant each
+--before   another peclet-engine, for example from build_before.sh, that takes part in every round
+--strain   warm-up of LAMMPS; viscosity and temperature of each program are averaged over its second half
+--skins    skins of the neighbour list of LAMMPS, one contestant each
 """
 import argparse
 import json
@@ -22,15 +21,15 @@ import tempfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 VISCOSITY = 0.1
-# Cube of 733 spheres of radius 1 and 267 of radius 1.4, which is what the engine makes of 1000 in equal volumes, at
-# 0.5.
+# The edge of a cube at volume fraction 0.5 with 733 spheres of radius 1 and 267 of radius 1.4. The engine
+# makes these of 1000 in equal volumes.
 EDGE = ((733 + 267 * 1.4**3) * 4 / 3 * math.pi / 0.5) ** (1 / 3)
 TIMED_STEPS = 3000
 STEPS_BETWEEN_SAMPLES = 20
 SKIN = 0.05  # the fastest
-OURS = "peclet-engine"  # the contestant to whom ratios are taken
+OURS = "peclet-engine"  # reference of the ratios
 
-# Cases of engine_bench, with what drives each of them.
+# Cases of engine_bench, with their driving.
 DRIVES = {
     "frictionless": {"flow": {"shear_rate": 0.045}},
     "brownian": {"peclet": 10, "limits": {"shear_rate": 0.045, "thermal_energy": 1.0}},
@@ -46,7 +45,7 @@ def output_of(*command):
 
 
 def engine_result(engine, case, strain, folder):
-    """What the engine says of the scene of `case`, with means over the second half of `strain`."""
+    """Returns the engine's result for the scene of `case`, with means over the second half of `strain`."""
     scene = {
         "particles": {
             "count": 1000,
@@ -68,7 +67,7 @@ def engine_result(engine, case, strain, folder):
 
 
 def bench_median(table, case):
-    """The number of the row `case` that stands below the heading `median`."""
+    """Returns the number in the row `case` below the heading `median`."""
     heading = next(match for line in table.splitlines() for match in re.finditer(r"\bmedian\b", line))
     row = next(line for line in table.splitlines() if line.split()[:1] == [case])
     return next(
@@ -79,14 +78,14 @@ def bench_median(table, case):
 
 
 def loop_seconds(output):
-    """Processor time of the loop, its wall-clock time times its share of a processor, and its particle steps."""
+    """Returns the processor time of the loop (wall-clock time times share) and its particle steps."""
     loop = re.search(r"Loop time of (\S+) on 1 procs for (\d+) steps with (\d+) atoms", output)
     share = re.search(r"([\d.]+)% CPU use", output)
     return float(loop[1]) * float(share[1]) / 100, int(loop[2]) * int(loop[3])
 
 
 class Lammps:
-    """One scene in LAMMPS, packed and warmed up; `seconds` of processor time for that."""
+    """A scene in LAMMPS, packed and warmed up; `seconds` is the processor time of that."""
 
     def __init__(self, program, folder, rate, thermal_energy, step, strain, packing=1):
         self.program = program
@@ -112,7 +111,7 @@ class Lammps:
         return output_of(self.program, "-in", os.path.join(HERE, script), "-log", "none", *given)
 
     def nanoseconds(self, skin):
-        """Of the loop, per particle and step."""
+        """Returns the nanoseconds of the loop per particle and step."""
         output = self.run(
             "lammps.in", **{"from": self.warm}, to=self.unused, steps=TIMED_STEPS, every=0, skin=skin, **self.shear
         )
@@ -121,7 +120,7 @@ class Lammps:
 
 
 def bench(engine):
-    """The command that times cases: engine_bench beside the engine; older engines have a verb for it."""
+    """Returns the command that times cases: engine_bench beside the engine, or an older engine's verb."""
     beside = os.path.join(os.path.dirname(engine), "engine_bench")
     return [beside] if os.path.exists(beside) else [engine, "bench"]
 

@@ -1,16 +1,16 @@
 #!/usr/bin/python3
 """ratios.py BEFORE NOW [SCENE ...] [--rounds 5] [--instruction-sets avx2 avx512] [--large] [--panels]
 
-Processor time per unit of strain of two engines at their default steps, on one thread, in scenes whose files are the
-same byte for byte: what a change is worth to who runs it. BEFORE is the engine of an earlier commit (build_before.sh).
-In every round both run the same seed one after the other, and take turns to begin; ratios are those of a round. Times
-are those of whole runs, packing included; iterations of the solver are those of the production window, steps those of
-the whole run. A round in which a realisation broke off counts for nothing, and is said.
+Compares the processor time per unit of strain of two engines at their default steps, on one thread, with
+identical scene files. BEFORE is the engine of an earlier commit (build_before.sh). In every round both run
+one seed and take turns to begin; ratios are taken within a round. Times are those of whole runs, packing
+included. Solver iterations are those of the production window, steps those of the whole run. A round with
+an incomplete realisation is reported and left out.
 
---instruction-sets  by default all that this machine and both engines have, but the baseline
+--instruction-sets  by default avx2 and avx512, if this machine and both engines have them
 --large             also N = 16384 and 65536, which take minutes a round
---panels            only the panels of results/speed-accuracy, some seconds each, with the seconds to a standard error
-                    of 2 %: of NOW those of table.csv there, of BEFORE these over the ratio
+--panels            only the panels of results/speed-accuracy, some seconds each, with the seconds to a
+                    standard error of 2 %: for NOW from table.csv there, for BEFORE these over the ratio
 """
 import argparse
 import csv
@@ -44,7 +44,7 @@ def at_peclet(number):
     return {"flow": None, "peclet": number, "limits": limits}
 
 
-# Of each scene, patches of the published one. Two engines with two instruction sets take ten seconds a round.
+# Patches of the published scene, by name. Two engines with two instruction sets take ten seconds a round.
 SCENES = {
     "quiet": [lasting(0.5, 1)],
     "friction-0.45": [ROUGH, {"volume_fraction": 0.45}, lasting(0.5, 1)],
@@ -63,7 +63,7 @@ SECONDS_OF_A_PANEL = 2
 
 
 def read_panels():
-    """Of each panel, patches of the published scene that take an engine some seconds, and its seconds to 2 %."""
+    """Returns for each panel patches for some seconds of run time, and its seconds to 2 %."""
     scenes, seconds = {}, {}
     with open(SPEED_ACCURACY / "table.csv", encoding="utf-8", newline="") as file:
         for row in csv.DictReader(file):

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """rough_spheres.py ENGINE [--rounds 5] [--counts 1000 65536] [--threads 1 2]
 
-What a unit of strain costs the rough suspension FR of Monti, Rathee, Shen & Rosti (2021), Table 1 (phi = 0.5, mu = 1,
-lubrication `mari` to 0.05 a), at any number of spheres and of threads: times of a run over a longer strain less those
-of a shorter one, so that neither the packing nor the start is in them, on the wall and of the processor; and the most
-memory that the longer one has held, packing and all.
+Measures the cost of a unit of strain in the rough suspension FR of Monti, Rathee, Shen & Rosti (2021),
+Table 1 (phi = 0.5, mu = 1, lubrication `mari` to 0.05 a), for several numbers of spheres and threads.
+Prints wall-clock and processor time of a run over a longer strain less that of a shorter one, which
+removes packing and start. Prints also the largest memory of the longer run, packing included.
 """
 import argparse
 import json
@@ -21,8 +21,8 @@ from studies.monti import PAIRS, contact
 from studies.scenes import during, merged
 from studies.tables import markdown_head, markdown_row
 
-STRAINS = 1, 1.5  # to the first a packing makes its contacts
-SPHERES_OF_A_ROUND = 65536  # smaller systems run as many strains as make up for it, up to so many
+STRAINS = 1, 1.5  # the shorter strain lets the packing form its contacts
+SPHERES_OF_A_ROUND = 65536  # smaller systems run longer, up to MOST_STRAINS more
 MOST_STRAINS = 10
 HEAD = (
     "N",
@@ -37,8 +37,7 @@ HEAD = (
 
 
 class Memory(threading.Thread):
-    """Looks at the most that a process has held until it ends; its usage would count what this program held when it
-    was made."""
+    """Polls the peak memory of a process until it ends. Its usage includes this program's at fork."""
 
     def __init__(self, pid):
         super().__init__()
@@ -48,14 +47,14 @@ class Memory(threading.Thread):
     def run(self):
         while True:
             lines = [line for line in self.path.read_text().splitlines() if line.startswith("VmHWM:")]
-            if not lines:  # a process that has ended holds nothing
+            if not lines:  # the process has ended
                 return
             self.most = 1024 * int(lines[0].split()[1])
             time.sleep(0.02)
 
 
 def run(engine, folder, count, threads, strain):
-    """Seconds on the wall, processor seconds, steps and largest memory in bytes of one run."""
+    """Returns wall-clock seconds, processor seconds, steps and peak memory [bytes] of one run."""
     patch = {"particles": {"count": count}, "contact": contact(4e5, 1), **during({"strain": 0}, {"strain": strain})}
     scene, output = (os.path.join(folder, name) for name in ("scene.json", "result.json"))
     Path(scene).write_text(json.dumps(merged(PAIRS, patch)))

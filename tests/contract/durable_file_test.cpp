@@ -54,7 +54,7 @@ TEST_F(DurableFile, ManyWritersOfOneFileNeverMixTheirBytes) {
   EXPECT_EQ(entries(), 1U);
 }
 
-// FIPS 180-2, appendix B.1 and B.3.
+// Expected digests: FIPS 180-2, appendix B.1 and B.3.
 TEST_F(DurableFile, Sha256IsThePublishedOne) {
   EXPECT_EQ(sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
   EXPECT_EQ(sha256_base64("abc"), "ungWv48Bz+pBQUDeXa4iI7ADYaOWF3qctBD/YfIAFa0=");

@@ -99,7 +99,7 @@ TEST(FrameChannel, SilenceAndAClosedPeerAreToldApart) {
   EXPECT_EQ(channel.receive(message, milliseconds(-1)), FrameChannel::Status::closed);
 }
 
-// The test would die of SIGPIPE if a signal were raised.
+// A raised signal would end the test with SIGPIPE.
 TEST(FrameChannel, SendingToAClosedPeerIsAnErrorAndNoSignal) {
   const auto error_of = [](int descriptor) {
     try {

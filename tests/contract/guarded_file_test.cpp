@@ -66,7 +66,7 @@ TEST_F(GuardedFile, NothingButARegularFileIsOpened) {
   EXPECT_EQ(read_file(victim), "precious");
 }
 
-// Opening either side of a FIFO waits for the other one: this test would.
+// Opening one side of a FIFO waits for the other; a fault would make this test hang.
 TEST_F(GuardedFile, NobodyWaitsForAFifoOrASocket) {
   const fs::path pipe = fifo();
   EXPECT_NE(refusal(pipe, O_RDONLY).find("is a FIFO"), std::string::npos);
@@ -89,7 +89,7 @@ TEST_F(GuardedFile, ARegularFileIsOpenedAsOpenDoesIt) {
   EXPECT_THROW(read_regular(file, 5), UnsuitableFile);
 }
 
-// A terabyte that takes no room on the disk.
+// A sparse terabyte takes no disk space.
 TEST_F(GuardedFile, ASparseFileIsNotRead) {
   const fs::path file = folder() / "sparse";
   write_durably(file, "");
@@ -100,13 +100,13 @@ TEST_F(GuardedFile, ASparseFileIsNotRead) {
 TEST_F(GuardedFile, AFolderIsOnesOwnAndNoLink) {
   require_own_folder(folder());
   require_own_folder(folder() / "absent");
-  require_own_folder("/");  // root's
+  require_own_folder("/");  // owned by root
   const fs::path alias = link(folder());
   EXPECT_THROW(require_own_folder(alias), UnsuitableFile);
   require_own_folder(alias, true);
   write_durably(folder() / "file", "");
   EXPECT_THROW(require_own_folder(folder() / "file"), UnsuitableFile);
-  // What belongs to an ordinary user is refused to any other one, also to root.
+  // A folder of an ordinary user is refused to any other user, including root.
   const fs::path foreign = folder() / "foreign";
   fs::create_directory(foreign);
   if (geteuid() == 0) {

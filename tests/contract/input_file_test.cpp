@@ -44,7 +44,7 @@ TEST_F(InputFile, OfTheLargestSizeIsRead) {
 
 TEST_F(InputFile, ThatIsTooLargeIsRefusedBeforeItIsRead) {
   const fs::path path = file("[]");
-  fs::resize_file(path, std::uintmax_t{1} << 40U);  // a terabyte of holes
+  fs::resize_file(path, std::uintmax_t{1} << 40U);  // a sparse terabyte
   EXPECT_EQ(fault_of(path), path.string() + ": 1048576 MiB: must be at most 1 MiB");
 }
 
@@ -71,7 +71,7 @@ TEST_F(InputFile, WhatCannotBeReadIsNamedWithTheReason) {
 
 TEST_F(InputFile, OfTooManyValuesIsRefusedWithTheirPlace) {
   std::string numbers = "[0";
-  for (int i = 1; i < 999; ++i) numbers += ",0";  // with the array a thousand
+  for (int i = 1; i < 999; ++i) numbers += ",0";  // a thousand values with the array
   EXPECT_EQ(fault_of(file(numbers + "]")), "accepted");
   const std::string fault = fault_of(file(numbers + ",\n\"\"]"));
   EXPECT_NE(fault.find("line 2, column 2: more than 1000 values"), std::string::npos) << fault;

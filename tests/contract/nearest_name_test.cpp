@@ -12,8 +12,8 @@ TEST(NearestName, IsTheOneWithFewestMistakes) {
   EXPECT_EQ(nearest_name("volume_fractionn", keys), "volume_fraction");  // one too many
   EXPECT_EQ(nearest_name("partikles", keys), "particles");               // a wrong one
   EXPECT_EQ(nearest_name("contcat", keys), "contact");                   // two swapped
-  EXPECT_EQ(nearest_name("flwo", keys), "flow");          // one mistake, as a third of 4 allows
-  EXPECT_EQ(nearest_name("run", {"ran", "rum"}), "ran");  // the first of equals
+  EXPECT_EQ(nearest_name("flwo", keys), "flow");                         // one mistake, a third of 4 letters
+  EXPECT_EQ(nearest_name("run", {"ran", "rum"}), "ran");                 // first of equals
 }
 
 TEST(NearestName, NothingFarFetchedIsOffered) {

@@ -50,7 +50,7 @@ TEST_F(OutputFile, ALinkIsFollowedAndStays) {
   EXPECT_TRUE(fs::is_symlink(folder() / "ahead"));
 }
 
-// What is written piece by piece replaces a file whole, or not at all.
+// Output in pieces replaces a file completely or not at all.
 TEST_F(OutputFile, TakesPiecesThatNeedNotFitIntoMemory) {
   const fs::path file = folder() / "f";
   write_output(file, "old");
@@ -83,7 +83,7 @@ TEST_F(OutputFile, AFifoIsWrittenToAndStays) {
   EXPECT_TRUE(fs::is_fifo(pipe));
 }
 
-// Root, who could do it harm, takes a device of the test's own: /dev/null's number is 1, 3 (devices.txt).
+// Root could damage a device, so it gets one of the test's own: 1, 3 is /dev/null (devices.txt).
 TEST_F(OutputFile, ADeviceIsWrittenToAndStays) {
   fs::path device = "/dev/null";
   if (geteuid() == 0) {
@@ -98,7 +98,7 @@ TEST_F(OutputFile, ADeviceIsWrittenToAndStays) {
   EXPECT_EQ(entries(), geteuid() == 0 ? 2U : 1U);
 }
 
-// As `{ echo before; peclet export --output /dev/stdout; echo after; } > file` does.
+// The case of `{ echo before; peclet export --output /dev/stdout; echo after; } > file`.
 TEST_F(OutputFile, ADescriptorOfTheProcessIsUsedAsItIs) {
   const fs::path file = folder() / "f";
   const Descriptor open = open_file(file, O_WRONLY | O_CREAT);

@@ -23,14 +23,14 @@ TEST(Printable, WhatATerminalObeysIsEscaped) {
             "\\u009b2J");  // CSI as one character, U+009B
   EXPECT_EQ(printable("\u202e"
                       "evil\u2066"),
-            "\\u202eevil\\u2066");  // turn the direction of writing
+            "\\u202eevil\\u2066");  // change of writing direction
   EXPECT_EQ(printable("a\u2028b"), "a\\u2028b");
 }
 
 TEST(Printable, WhatIsNoUtf8IsShownByteByByte) {
   EXPECT_EQ(printable("\xff"), "\\xff");
-  EXPECT_EQ(printable("\xc3"), "\\xc3");                             // cut off
-  EXPECT_EQ(printable("\xc0\x8a"), "\\xc0\\x8a");                    // a newline in more bytes than it needs
+  EXPECT_EQ(printable("\xc3"), "\\xc3");                             // truncated
+  EXPECT_EQ(printable("\xc0\x8a"), "\\xc0\\x8a");                    // an overlong newline
   EXPECT_EQ(printable("\xed\xa0\x80"), "\\xed\\xa0\\x80");           // a surrogate
   EXPECT_EQ(printable("\xf4\x90\x80\x80"), "\\xf4\\x90\\x80\\x80");  // beyond U+10FFFF
   EXPECT_EQ(printable("\xe2(\xa1"), "\\xe2(\\xa1");
@@ -43,11 +43,11 @@ TEST(Printable, ALongTextLosesItsMiddleNotItsEnds) {
   const std::string shown = printable(vast, 60);
   EXPECT_EQ(shown.size(), 60U);
   EXPECT_TRUE(shown.starts_with("begin") && shown.ends_with("end")) << shown;
-  // Characters are counted, not bytes, and none is cut.
+  // The limit counts characters, not bytes, and cuts between them.
   std::string umlauts;
   for (int i = 0; i < 1000; ++i) umlauts += "ä";
   EXPECT_EQ(printable(umlauts, 11), "ääääää...ää");
-  // An escape is whole or not there.
+  // An escape is kept or left out as a whole.
   EXPECT_EQ(printable(std::string(100, '\x01'), 12), "\\u0001...");
 }
 

@@ -2,7 +2,8 @@
 """schema_agreement.py SCHEMA FOLDER
 
 Checks that an independent validator, given the committed schema, accepts every valid_*.json of the folder and
-refuses every invalid_*.json. The C++ tests ask the same of the tables of keys. Needs Debian's python3-jsonschema.
+refuses every invalid_*.json. The C++ tests check the tables of keys with these documents. Needs Debian's
+python3-jsonschema.
 """
 import json
 import pathlib

@@ -1,4 +1,4 @@
-// A folder of a test's own.
+// A folder that belongs to one test and is removed with it.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """at_two_in_the_morning.py BIN [--quick] [--only WORD] [--page FILE]
 
-Does by real commands what a tired person does wrong at two in the morning: names the wrong file or folder, starts a
-second owner, deletes a database, fills the disk, closes the laptop. Every answer must have the right exit code and the
-phrases that matter; where a case follows the command that an answer names, it is typed literally and must work; and
-where results are counted before and after, none may be lost. --page writes the transcript, MISTAKES.md.
+Makes common mistakes with real commands: wrong files and folders, a second owner, a deleted database, a full
+disk, a closed laptop. Every answer must have the right exit code and the important phrases. A command that an
+answer names is typed literally and must work. Results counted before and after must not be lost. --page
+writes the transcript, MISTAKES.md.
 """
 import argparse
 import subprocess

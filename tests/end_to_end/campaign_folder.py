@@ -1,26 +1,25 @@
-"""A folder with a campaign, as tests of whole programs use it: written, run, waited for, asked and exported; and what
-is known of the processes that run for it."""
+"""A folder with a campaign, for tests of whole programs, and its processes."""
 import json
 import os
 import sqlite3
 import subprocess
 import time
 
-# What a campaign's database is asked for.
+# Queries of a campaign's database.
 ENDED = "SELECT count(*) FROM realisation WHERE state = 'done'"
 RESULTS = "SELECT count(*) FROM result"
 BLAMED = "SELECT total(blamed) FROM attempt"
 
 
 class CampaignFolder:
-    """NAME.json of a document, the programs that run it, and what they have said, in the file `log`."""
+    """The file NAME.json of a document, the programs that run it, and their output in the file `log`."""
 
     def __init__(self, programs, folder, document, environment=None):
         self.programs, self.folder, self.document = os.path.abspath(programs), folder, dict(document)
         self.peclet = self.program("peclet")
         self.file = document["name"] + ".json"
         self.data = self.place(document["name"] + ".peclet")
-        self.environment = environment or {}  # beside this process's own
+        self.environment = environment or {}  # in addition to this process's own
         os.makedirs(folder, exist_ok=True)
         self.write()
 
@@ -47,7 +46,7 @@ class CampaignFolder:
             return subprocess.Popen(command or [self.peclet, *words], cwd=self.folder, env=variables, **how)
 
     def say(self, *words, **how):
-        """Runs `peclet WORDS` to its end; returns its exit code and what it said."""
+        """Runs `peclet WORDS` to its end; returns exit code and output."""
         variables = {**os.environ, **self.environment}
         return subprocess.run([self.peclet, *words], cwd=self.folder, env=variables, capture_output=True, **how)
 
@@ -56,7 +55,7 @@ class CampaignFolder:
             return f.read()
 
     def export(self):
-        """Returns the canonical export. Throws AssertionError if there is none."""
+        """Returns the canonical export. Raises AssertionError if the verb fails."""
         done = self.say("export", self.file, "--json", "--canonical")
         assert done.returncode == 0, done.stderr.decode(errors="replace")
         return done.stdout
@@ -70,7 +69,7 @@ class CampaignFolder:
         return self.query(sql)[0][0]
 
     def ended(self):
-        """Returns how many results there are, 0 before there is a database with tables."""
+        """Returns the number of results, 0 before the database has tables."""
         try:
             return self.ask(ENDED)
         except sqlite3.Error:
@@ -86,7 +85,7 @@ def query(path, sql):
 
 
 def comes_true(is_so, seconds=20, nap=0.01):
-    """Waits until a condition is met; returns whether it was in time."""
+    """Waits until a condition is met; returns False if that takes longer than `seconds`."""
     end = time.monotonic() + seconds
     while not is_so():
         if time.monotonic() > end:
@@ -104,20 +103,20 @@ def children(process):
 
 
 def processor_time(process):
-    """Returns the seconds that a process has taken."""
+    """Returns the processor time of a process [s]."""
     with open(f"/proc/{process}/stat") as f:
         fields = f.read().rsplit(")", 1)[1].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 def largest_memory(process):
-    """Returns the most MiB that a process has had in memory; 0 for a zombie."""
+    """Returns the peak memory of a process [MiB]; 0 for a zombie."""
     with open(f"/proc/{process}/status") as f:
         return next((int(line.split()[1]) / 1024 for line in f if line.startswith("VmHWM")), 0)
 
 
 def processes_with(variable, value):
-    """Returns the other processes that have this in their environment."""
+    """Returns the other processes with this variable in their environment."""
     mark, found = f"{variable}={value}".encode(), []
     for name in filter(str.isdigit, os.listdir("/proc")):
         try:
@@ -125,5 +124,5 @@ def processes_with(variable, value):
                 if mark in f.read().split(b"\0") and int(name) != os.getpid():
                     found.append(int(name))
         except OSError:
-            pass  # gone, or not ours
+            pass  # ended, or another user's
     return found

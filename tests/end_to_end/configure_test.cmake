@@ -1,4 +1,4 @@
-# What CMake says to somebody who builds this for the first time: -D SOURCE=... -D FOLDER=... -P this
+# Checks CMake's messages at a first build: -D SOURCE=... -D FOLDER=... -P this
 function(configure name)
   file(REMOVE_RECURSE ${FOLDER}/${name})
   execute_process(COMMAND ${CMAKE_COMMAND} -S ${SOURCE} -B ${FOLDER}/${name} ${ARGN}
@@ -7,7 +7,7 @@ function(configure name)
   set(said "${said}" PARENT_SCOPE)
 endfunction()
 
-# Everything that is missing at once, by the packages that have it.
+# All missing packages are named at once.
 configure(bare -DCMAKE_DISABLE_FIND_PACKAGE_CLI11=ON -DCMAKE_DISABLE_FIND_PACKAGE_ZLIB=ON
   -DCMAKE_DISABLE_FIND_PACKAGE_GTest=ON -DRANDOM123_INCLUDE=RANDOM123_INCLUDE-NOTFOUND -DCMAKE_SYSTEM_IGNORE_PATH=/usr/include)
 foreach(package libcli11-dev zlib1g-dev libgtest-dev librandom123-dev)
@@ -19,7 +19,7 @@ if(code EQUAL 0 OR NOT said MATCHES "-DBUILD_TESTING=OFF")
   message(SEND_ERROR "exit ${code}\n${said}")
 endif()
 
-# Programs without tests do without what tests need, and another compiler's warnings stop nobody.
+# Programs without tests need no test packages, and other compilers' warnings are no errors.
 configure(plain -DBUILD_TESTING=OFF -DCMAKE_DISABLE_FIND_PACKAGE_GTest=ON -DCMAKE_DISABLE_FIND_PACKAGE_Python3=ON)
 if(NOT code EQUAL 0)
   message(SEND_ERROR "exit ${code}\n${said}")
@@ -29,7 +29,7 @@ if(commands MATCHES "-Werror")
   message(SEND_ERROR "warnings are errors without PECLET_WERROR")
 endif()
 
-# In our own builds they do.
+# The presets make warnings errors.
 file(READ ${SOURCE}/CMakePresets.json presets)
 if(NOT presets MATCHES "\"PECLET_WERROR\": \"ON\"")
   message(SEND_ERROR "the presets do not ask for PECLET_WERROR")

@@ -1,12 +1,11 @@
 #!/usr/bin/python3
 """fault_drill.py BIN [--quick] [--case NAME ...] [--seed 1] [--every-allocation] [--list]
 
-Runs campaigns, does to them what happens to programs that are left alone for weeks, runs them to their end, and
-compares with the same campaign run in peace by one worker. Prints a table: the fault, how often it was tried,
-acknowledged results that were lost, results that were counted twice, canonical exports with different bytes, anything
-else that should not have happened (a wrong exit code, a damaged database, a seed that was blamed for what others did),
-and seconds. All must be zero; the exit code is 1 otherwise. A result is acknowledged when its spool file is complete or
-it has been committed.
+Runs campaigns, disturbs them as programs that run for weeks are disturbed, runs them to their end, and
+compares them with an undisturbed run by one worker. Prints a table: the fault, the number of tries,
+acknowledged results lost, results counted twice, canonical exports that differ, other faults (a wrong exit
+code, a damaged database, a seed blamed wrongly), and seconds. All faults must be zero, otherwise the exit
+code is 1. A result is acknowledged when its spool file is complete or it is committed.
 
 BIN holds peclet, peclet-engine, fake_engine and fault_shim.so. --quick is the part that runs with the tests.
 """
@@ -40,7 +39,7 @@ def print_table(tallies):
 
 
 def main():
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # and leave nothing behind
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # runs the clean-up
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("bin")
     parser.add_argument("--quick", action="store_true", help="the part that runs with the tests, about half a minute")
@@ -57,7 +56,7 @@ def main():
     if arguments.list:
         print("\n".join(case.name for case in chosen))
         return 0
-    # In memory where there is such a file system: a power cut is made by the shim, not by the disk.
+    # Uses a file system in memory if possible: the shim makes a power cut, not the disk.
     memory = "/dev/shm" if os.path.isdir("/dev/shm") and os.access("/dev/shm", os.W_OK) else None
     folder = tempfile.mkdtemp(prefix="fault-drill-", dir=memory)
     tallies = []
@@ -68,7 +67,7 @@ def main():
             tally = Tally(case.name)
             try:
                 case.run(lab, tally, random.Random(f"{arguments.seed} {case.name}"), arguments.quick)
-            except Exception:  # the other cases are worth their while all the same
+            except Exception:  # runs the other cases
                 tally.other += 1
                 tally.complaints.append(traceback.format_exc())
             tally.seconds = time.monotonic() - started

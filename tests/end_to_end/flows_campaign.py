@@ -1,9 +1,10 @@
 #!/usr/bin/python3
-"""flows_campaign.py PROGRAMS  flows that change, stretch or are driven by a stress, killed and resumed
+"""flows_campaign.py PROGRAMS
 
-A campaign has a point of each flow. Its runs are ended again and again, by SIGTERM, which leaves checkpoints, and by
-SIGKILL of everything; at the end it must have the results of one that nobody disturbed, all but their cost. A point
-whose stress lets it stand still must say what share flows, and aim at the rate of all.
+Tests campaigns of time-dependent, extensional and stress-driven flows that are killed and resumed. A campaign
+has a point for each flow. Its runs are ended again and again by SIGTERM, which leaves checkpoints, and by
+SIGKILL of everything. In the end it must have the results of an undisturbed campaign, except for costs. A
+point that may jam must report the fraction of seeds that flow, and aim at the rate of all.
 """
 import json
 import os
@@ -53,7 +54,7 @@ POINTS = [
 
 
 class Campaign(CampaignFolder):
-    """Eight seeds of each point."""
+    """A campaign with eight seeds of each point."""
 
     def __init__(self, programs, folder, name, scene, observable, keys, values):
         document = {"name": name, "scene": scene, "sweep": [{"set": keys, "values": values}]}
@@ -71,7 +72,7 @@ def check(holds, *what):
 
 
 def results_of(campaign):
-    """By point and seed, without what a repetition may change."""
+    """Returns results by point and seed, without the fields that may change in a repetition."""
     found = {}
     for settings, results in read_results(campaign.data):
         for result in results:
@@ -82,7 +83,7 @@ def results_of(campaign):
 
 
 def disturbed(campaign, generator):
-    """Runs it to the end through interruptions; returns how many there were."""
+    """Runs the campaign to its end through interruptions; returns their number."""
     for times in range(200):
         process = campaign.run()
         try:
@@ -116,11 +117,11 @@ def every_flow(programs, folder):
 
 
 def share_that_flows(programs, folder):
-    """No suspension flows under a stress that would need less than 1 + 2.5 φ."""
+    """Relative viscosities exceed 1 + 2.5 φ, so a jammed viscosity of 1.5 makes the first point jam."""
     flows = [{"stress": 5, "jammed_viscosity": 1.5}, {"stress": 5, "jammed_viscosity": 100}]
     scene = SCENE | {"duration": lasting(stress_times=2)}
     campaign = Campaign(programs, folder, "still", scene, "shear_rate", "/flow", flows)
-    # Equal rates of 0 have no spread to judge by, whatever the tolerance: the point stays open at the maximum.
+    # Equal rates of 0 have no spread to judge by, so the point stays open at the maximum for any tolerance.
     ended = campaign.run().wait()
     check(ended == 3, "the run ended with", ended)
     still, flowing = json.loads(campaign.say("export", campaign.file).stdout)["points"]

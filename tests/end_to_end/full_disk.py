@@ -1,14 +1,14 @@
 #!/usr/bin/python3
 """full_disk.py BIN [--only CASE]
 
-Fills the file system of a campaign's database, spool, checkpoints, logs, and of all of them together, each in turn and
-while the campaign runs with real engines. Nothing may be lost: the run must say once what is full, give out no further
-seed, go on by itself when there is room, and export the same bytes as an undisturbed one. A run that is stopped while
-its disk is full must leave with exit code 75 and go on afterwards. A file system that is too small for the campaign
-ends it with exit code 75 and one message, and it goes on where it is moved.
+Fills the file system of a campaign's database, spool, checkpoints, logs, and of all of them together, each in
+turn while real engines run. Nothing may be lost. The run must say once what is full, start no further seed,
+continue by itself when there is room, and export the bytes of an undisturbed run. A run stopped while its
+disk is full must exit with 75 and continue later. A file system too small for the campaign ends it with 75
+and one message; it continues elsewhere.
 
-The file systems are small tmpfs. Mounting them takes root, or an unprivileged user namespace (unshare -Urm), which the
-script makes for itself; where the kernel grants neither, it fails and says so.
+The file systems are small tmpfs. Mounting them needs root, or an unprivileged user namespace (unshare -Urm),
+which the script creates. If the kernel grants neither, it fails and says so.
 """
 import argparse
 import os
@@ -21,11 +21,11 @@ import time
 from campaign_folder import BLAMED, ENDED, RESULTS, CampaignFolder, comes_true
 from drill.campaign import REAL
 
-# Seeds of many checkpoints each here, and of some on a machine that is several times faster.
+# Seeds with many checkpoints, and some on a machine that is several times faster.
 SCENE = dict(REAL["scene"], duration={"equilibration": {"strain": 0.3}, "production": {"strain": 4}})
 CHECKPOINT_SECONDS = 0.02
 FOLDERS = ("spool", "checkpoints", "logs", "backup", "failures")
-CASES = {  # what is full: the folder whose file system is filled, and which folders have one of their own
+CASES = {  # the folder that is filled, and the folders with file systems of their own
     "everything": ("", ()),
     "database": ("", FOLDERS),
     "spool": ("spool", ("spool",)),
@@ -36,7 +36,7 @@ SMALL = ("400k", "1m", "2m", "3m")  # the database alone, without results, takes
 
 
 class Drill(CampaignFolder):
-    """A campaign in a folder of its own, its runs, and what they said."""
+    """A campaign in a folder of its own, its runs and their output."""
 
     def __init__(self, programs, folder):
         super().__init__(programs, folder, dict(REAL, scene=SCENE, engine=["peclet-engine", "serve"]))
@@ -46,7 +46,7 @@ class Drill(CampaignFolder):
 
 
 def in_own_namespace():
-    """Starts this script again where it may mount; returns when it already may."""
+    """Restarts this script where it may mount; returns if it already may."""
     if os.environ.get("PECLET_MAY_MOUNT"):
         return
     ways = [["unshare", "-m"]] if os.geteuid() == 0 else []
@@ -91,7 +91,7 @@ class FullDisk(Drill):
                 pass
 
     def keep_full(self, seconds):
-        """Whatever is freed is taken again, as by a neighbour who writes without end."""
+        """Refills all freed room for `seconds` seconds."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             self.fill()
@@ -118,9 +118,9 @@ class FullDisk(Drill):
 
 
 def starve(disk, case):
-    """Starts a run whose disk is full for some seconds, and returns its process."""
+    """Returns the process of a run whose disk is full for some seconds."""
     process = disk.fill_under_a_run()
-    if case == "logs":  # nobody waits for a log
+    if case == "logs":  # a full log does not stop the run
         disk.keep_full(1)
     else:
         disk.wait_until_said(process)
@@ -153,8 +153,7 @@ def judge(disk, name, code, reference):
 
 
 def too_small(programs, folder, size, reference):
-    """The campaign's file system is too small for it: it ends by itself, says so, and goes on elsewhere to the same
-    bytes."""
+    """Runs the campaign on too small a file system: it ends with a message, and continues elsewhere."""
     drill = Drill(programs, folder)
     mount(drill.data, size)
     try:

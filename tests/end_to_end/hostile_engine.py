@@ -1,13 +1,12 @@
 #!/usr/bin/python3
 """hostile_engine.py BIN [--quick] [--way NAME ...] [--jobs 2] [--list]
 
-An engine lies in every way of hostile/lies.py, once and (without --quick) at every try. For each way: the run does not
-crash and does not hang, its memory stays below 200 MB, what it prints is short lines without control characters, and
-what is stored in the end is what the honest campaign has; a seed that is lied about at every try is given up and counts
-as lost. The texts of results that are none are also put into the spool of a campaign with an honest engine: none of
-them may count.
+Lets an engine lie in every way of hostile/lies.py, once and (without --quick) at every try. The run may not
+crash or hang, its memory stays below 200 MB, and it prints short lines without control characters. In the end
+it stores the honest campaign's results; a seed with a lie at every try is given up and counts as lost. Texts
+of invalid results are also put into the spool of a campaign with an honest engine, and may not count.
 
-Prints a line for each way; the exit code is 1 when one of them failed. BIN holds peclet.
+Prints a line for each way; the exit code is 1 if one of them failed. BIN holds peclet.
 """
 import argparse
 import concurrent.futures
@@ -30,14 +29,14 @@ CAMPAIGN = {
     "target": {"observable": "relative_viscosity", "relative_tolerance": 0.05},
     "realisations": {"minimum": 4, "maximum": 4},
 }
-LEASE = 2  # seconds
-MOST_MEMORY = 200_000  # kB
-PATIENCE = 400  # seconds, for one run; hello is waited for three times a minute
+LEASE = 2  # [s]
+MOST_MEMORY = 200_000  # [kB]
+PATIENCE = 400  # of one run [s]; three waits for hello take a minute each
 HONEST = lies.WAYS["honest"]
 
 
 class Trouble(Exception):
-    """What a run did that it must not do."""
+    """A fault of a run."""
 
 
 def expect(truth, message):
@@ -54,7 +53,7 @@ class Campaign(CampaignFolder):
         return self.say(*words, timeout=PATIENCE)
 
     def run(self):
-        """The exit code; the largest memory and what was printed are kept."""
+        """Returns the exit code; keeps the peak memory and the output."""
         with open(self.place("printed"), "wb") as printed:
             words = f"run hostile.json --workers 1 --threads 1 --lease {LEASE}".split()
             process = self.start(*words, stdout=subprocess.DEVNULL, stderr=printed)
@@ -86,7 +85,7 @@ class Campaign(CampaignFolder):
 
 
 def memory_of(process):
-    """Largest resident set until now, kB; 0 when the process has gone, or is not the program yet."""
+    """Returns the peak resident memory [kB]; 0 if the process has ended or is not the program yet."""
     try:
         with open(f"/proc/{process}/status") as f:
             about = dict(line.split(":", 1) for line in f)
@@ -100,7 +99,7 @@ def judge_words(campaign, must_speak):
     expect(not must_speak or len(campaign.printed) > 20, "says nothing")
     for line in lines:
         expect(len(line) < 500, f"a line of {len(line)} bytes: {line[:300]}")
-        text = line.decode()  # or it is no text
+        text = line.decode()  # fails if it is not UTF-8
         expect(text.isprintable(), f"control characters: {text!r}")
 
 
@@ -153,13 +152,13 @@ class Lab:
         expect(way.fate != "taken" or outcomes == ["result"], f"it was not taken: {outcomes}")
 
     def try_spool(self):
-        """Every text that is no result, and one that is, in the spool of a campaign whose engine is honest."""
+        """Puts every invalid text and a valid one into the spool of a campaign with an honest engine."""
         campaign = Campaign(self.programs, self.folder, HONEST, 0)
         spool = os.path.join(campaign.data, "spool")
         os.makedirs(spool)
         texts = [way.text for way in lies.WAYS.values() if way.text and way.fate == "again"]
         job = {"point": self.point, "seed": 2}
-        # These are sound by themselves: only who knows which job they answer sees through them.
+        # These texts are valid by themselves; only the job that they answer shows the lie.
         sound = [lies.WAYS[name].text for name in ("seed another one", "seed not asked for yet", "engine another one")]
         texts = [text for text in texts if text not in sound]
         for number, text in enumerate(texts):
@@ -176,7 +175,7 @@ class Lab:
 
 
 def chosen_ways(quick=False, parts_of_names=None):
-    """All of them, unless some are to be left out."""
+    """Returns all ways, or those selected."""
     return [
         way
         for way in lies.WAYS.values()
@@ -215,7 +214,7 @@ def main():
             for run in concurrent.futures.as_completed(runs):
                 try:
                     memories.append((run.result(), runs[run]))
-                except Exception as error:  # the other ways are worth their while all the same
+                except Exception as error:  # runs the other ways
                     failed.append(runs[run])
                     print(f"{runs[run]}: {type(error).__name__}: {error}")
     finally:

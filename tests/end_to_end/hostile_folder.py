@@ -1,18 +1,18 @@
 #!/usr/bin/python3
 """hostile_folder.py BIN [--quick] [--only PART] [--list]
 
-Puts into the folder of a campaign, of which some seeds have ended, what somebody else could put there: links to files,
-to folders and to themselves, FIFOs, sockets, devices, folders in the place of files, files in the place of folders, a
-terabyte of nothing, rubbish, half files, names that a terminal obeys, crowds; in spool, requests, checkpoints, logs,
-failures, backup, aside, lock and database. Then it runs the campaign, and in the long form looks at it with other verbs
-first. Each way must end in the bytes of the undisturbed campaign, at once or, where the run refuses to begin, when what
-is in the way has been taken away. Nothing may crash, hang (60 s), take more than 200 MB, or change what is outside of
-the folder; what happened is said in one line of at most 500 characters without control characters.
+Puts hostile objects into the folder of a campaign with some ended seeds: links to files, to folders and to
+themselves, FIFOs, sockets, devices, folders in place of files, files in place of folders, a sparse terabyte,
+rubbish, half files, names with escape sequences, crowds; in spool, requests, checkpoints, logs, failures,
+backup, aside, lock and database. Then runs the campaign; the long form calls other verbs first. Each way must
+end in the bytes of the undisturbed campaign, at once or, if the run refuses to begin, once the object is
+removed. No program may crash, hang (60 s), take more than 200 MB or change files outside the folder. The
+message is one line of at most 500 characters without control characters.
 
-At last, where --output leads: devices, FIFOs, links and what a shell has open are written to and stay what they are.
+Finally tests targets of --output: devices, FIFOs, links and open descriptors are written to and stay.
 
-Prints a table; the exit code is 1 when a way fails. What needs root (devices, folders of another user) is tried by root
-and said to be untried by others. --quick is the part that runs with the tests.
+Prints a table; the exit code is 1 if a way fails. Without root, ways that need it (devices, folders of another
+user) are skipped and named. --quick is the part that runs with the tests.
 """
 import argparse
 import os
@@ -29,7 +29,7 @@ from hostile.ways import WAYS
 
 
 def tried(stock, folder, way, short):
-    """A row of the table: whether it passed, and in words what came of it."""
+    """Returns a row of the table: True if the way passed, and its outcome in words."""
     trial = None
     started = time.monotonic()
     try:
@@ -52,7 +52,7 @@ def tried(stock, folder, way, short):
 
 
 def main():
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # and leave nothing behind
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # runs the clean-up
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("bin")
     parser.add_argument("--quick", action="store_true", help="the part that runs with the tests, half a minute")
@@ -65,7 +65,7 @@ def main():
         return 0
     memory = "/dev/shm" if os.path.isdir("/dev/shm") and os.access("/dev/shm", os.W_OK) else None
     with tempfile.TemporaryDirectory(prefix="hostile-folder-", dir=memory) as folder:
-        os.chmod(folder, 0o755)  # some ways are those of an ordinary user
+        os.chmod(folder, 0o755)  # some ways are run by an ordinary user
         stock = Stock(arguments.bin, folder)
         passed = [
             tried(stock, os.path.join(folder, str(number)), way, arguments.quick) for number, way in enumerate(chosen)

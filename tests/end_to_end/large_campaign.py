@@ -1,20 +1,20 @@
 #!/usr/bin/python3
 """large_campaign.py BIN [--points 125] [--seeds 800] [--workers 64] [--milliseconds 100] [--block-numbers 475]
 
-Runs a campaign of 100 000 realisations with the fake engine of the tests, whose results take as much room as those of
-peclet-engine (--block-numbers), whose jobs sleep 100 ms and who takes a job ahead, every point up to its maximum, and
-prints what the owner costs:
+Runs a campaign of 100 000 realisations with the fake engine, every point up to its maximum. Its results are
+as large as those of peclet-engine (--block-numbers), its jobs sleep 100 ms, and it takes a job ahead. Prints
+the owner's costs:
 
-- processor time per realisation, of the owner and of the engines apart, and the owner's largest memory;
-- how busy the workers are: the time that they spent on jobs, by their own clocks, over workers times the time between
-  the first job's begin and the last one's end. A job counts from when its worker takes it up until its result is
-  durable in the spool and announced: delivering it is the worker's work, waiting for the next one is not;
-- commits per second and results per commit, by the counter of transactions in the write-ahead log's index;
-- the time of `peclet status` while it runs (median and largest) and afterwards, and the size of the database.
+- processor time per realisation, of the owner and of the engines, and the owner's peak memory;
+- the load of the workers: the time spent on jobs, by their own clocks, over workers times the time from the
+  first job's begin to the last one's end. A job lasts from its start until its result is durable in the spool
+  and announced, without the wait for the next job;
+- commits per second and results per commit, by the transaction counter in the write-ahead log's index;
+- the time of `peclet status` during the run (median and largest) and after it, and the size of the database.
 
-On a quiet machine of two cores it takes some four minutes; --points 5 is a quick look. It fails when a result is
-missing or `status` takes 0.3 s at its median; --claims also when workers are busy for less than 97 %, the database is
-larger than 300 MB or the owner larger than 200 MiB.
+On a quiet machine with two cores it takes about four minutes; --points 5 makes a short test. It fails if a
+result is missing or the median of `status` reaches 0.3 s. With --claims it also fails if the load is below
+97 %, the database larger than 300 MB or the owner larger than 200 MiB.
 """
 import argparse
 import json
@@ -31,7 +31,7 @@ from campaign_folder import CampaignFolder, largest_memory, processor_time
 
 
 class Owner(threading.Thread):
-    """Watches the run's process: its own processor time, its memory, and the commits that it has made."""
+    """Watches the run's process: its processor time, its memory and its commits."""
 
     def __init__(self, process, campaign):
         super().__init__(daemon=True)
@@ -42,21 +42,20 @@ class Owner(threading.Thread):
         while self.process.returncode is None:
             try:
                 self.look()
-            except (OSError, struct.error):  # not there yet, or not any more
+            except (OSError, struct.error):  # before the file exists, or after its end
                 pass
             time.sleep(0.2)
 
     def look(self):
         self.seconds = processor_time(self.process.pid)
         self.memory = max(self.memory, largest_memory(self.process.pid))
-        # https://www.sqlite.org/walformat.html: the index begins with the version, a zero, and the counter of
-        # transactions.
+        # walformat.html of SQLite: the index begins with the version, a zero and the transaction counter.
         with open(self.index, "rb") as f:
             self.commits = max(self.commits, struct.unpack("<3I", f.read(12))[2])
 
 
 class Statuses(threading.Thread):
-    """Asks for the status every now and then."""
+    """Calls status again and again."""
 
     def __init__(self, campaign):
         super().__init__(daemon=True)

@@ -1,5 +1,4 @@
-"""What can be wrong with a campaign, its scene, the text and the file that it is in, and with options: one Case
-each."""
+"""Faults of a campaign, its scene, the text, the file and options, one Case each."""
 import json
 import os
 import re

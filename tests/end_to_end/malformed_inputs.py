@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """malformed_inputs.py BIN
 
-Gives the programs in BIN (peclet, peclet-engine) malformed scenes, configurations, campaigns, checkpoints, frames and
-databases. Each must be answered by one line on standard error that names the fault, by exit code 2 (6 for what the
-programs themselves wrote), by nothing on standard output, and by no change of any file.
+Gives the programs in BIN (peclet, peclet-engine) malformed scenes, configurations, campaigns, checkpoints,
+frames and databases. Each must cause one line on standard error that names the fault, exit code 2 (6 for
+files that the programs wrote), no standard output, and no change of any file.
 """
 import copy
 import hashlib
@@ -41,7 +41,7 @@ CONFIGURATION = {
 }
 ABSENT = object()
 
-# pointer, value (or ABSENT: removed), fragments of the message
+# Pointer, value (ABSENT removes it), fragments of the message.
 SCENE_FAULTS = [
     ("/fluid/viscosity", -1, ["/fluid/viscosity", "-1", "> 0"]),
     ("/fluid/viscosity", "thick", ["/fluid/viscosity", "thick", "number"]),
@@ -102,7 +102,7 @@ def altered(document, pointer, value):
 
 
 def snapshot(folder):
-    """Content of every file; SQLite's side files and the owner's lock, which hold nothing of value, are left out."""
+    """Returns the content of every file, without SQLite's side files and the owner's lock."""
     files = {}
     for root, folders, names in os.walk(folder):
         for name in folders:
@@ -117,7 +117,7 @@ def snapshot(folder):
 
 
 def catches(process, number):
-    """Whether a process has a handler of a signal."""
+    """Returns True if a process handles a signal."""
     with open(f"/proc/{process}/status") as f:
         caught = next(line.split()[1] for line in f if line.startswith("SigCgt:"))
     return bool(int(caught, 16) >> (number - 1) & 1)

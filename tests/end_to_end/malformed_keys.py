@@ -1,4 +1,4 @@
-"""What can be wrong with the value of one key, or with a key itself: one Case each, by the schema."""
+"""Faults of the value of one key, or of a key itself, by the schema: one Case each."""
 import copy
 import json
 
@@ -9,7 +9,7 @@ SPELLINGS = ("NaN", "1e999", "-Infinity", "01", "0x10", "1.", ".5", "+1", "1e", 
 
 
 class Case:
-    """`codes`: exit codes that it may have; `words`: of the command, behind the program."""
+    """One faulty input. `codes`: allowed exit codes; `words`: arguments of the program."""
 
     def __init__(self, name, words, text=None, codes=(2,), prepare=None, program="peclet", sent=b""):
         self.name, self.words, self.text, self.codes = name, words, text, codes
@@ -17,7 +17,7 @@ class Case:
 
 
 def places(schema, pointer=""):
-    """Every place that a schema describes: its pointer, with 0 for elements of arrays, and its schema."""
+    """Yields pointer and schema of every place in a schema, with 0 for elements of arrays."""
     for name, below in schema.get("properties", {}).items():
         yield f"{pointer}/{name}", below
         yield from places(below, f"{pointer}/{name}")
@@ -27,7 +27,7 @@ def places(schema, pointer=""):
 
 
 def altered(document, pointer, value):
-    """The document with that value there; what leads there is made where it is absent."""
+    """Returns the document with that value there; absent parents are created."""
     document = copy.deepcopy(document)
     *path, last = pointer.split("/")[1:]
     node = document
@@ -40,7 +40,7 @@ def altered(document, pointer, value):
         else:
             node = node.setdefault(key, fresh)
         if not isinstance(node, (list, dict)):
-            return None  # a number stands where this scene would have to have an object
+            return None  # the scene has a number where an object is needed
     if isinstance(node, list):
         node[:1] = [value]
     else:
@@ -66,7 +66,7 @@ def bound(schema, names):
 
 
 def wrong_values(schema):
-    """Values that the schema does not allow, by name."""
+    """Yields values that the schema does not allow, by name."""
     types = types_of(schema)
     if not types:
         return
@@ -121,7 +121,7 @@ def spoilt_keys(document, schema, prefix, program, words):
                 yield Case(f"{prefix}{pointer}, {name}", words, json.dumps(text), codes=(0, 2), program=program)
         spoilt = altered(document, prefix + pointer, "HERE")
         if spoilt is not None and types_of(about) & {"number", "integer"}:
-            # The reader of numbers is the same for all keys: one of them meets every spelling.
+            # All keys share one reader of numbers, so one key gets every spelling.
             for word in SPELLINGS if pointer == "/volume_fraction" else SPELLINGS[:2]:
                 yield Case(
                     f"{prefix}{pointer}, {word}", words, json.dumps(spoilt).replace('"HERE"', word), program=program

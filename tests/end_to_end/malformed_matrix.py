@@ -1,13 +1,13 @@
 #!/usr/bin/python3
 """malformed_matrix.py BIN SCHEMAS [--unbounded]
 
-Spoils a campaign and its scene key by key, as the schemas in SCHEMAS list them (each key by every kind of wrong value),
-the text of the file, the file itself and the options of every verb, and gives it all to the programs in BIN. Each must
-be refused with exit code 2, one line of less than 500 characters without control characters, nothing on standard
-output, below four seconds of processor time and 200 MB, and without a change in the folder. Values that are allowed but
-extreme may be valid instead.
+Spoils a campaign and its scene key by key by the schemas in SCHEMAS (each key with every kind of wrong
+value), the text of the file, the file itself and the options of every verb, and gives it all to the programs
+in BIN. Each must be refused with exit code 2 and one line of less than 500 characters without control
+characters. There may be no standard output, no change in the folder, and at most four seconds of processor
+time and 200 MB. Allowed extreme values may be valid instead.
 
---unbounded leaves time and memory out, for programs that a sanitizer slows down.
+--unbounded leaves out time and memory, for programs slowed down by a sanitizer.
 """
 import argparse
 import concurrent.futures
@@ -20,7 +20,7 @@ import threading
 
 from malformed_cases import every_case
 
-MOST_SECONDS, MOST_BYTES, LONGEST_LINE = 4.0, 200e6, 500  # 0.9 to 1.3 s beside other work
+MOST_SECONDS, MOST_BYTES, LONGEST_LINE = 4.0, 200e6, 500  # 0.9 to 1.3 s on a busy machine
 
 
 def contents(folder):
@@ -36,8 +36,7 @@ class Trial:
         self.faults, self.refused, self.valid, self.dearest = [], 0, 0, (0, "")
 
     def work(self, cases):
-        """One case after another: all of them at once would take more memory than the programs under test, which
-        inherit the mark."""
+        """Runs cases one by one: a list would take more memory than the programs, which inherit the peak."""
         while True:
             with self.lock:
                 case = next(cases, None)
@@ -65,7 +64,7 @@ class Trial:
                 try:
                     feed()
                 except BrokenPipeError:
-                    pass  # it has seen enough
+                    pass  # the program stopped reading
             _, status, used = os.wait4(process.pid, 0)
             process.returncode = os.waitstatus_to_exitcode(status)
             output.seek(0)

@@ -1,9 +1,10 @@
 #!/usr/bin/python3
-"""mixture_campaign.py PROGRAMS      grains are added to colloids by a sweep over alpha alone, with the real engine
+"""mixture_campaign.py PROGRAMS
 
-`validate` must show the published volume fractions 0.550, 0.576 ... 0.710 of radii 1:1.4:5:7 at alpha = 0 ... 0.5.
-A campaign of larger colloids, which needs fewer of them, must end with a row for each alpha, the volume fractions of
-its base, and alpha on the axis of its picture.
+Tests a sweep over alpha alone, which adds grains to colloids, with the real engine. `validate` must show the
+published volume fractions 0.550, 0.576 ... 0.710 of radii 1:1.4:5:7 at alpha = 0 ... 0.5. A campaign of
+larger colloids, with fewer of them, must end with a row for each alpha, the volume fractions of its base, and
+alpha on the axis of its picture.
 """
 import copy
 import json
@@ -61,7 +62,7 @@ def derived_agree(points, fractions, where):
 
 
 def run_small(programs, folder):
-    """Radii 1:1.4:2:2.8, at volume fractions from 0.2 on."""
+    """Runs radii 1:1.4:2:2.8 at volume fractions from 0.2 on."""
     document = copy.deepcopy(CAMPAIGN)
     document["scene"]["particles"]["count"] = 250
     document["scene"]["particles"]["mixture"]["grains"] = species(2, 2.8)
@@ -69,7 +70,7 @@ def run_small(programs, folder):
     campaign = CampaignFolder(programs, folder, document)
     output_of(campaign, "run", "--workers=2")
     points = json.loads(output_of(campaign, "export", "--json"))["points"]
-    # Of a part each of colloids and liquid 4: 1 / (1 + 4 (1 - alpha)).
+    # One part of colloids to 4 of liquid: 1 / (1 + 4 (1 - alpha)).
     derived_agree(points, [1 / (5 - 4 * alpha) for alpha in ALPHA], "export")
     check([point["label"] for point in points] == [f"alpha={alpha:g}" for alpha in ALPHA], points)
     drawn = json.loads(output_of(campaign, "plot", "--json"))

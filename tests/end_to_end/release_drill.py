@@ -1,15 +1,13 @@
 #!/usr/bin/python3
 """release_drill.py FOLDER [--suite bookworm] [--mirror URL] [--root DIR]
 
-Tries the packages that `./bootstrap.sh package` leaves in FOLDER (build/package) on a Debian that has nothing of ours:
-the smallest that debootstrap makes, in a folder, as a user without rights. Needs root, debootstrap, readelf and a
-mirror; takes minutes, most of them debootstrap's; --root keeps what it made, for the next time. What must be so:
+Tests the packages that `./bootstrap.sh package` writes to FOLDER (build/package) on a bare Debian, as a user
+without rights: the smallest that debootstrap makes, in a folder. Needs root, debootstrap, readelf and a
+mirror; takes minutes, most of them for debootstrap. --root keeps that folder for the next time. Requirements:
 
-    programs  ask for no shared library
-    .tar.gz   unpacked by the user, runs the demonstration; moved, it goes on; studies, adapters and manual pages are
-              found
-    .deb      is installed by dpkg alone, runs the demonstration with the same bytes, and leaves nothing behind when
-              removed
+    programs  need no shared library
+    .tar.gz   unpacked by the user, runs the demonstration, also after a move; has studies, adapters and manual
+    .deb      is installed by dpkg alone, runs the demonstration with equal bytes, and is removed completely
 """
 import argparse
 import contextlib
@@ -80,14 +78,14 @@ def debian(arguments):
         path = arguments.root or stack.enter_context(tempfile.TemporaryDirectory(prefix="release-drill-"))
         path = os.path.abspath(path)
         os.makedirs(path, exist_ok=True)
-        os.chmod(path, 0o755)  # the user's root folder: a temporary folder is closed to others
+        os.chmod(path, 0o755)  # a temporary folder is closed to other users
         if not os.path.exists(os.path.join(path, "etc/debian_version")):
             subprocess.run(
                 ["debootstrap", "--variant=minbase", arguments.suite, path, arguments.mirror],
                 check=True,
                 stdout=subprocess.DEVNULL,
             )
-        # The programs ask /proc where they are.
+        # The programs find themselves by /proc.
         subprocess.run(["mount", "-t", "proc", "proc", os.path.join(path, "proc")], check=True)
         stack.callback(subprocess.run, ["umount", os.path.join(path, "proc")], check=True)
         root = Root(path)
@@ -109,7 +107,7 @@ def check_libraries(programs):
 
 
 def demonstration(root, peclet, share, folder):
-    """Its table, and the SHA-256 of its canonical export."""
+    """Returns the demonstration's table, and the SHA-256 of its canonical export."""
     table = root.run(peclet, "run", f"{share}/{DEMO}", "--directory", folder, "--quiet", user=USER, folder=HOME)
     if "3 points: 3 converged" not in table:
         fail(f"the demonstration does not converge:\n{table}")

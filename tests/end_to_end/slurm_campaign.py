@@ -6,7 +6,7 @@ from campaign_folder import BLAMED, CampaignFolder
 from drill.campaign import REAL
 from slurm_cluster import CPUS
 
-# Seeds of about a second, saved several times on their way; a few stop tests a point.
+# Seeds of about a second with several checkpoints, and a few stop tests per point.
 ENVIRONMENT = {"PECLET_FAKE_STEPS": "40", "PECLET_FAKE_STEP_MS": "25"}
 CAMPAIGN = {
     "name": "drill",
@@ -29,14 +29,13 @@ class Campaign(CampaignFolder):
         self.processes = []
 
     def holds(self, seed=0):
-        """This and later seeds of the fake engine stand still half-way from now on, and their tasks run, until
-        lets_go()."""
+        """Makes this and later seeds of the fake engine stop half-way in running tasks, until lets_go()."""
         with open(self.hold, "w"):
             pass
         self.environment.update(PECLET_FAKE_HOLD=self.hold, PECLET_FAKE_HOLD_SEED=str(seed))
 
     def holds_no_more(self):
-        """What is started from now on does not stand still; tasks that do go on doing so."""
+        """Ends holds() for processes started later; held tasks stay held."""
         for name in ("PECLET_FAKE_HOLD", "PECLET_FAKE_HOLD_SEED"):
             del self.environment[name]
 
@@ -48,7 +47,7 @@ class Campaign(CampaignFolder):
         return self.processes[-1]
 
     def stop(self):
-        """Ends what a failed case has left."""
+        """Ends the processes left by a failed case."""
         for process in self.processes:
             process.kill()
             process.wait()
@@ -70,7 +69,7 @@ class Campaign(CampaignFolder):
         return self.hand_over("--follow", "--interval", "0.3", *words)
 
     def printed(self):
-        """By the job whose script docs/clusters.md has."""
+        """Returns the output of the job with the script of docs/clusters.md."""
         path = self.place("friction.log")
         if not os.path.exists(path):
             return ""
@@ -82,7 +81,7 @@ class Campaign(CampaignFolder):
         return [name for name in os.listdir(spool) if name.endswith(".json")] if os.path.isdir(spool) else []
 
     def lost(self):
-        """Seeds of the stop tests that have no result; and files, bundles and seeds that were left lying."""
+        """Returns the number of required seeds without a result, and of files, bundles and seeds left."""
         wanted = self.ask("SELECT sum(seeds) FROM estimates")
         closed = self.ask(
             "SELECT count(*) FROM realisation JOIN point USING (point_id) JOIN estimates USING (hash)"
@@ -100,7 +99,7 @@ class Campaign(CampaignFolder):
         return wanted - closed + left + len(files)
 
     def double(self):
-        """Results that a seed has beyond its first, counted or offered with another content."""
+        """Returns the number of results beyond the first of a seed, counted or with differing content."""
         return int(
             self.ask("SELECT count(*) - count(DISTINCT point_id || ' ' || seed) FROM result")
             + self.ask("SELECT total(suspect) FROM point")
@@ -108,7 +107,7 @@ class Campaign(CampaignFolder):
         )
 
     def again(self):
-        """Seeds that were run to their end a second time, which costs time and changes nothing."""
+        """Returns the number of seeds that were completed a second time, which costs time only."""
         return self.ask(
             "SELECT coalesce(sum(n - 1), 0) FROM (SELECT count(*) AS n FROM attempt WHERE outcome = 'result'"
             " GROUP BY point_id, seed)"
@@ -119,7 +118,7 @@ class Campaign(CampaignFolder):
 
 
 def template_of(campaign, submission):
-    """The Slurm template with another way to submit."""
+    """Returns a copy of the Slurm template with another submit.sh."""
     source = os.path.join(os.path.dirname(__file__), "..", "..", "templates", "slurm")
     template = campaign.place("template")
     shutil.copytree(source, template)
@@ -129,7 +128,7 @@ def template_of(campaign, submission):
 
 
 def script_of_the_page(campaign, saved):
-    """As it stands there, but for whose campaign it is."""
+    """Returns the script of docs/clusters.md for this campaign."""
     with open(os.path.join(os.path.dirname(__file__), "..", "..", "docs", "clusters.md")) as f:
         script = f.read().split("```bash\n")[1].split("```")[0]
     for line, mine in (

@@ -1,4 +1,4 @@
-"""What happens to campaigns in a Slurm: each case runs one to its end and says what happened."""
+"""Disturbances of campaigns in Slurm: each case runs one to its end and returns what happened."""
 import os
 import random
 import signal
@@ -9,7 +9,7 @@ from campaign_folder import processes_with
 from slurm_campaign import Campaign, script_of_the_page, template_of
 from slurm_cluster import CPUS
 
-# Takes the node from others.
+# Takes the node from other jobs.
 URGENT = (
     "sbatch",
     "--partition=urgent",
@@ -30,11 +30,11 @@ class Drill:
         return Campaign(self.binaries, os.path.join(self.folder, name), **settings)
 
     def running(self, campaign, tasks=1):
-        """Waits until so many tasks are in the middle of a seed."""
+        """Waits until `tasks` tasks are in the middle of a seed."""
         self.cluster.wait_until(lambda: len(self.cluster.tasks()) >= tasks, f"{tasks} running tasks")
         time.sleep(0.5)
 
-    # Each case runs a campaign to its end and says what happened.
+    # The cases: each runs a campaign to its end and returns what happened.
 
     def arrays(self, campaign):
         campaign.do(*campaign.follow("--seeds-per-task", "2", "--largest-array", "4"))
@@ -85,7 +85,7 @@ class Drill:
     def warned(self, campaign):
         owner = campaign.start(*campaign.follow())
         warnings = 0
-        while self.cluster.restarts() == 0:  # a task may end just before its warning comes
+        while self.cluster.restarts() == 0:  # a task may end just before its warning
             assert owner.poll() is None, campaign.log()
             self.running(campaign)
             for element in self.cluster.tasks()[:2]:
@@ -114,8 +114,8 @@ class Drill:
             self.cluster.stop("slurmctld", number)
             time.sleep(1)
             self.cluster.restart_controller()
-        # Killed, it may have forgotten jobs that it had started, and give their numbers out again; it then takes the
-        # node out of use until an administrator says that all is well.
+        # A killed controller may forget jobs that it had started, and reuse their numbers. It then drains the
+        # node until an administrator resumes it.
         resumed = 0
         end = time.monotonic() + 240
         while owner.poll() is None and time.monotonic() < end:
@@ -148,7 +148,7 @@ class Drill:
         assert campaign.ask("SELECT count(*) FROM bundle WHERE job IS NULL") == 1, campaign.log()
         campaign.do(
             *campaign.hand_over("--template", template)
-        )  # nothing is left to hand over: only the name is asked for
+        )  # only the name is required: nothing is left to hand over
         assert campaign.ask("SELECT count(*) FROM bundle WHERE job IS NULL") == 0, campaign.log()
         with open(campaign.place("numbers")) as f:
             submitted = len(f.readlines())
@@ -182,7 +182,7 @@ class Drill:
         campaign.do(*campaign.hand_over())
         self.running(campaign)
         logs = os.path.join(campaign.shared, "bundles", campaign.ask("SELECT name FROM bundle"), "logs")
-        # A task is called running a moment before its log is there.
+        # A task counts as running shortly before its log exists.
         self.cluster.wait_until(lambda: os.path.isdir(logs) and os.listdir(logs), "the log of a task")
         printed = sorted(os.listdir(logs))
         assert printed and printed[0].startswith("task-"), (logs, printed)
@@ -208,7 +208,7 @@ class Drill:
         return f"forgotten while its tasks ran and nobody answered; {late} late results, none counted twice"
 
     def one_job(self, campaign):
-        """The script of docs/clusters.md, warned as at its time limit, and preempted."""
+        """Runs the script of docs/clusters.md, warned as at its time limit, and preempted."""
         saved, script = campaign.place("saved"), campaign.place("one_job.sh")
         with open(script, "w") as f:
             f.write(script_of_the_page(campaign, saved))
@@ -249,7 +249,7 @@ class Drill:
     def taken_back(self, campaign):
         campaign.do(*campaign.hand_over("--seeds-per-task", "3"))
         self.running(campaign)
-        campaign.do("run", "drill.json", "--workers", "2", code=75)  # the seeds are not its own to run
+        campaign.do("run", "drill.json", "--workers", "2", code=75)  # its seeds belong to Slurm
         campaign.do("ingest", "drill.json", "--cancel")
         assert not self.cluster.tasks("RUNNING,PENDING"), self.cluster.say("squeue")
         finished = campaign.ended()
@@ -259,7 +259,7 @@ class Drill:
     def failing_engine(self, campaign):
         campaign.do(*campaign.follow(), code=3)
         blamed = campaign.blamed()
-        assert blamed == 2 * (3 + 1), campaign.log()  # two points; seed 3 is given up the third time, seed 4 fails once
+        assert blamed == 2 * (3 + 1), campaign.log()  # two points; seed 3 fails three times, seed 4 once
         return f"{blamed:.0f} attempts blamed on the engine, as without Slurm"
 
     def real_engine(self, campaign):
@@ -273,7 +273,7 @@ class Drill:
 
 
 def kill_one(what, folder):
-    """Kills one process of a campaign with SIGKILL: its command has `what`, its environment or command the folder."""
+    """Kills a process with `what` in its command, and the folder in its environment or command."""
     for process in processes_with("SLURM_SUBMIT_DIR", folder):
         try:
             with open(f"/proc/{process}/cmdline", "rb") as f:

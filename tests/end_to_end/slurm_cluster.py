@@ -1,6 +1,7 @@
-"""A Slurm of one's own on one machine: munged, slurmctld and slurmd from Debian's packages, as whoever runs the test,
-with their files in a temporary folder. One node with CPUS processors, whatever the machine has; jobs of the partition
-`urgent` preempt those of `usual`, which are queued again."""
+"""A private Slurm on one machine: munged, slurmctld and slurmd from Debian's packages, run by the test's user
+with files in a temporary folder. One node has CPUS processors, for any machine. Jobs of the partition
+`urgent` preempt those of `usual`, which are queued again.
+"""
 import os
 import pwd
 import signal
@@ -131,7 +132,7 @@ class Cluster:
         self.wait_until(lambda: self.say("scontrol", "ping").endswith("UP"), "the controller")
 
     def clear(self):
-        """Ends all jobs and waits, for a while, until their processes have gone."""
+        """Ends all jobs and waits up to 20 s until their processes have ended."""
         end = time.monotonic() + 20
         while self.say("squeue", "-h", "--me") and time.monotonic() < end:
             self.say("scancel", "--me")
@@ -139,7 +140,7 @@ class Cluster:
             time.sleep(0.5)
 
     def say(self, *command):
-        """What a command prints, or "" when it fails."""
+        """Returns the output of a command, or "" if it fails."""
         answer = subprocess.run(command, capture_output=True, text=True)
         return answer.stdout.strip() if answer.returncode == 0 else ""
 
@@ -155,18 +156,18 @@ class Cluster:
         return text
 
     def tasks(self, state="RUNNING"):
-        """Array elements in a state, as JOB_INDEX; those of the urgent job apart."""
+        """Returns array elements in a state, as JOB_INDEX, without those of the urgent job."""
         lines = self.say("squeue", "-h", "-r", "--me", "--states=" + state, "-o", "%j %F_%K").split("\n")
         return [line.split()[1] for line in lines if line and not line.startswith("urgent ")]
 
     def resume_node(self):
-        """Puts the node back into use when Slurm has taken it out; says whether it had."""
+        """Resumes the node if Slurm has drained it; returns True if it had."""
         if not self.say("sinfo", "-h", "-o", "%T").startswith(("drain", "down")):
             return False
         self.say("scontrol", "update", "nodename=" + socket.gethostname().split(".")[0], "state=resume")
         return True
 
     def restarts(self):
-        """How often the elements that Slurm still knows were queued again."""
+        """Returns how often the elements known to Slurm were queued again."""
         words = self.say("scontrol", "show", "job", "-o").split()
         return sum(int(word.split("=")[1]) for word in words if word.startswith("Restarts="))

@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 """slurm_drill.py BIN [--quick] [--only CASE] [--keep FOLDER]
 
-Runs campaigns through a real Slurm (slurmctld, slurmd and munged of this machine's packages, started here) while tasks
-are killed, preempted and warned, the controller is restarted or away, submissions are refused, lose their answers or
-are forgotten, and the owner is killed. After each case the canonical export must be, byte for byte, that of the same
-campaign run by `peclet run` without Slurm; no realisation may be lost or counted twice. Prints a table and leaves with
-1 when anything differs. --quick: some of the cases; --only: one of them (time_limit, which waits for a minute, is run
-only so); --keep: leave everything in that folder.
+Runs campaigns through a real Slurm (slurmctld, slurmd and munged of this machine's packages, started here).
+Meanwhile tasks are killed, preempted and warned, the controller is restarted or away, submissions are
+refused, unanswered or forgotten, and the owner is killed. After each case the canonical export must equal
+that of `peclet run` without Slurm byte for byte, with no realisation lost or counted twice. Prints a table
+and exits with 1 if anything differs. --quick runs some of the cases; --only one of them (time_limit, which
+waits for a minute, runs only so); --keep leaves everything in that folder.
 """
 import argparse
 import contextlib
@@ -38,7 +38,7 @@ CASES = QUICK + (
 )
 SLOW = ("time_limit",)  # Slurm's shortest limit is a minute
 LONG_SEEDS = {**CAMPAIGN, "target": {"relative_tolerance": 0.9}, "realisations": {"minimum": 4, "maximum": 4}}
-LONGER = {"environment": {"PECLET_FAKE_STEP_MS": "75"}}  # the same results
+LONGER = {"environment": {"PECLET_FAKE_STEP_MS": "75"}}  # same results
 SETTINGS = {
     "preempted": LONGER,
     "warned": LONGER,
@@ -69,7 +69,7 @@ def try_case(drill, name, expected):
 
 
 def kind_of(name):
-    """What a case runs: a campaign of its own, or the plain one."""
+    """Returns the kind of campaign of a case: its name, or plain."""
     return name if SETTINGS.get(name, LONGER) is not LONGER else "plain"
 
 
@@ -95,7 +95,7 @@ def main():
     with contextlib.ExitStack() as stack:
         folder = arguments.keep or stack.enter_context(tempfile.TemporaryDirectory(prefix="slurm-drill-"))
         os.makedirs(folder, exist_ok=True)
-        os.chmod(folder, 0o755)  # munged wants its socket to be reachable
+        os.chmod(folder, 0o755)  # munged requires a reachable socket
         cluster = stack.enter_context(Cluster(os.path.join(folder, "cluster")))
         drill = Drill(os.path.abspath(arguments.bin), folder, cluster)
         expected = expected_exports(drill, names)

@@ -2,7 +2,7 @@
 
 
 def thirty_spheres(equilibration, production):
-    """Sheared by so much before the measurement, and in it."""
+    """Returns the scene with these strains of equilibration and production."""
     return {
         "particles": {
             "count": 30,

@@ -1,4 +1,4 @@
-// The instruction sets that a test can run with.
+// The instruction sets that this machine can run.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// A value of doubles and integers, bit by bit: for claims of equality in which even -0 and 0 differ.
+// The bits of a value of doubles and integers, for comparisons in which -0 and 0 differ.
 #pragma once
 
 #include <array>

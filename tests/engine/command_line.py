@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""command_line.py ENGINE      what peclet-engine says to the one who calls it
+"""command_line.py ENGINE
 
-Bad arguments end with 2 and name what was given; a run ends with a summary on standard error whose numbers are those of
-the result, computed here once more; results begin with the means; waiting threads sleep unless the environment has its
-own wishes.
+Tests the command line of peclet-engine. Bad arguments end with exit code 2 and are named. A run ends with
+a summary on standard error, whose numbers are recomputed here from the result. Results begin with the
+means. Waiting threads sleep unless the environment says otherwise.
 """
 import json
 import math
@@ -59,8 +59,8 @@ def bad_arguments(engine, scene):
 
 
 def standard_error(series):
-    """Of a correlated series: the variance of the mean times 1 + 2 sum of the correlations before the first that is not
-    positive."""
+    """Returns the standard error of a correlated series. The variance of the mean is multiplied by 1 + 2
+    times the sum of correlations before the first that is not positive."""
     n = len(series)
     mean = math.fsum(series) / n
     products = [math.fsum((a - mean) * (b - mean) for a, b in zip(series, series[lag:])) / n for lag in range(n)]
@@ -114,7 +114,7 @@ def waiting(engine):
         environment = {k: v for k, v in os.environ.items() if k not in ("OMP_WAIT_POLICY", "GOMP_SPINCOUNT")} | wishes
         ours, theirs = socket.socketpair()
         with ours, theirs, subprocess.Popen([engine, "serve"], stdin=theirs, env=environment) as process:
-            assert ours.recv(4) == b"PCF1"  # it is there
+            assert ours.recv(4) == b"PCF1"  # the engine is running
             with open(f"/proc/{process.pid}/environ", "rb") as f:
                 found = dict(entry.split("=", 1) for entry in f.read().decode().split("\0") if "=" in entry)
             ours.shutdown(socket.SHUT_RDWR)

@@ -14,10 +14,10 @@ class Draws {
   double uniform(double low, double high) {
     return low + (high - low) * static_cast<double>(generator_() >> 11) * 0x1p-53;
   }
-  int whole(int low, int high) {  // both included
+  int whole(int low, int high) {  // inclusive
     return low + static_cast<int>(generator_() % static_cast<std::uint64_t>(high - low + 1));
   }
-  // Components uniform in [-size, size).
+  // Returns components uniform in [-size, size).
   Vector3 vector(double size = 1) {
     return {uniform(-size, size), uniform(-size, size), uniform(-size, size)};
   }

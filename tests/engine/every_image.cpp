@@ -10,7 +10,7 @@ struct Whole {
   std::int32_t first, last;
 };
 
-// All k with |distance + k length| <= range.
+// Returns the range of all k with |distance + k length| <= range.
 Whole within(double distance, double length, double range) {
   return {static_cast<std::int32_t>(std::ceil((-range - distance) / length)),
           static_cast<std::int32_t>(std::floor((range - distance) / length))};

@@ -1,4 +1,4 @@
-// All pairs in all images, the slow way: what lists and kernels are held against.
+// Finds all pairs in all images by brute force, the reference for lists and kernels.
 #pragma once
 
 #include <functional>
@@ -11,7 +11,7 @@ namespace peclet::engine {
 
 struct SeenPair {
   std::uint32_t first, second;  // first < second
-  LatticeShift image;           // added to the position of `second` as given
+  LatticeShift image;           // added to the given position of `second`
   Vector3 separation;
 
   friend bool operator==(const SeenPair& a, const SeenPair& b) {
@@ -19,8 +19,8 @@ struct SeenPair {
   }
 };
 
-// Every pair and image closer than range(first, second), sorted by (first, second, image). The lattice is
-// (Lx, 0, 0), (tilt, Ly, 0), (0, 0, Lz), worked out here.
+// Returns every pair and image closer than range(first, second), sorted by (first, second, image). The
+// lattice is (Lx, 0, 0), (tilt, Ly, 0), (0, 0, Lz), computed here.
 std::vector<SeenPair> every_image(const VectorField& position, const Vector3& lengths, double tilt,
                                   const std::function<double(std::uint32_t, std::uint32_t)>& range);
 

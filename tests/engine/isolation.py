@@ -1,11 +1,10 @@
 """Usage: isolation.py SOURCE_FOLDER ARCHIVE...
 
-What is compiled for newer processors must not leak into the rest of the program: where several objects define the same
-inline function, the linker keeps one copy, and if that is the one with the newer instructions the program no longer
-runs everywhere. So no object compiled for an instruction set may define a symbol that others could share, and no other
-object may contain registers of 256 or 512 bits.
-Eigen is made of such inline functions. Nothing in kernels/ or terms/ and no source for an instruction set may include
-it, also not by way of other headers: it would then take a single call to leak.
+Checks that code compiled for newer processors stays apart from the rest of the program. If several objects
+define an inline function, the linker keeps one copy; one with newer instructions would break older
+processors. An object compiled for an instruction set may therefore not define shared symbols, and other
+objects may not use registers of 256 or 512 bits. Eigen consists of such inline functions. Files in
+kernels/ and terms/ and sources for an instruction set may not include it, directly or indirectly.
 """
 
 import re
@@ -34,7 +33,7 @@ def guarded_sources(engine):
 
 
 def way_to_eigen(source, root, seen):
-    """The chain of includes from `source` to Eigen, or nothing; files in `seen` have none and are not read again."""
+    """Returns the chain of includes from `source` to Eigen, or nothing; files in `seen` have none."""
     seen.add(source)
     for opening, name in re.findall(r'^\s*#\s*include\s*([<"])([^>"]+)', source.read_text(), re.MULTILINE):
         if re.match(r"(unsupported/)?Eigen/", name):
@@ -52,7 +51,7 @@ def includes_of_eigen(root):
         if source not in seen and (way := way_to_eigen(source, root, seen)):
             names = [str(step.relative_to(root)) if isinstance(step, Path) else step for step in way]
             faults.append(" includes ".join(names))
-            seen -= set(way)  # others may get there as well
+            seen -= set(way)  # other sources may use them, too
     if len(sources) < 25:
         faults.append(f"only {len(sources)} sources were found below {root}")
     return faults

@@ -5,11 +5,11 @@
 
 namespace peclet::engine {
 
-// Of the motions or loads of a pair: three rows each of first, second sphere, first, second spin.
+// Motions or loads of a pair: three rows each for first sphere, second sphere, first spin, second spin.
 using Vector12 = Eigen::Vector<double, 12>;
 using Matrix12 = Eigen::Matrix<double, 12, 12>;
 
-// |entry|; NaN where there is one.
+// Returns the largest |entry|, or NaN if an entry is NaN.
 template <class Matrix>
 double largest_entry(const Eigen::MatrixBase<Matrix>& matrix) {
   return matrix.cwiseAbs().template maxCoeff<Eigen::PropagateNaN>();

@@ -66,7 +66,7 @@ void expect_near(const std::vector<double>& expected, const std::vector<double>&
   double worst = 0;
   for (std::size_t k = 0; k < expected.size(); ++k) {
     const double difference = std::abs(expected[k] - found[k]);
-    differing += difference <= bound * scale ? 0 : 1;  // a NaN is not
+    differing += difference <= bound * scale ? 0 : 1;  // counts a NaN as different
     worst = std::max(worst, difference);
   }
   EXPECT_EQ(differing, 0u) << what << ": up to " << worst << " of " << scale;

@@ -1,4 +1,4 @@
-// One evaluation of the hot loop, and how two of them are compared.
+// Evaluates the pair loop once, and compares evaluations.
 #pragma once
 
 #include <string>
@@ -12,12 +12,12 @@ namespace peclet::engine {
 
 constexpr double timestep = 1e-4;
 constexpr std::uint64_t seed = 5;
-constexpr double tolerance = 1e-12;  // of the largest component: only the order of the sums differs
+constexpr double tolerance = 1e-12;  // of the largest component; only the order of sums differs
 
-// Every combination of terms that is compiled.
+// Returns every compiled combination of terms.
 std::vector<Terms> every_recipe();
 
-// Their names, each followed by a space.
+// Returns the names of the terms, each followed by a space.
 std::string text(const Terms& terms);
 
 struct Evaluation {
@@ -26,19 +26,19 @@ struct Evaluation {
   SpringField springs;
 };
 
-// Of a copy of `system`, whose springs advance by one step.
+// Evaluates a copy of `system`, whose springs advance by one step.
 Evaluation evaluated(const Physics& physics, System system, int threads = 1,
                      InstructionSet set = chosen_instruction_set());
 
 std::vector<double> components(const VectorField& field);
-std::vector<double> components(const PairSums& sums);  // of the stress of every term
+std::vector<double> components(const PairSums& sums);  // the stress of every term
 std::vector<double> components(const SpringField& springs);
 
-// Within `bound` of the largest expected component.
+// Expects agreement within `bound` of the largest expected component.
 void expect_near(const std::vector<double>& expected, const std::vector<double>& found,
                  const std::string& what, double bound = tolerance);
 
-// All of an evaluation within that tolerance, or bit by bit.
+// Expects agreement of all parts of an evaluation within `tolerance`, or bit by bit.
 void expect_near(const Evaluation& expected, const Evaluation& found, const std::string& what);
 void expect_same_bits(const Evaluation& expected, const Evaluation& found, const std::string& what);
 

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
-"""picture_file.py ENGINE      pictures of `peclet-engine snapshot`, as Debian's python3-pil reads them
+"""picture_file.py ENGINE
 
-One sphere in a cell is a disc where the geometry says, every colouring and the chains of a real trajectory make
-a picture whose colours are many, and viridis is that of matplotlib in all of its 256 colours.
+Tests pictures of `peclet-engine snapshot` with Debian's python3-pil. A sphere in a cell is a disc at the
+right place. Every colouring and the chains of a real trajectory give pictures of many colours, and viridis
+equals matplotlib's in all of its 256 colours.
 """
 import json
 import os
@@ -23,7 +24,7 @@ def picture(engine, path, out, *options):
     subprocess.run([engine, "snapshot", path, "--output", out, *options], check=True)
     with Image.open(out) as image:
         assert (image.format, image.mode) == ("PNG", "RGB")
-        image.verify()  # every checksum
+        image.verify()  # checks the checksums
     with Image.open(out) as image:
         return numpy.array(image).astype(int)
 
@@ -38,7 +39,7 @@ def a_sphere_is_a_disc(engine, folder):
     rows, columns = numpy.nonzero(blue)
     width, height = numpy.ptp(columns) + 1, numpy.ptp(rows) + 1
     assert abs(width - height) <= 2 and width > 250, (width, height)
-    # Its edge is as sharp as it is round.
+    # The edge is sharp and round.
     assert abs(blue.sum() / (numpy.pi / 4 * width * height) - 1) < 0.02
     assert (pixels[0] == 255).all() and (pixels[-1] == 255).all()
 
@@ -63,7 +64,7 @@ def a_trajectory_has_pictures(engine, folder):
 
 
 def the_bar_is_viridis(engine, folder):
-    """Of a bar of 960 pixels, in which every colour has its row."""
+    """Compares a bar of 960 pixels, in which every colour has a row."""
     pixels = picture(
         engine,
         os.path.join(folder, "out.trajectory.gsd"),

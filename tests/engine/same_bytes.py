@@ -1,14 +1,14 @@
 #!/usr/bin/python3
-"""same_bytes.py BEFORE AFTER [--jobs N]      whether two builds of peclet-engine compute the same, to the last bit
+"""same_bytes.py BEFORE AFTER [--jobs N]
 
-Runs short scenes of every combination of terms, with explicit and with implicit steps, and some others (a fluid at
-rest, waves, other flows, other laws of pairs, four sizes, two threads, a larger system, every observable) with every
-instruction set that this processor has. Prints every field of the results that differs: in how many runs, by how much
-of its own size at most, and in which run first. What tells of the build and the machine is left out.
+Tests whether two builds of peclet-engine agree to the last bit. Runs short scenes of every combination of
+terms with explicit and implicit steps, and some others (a fluid at rest, waves, other flows, other pair
+laws, four sizes, two threads, a larger system, every observable), with every instruction set of this
+processor. Prints every field of the results that differs: in how many runs, by which largest relative
+difference, and in which run first. Fields about the build and the machine are left out.
 
-The exit code is 1 where trajectories differ, which is what `final_state_sha256` and `ending` say, or where a scene does
-not do what it is here for. Other fields are means and figures over the same trajectory; that they differ by rounding
-may be intended.
+The exit code is 1 if trajectories differ (`final_state_sha256` and `ending`) or a scene does not test what
+it should. Other fields are means and numbers of a trajectory; rounding differences there may be intended.
 """
 import argparse
 import concurrent.futures
@@ -79,7 +79,7 @@ LARGE = {
 
 
 def merged(*parts):
-    """JSON merge, without removals."""
+    """Returns the JSON merge of `parts`, without removals."""
     result = {}
     for part in parts:
         for key, value in part.items():
@@ -89,7 +89,7 @@ def merged(*parts):
 
 
 def scenes():
-    """(name, scene, threads)"""
+    """Yields (name, scene, threads)."""
     for method, integrator in METHODS.items():
         base = merged(SCENE, {"integrator": integrator})
         for (touch, contact), lubrication, noise, repulsion in itertools.product(
@@ -150,7 +150,7 @@ def result_of(engine, path, threads, instruction_set):
 
 
 def field_of(pointer):
-    """The field without the indices of its lists, which would make a line each."""
+    """Returns the field without the indices of its lists, which would give a line each."""
     return "/".join("*" if part.isdigit() else part for part in pointer.split("/"))
 
 
@@ -187,7 +187,7 @@ class Differences:
 
 
 def faults_of(results):
-    """Scenes that show nothing: contacts that nobody made, two scenes with one end."""
+    """Returns scenes that test nothing: without any contact, or with the end of another scene."""
     faults, ends = [], {}
     for (name, instruction_set), (scene, result) in results.items():
         state = result["final_state_sha256"]

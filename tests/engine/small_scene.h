@@ -1,13 +1,13 @@
-// A scene in which everything happens in a few hundred steps: contacts with friction come and go, the list is
-// rebuilt, the box flips, noise is drawn.
+// A scene with many events in a few hundred steps: frictional contacts form and break, the list is rebuilt,
+// the box flips, noise is drawn.
 #pragma once
 
 #include "contract/json.h"
 
 namespace peclet::engine {
 
-// 60 spheres, fast shear with hard collisions, a wide inner gap that allows a long step: dt = 0.002, strain
-// 0.004 a step, 100 steps of equilibration and 320 of production.
+// Returns a scene of 60 spheres in fast shear. A wide inner gap allows a long step: dt = 0.002, strain 0.004
+// a step, 100 steps of equilibration and 320 of production.
 inline Json small_scene() {
   return Json::parse(R"({
     "particles": {"count": 60, "density": 0.1,

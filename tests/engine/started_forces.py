@@ -1,9 +1,10 @@
 #!/usr/bin/python3
-"""started_forces.py ENGINE      a realisation that starts from a file begins with the forces of that file
+"""started_forces.py ENGINE
 
-One without friction leaves its final configuration and a trajectory. The next one starts there with steps of 10⁻⁹, in
-which nothing moves: the stress of each term in its first frame is what `peclet-engine forces` computes of the text's
-numbers, and its contacts with their forces are those of the last frame of the first one.
+Tests that a realisation started from a file begins with the forces of that file. A frictionless
+realisation leaves its final configuration and a trajectory. The next one starts there with steps of 10⁻⁹,
+in which nothing moves. The stress of each term in its first frame equals that of `peclet-engine forces`
+for the numbers of the text, and its contacts are those of the last frame of the first one.
 """
 import hashlib
 import json
@@ -45,7 +46,7 @@ def run(engine, folder, name, scene):
 
 
 def forces_of(engine, folder, text):
-    """By the independent verb, of the numbers of the text."""
+    """Returns the answer of `peclet-engine forces` for the numbers of the text."""
     lines = text.splitlines()
     lattice = [float(x) for x in re.search('Lattice="([^"]*)"', lines[1])[1].split()]
     rows = numpy.array([[float(x) for x in line.split()] for line in lines[2:]])

@@ -1,10 +1,11 @@
 #!/usr/bin/python3
-"""trajectory_file.py ENGINE      trajectories of peclet-engine, as Debian's python3-gsd reads them
+"""trajectory_file.py ENGINE
 
-Beside the final configuration, which is text with every bit of the numbers: box, places, images, velocities and radii
-of the last frame. Ways of the spheres have no jump where the basis of the cell changes. Stresses of the spheres add up
-to that of the frame, and its mean over all steps is that of the result. A run that is killed with SIGKILL and resumed
-leaves the same bytes, as does one with two threads.
+Tests trajectories of peclet-engine, read by Debian's python3-gsd. The last frame is compared with the
+final configuration, text with all bits of the numbers: box, positions, images, velocities and radii.
+Displacements are continuous across changes of basis. Stresses of the spheres add up to that of the frame,
+whose mean over all steps is that of the result. A run that is killed with SIGKILL and resumed leaves
+identical bytes, as does one with two threads.
 """
 import collections
 import json
@@ -41,7 +42,7 @@ SCENE = {
 }
 NOISE = {"fluid": {"viscosity": 0.1, "thermal_energy": 0.02}}
 EXPLICIT = {"integrator": {"method": "explicit", "timestep": 0.0005}}
-ROUNDING = 2.0**-24  # of a number to the nearest float32
+ROUNDING = 2.0**-24  # to the nearest float32, relative
 EQUILIBRATION, PRODUCTION = 200, 960  # steps; each of the window has a frame
 TERMS = ("solvent", "stresslet", "lubrication", "contact_normal", "friction", "total")
 
@@ -72,7 +73,7 @@ def bytes_of(folder):
 
 
 def final_of(text):
-    """Lattice vectors as columns, and of each sphere the centre, the radius and the velocity."""
+    """Returns the lattice vectors as columns, and the centre, radius and velocity of each sphere."""
     lines = text.splitlines()
     lattice = [float(x) for x in re.search('Lattice="([^"]*)"', lines[1])[1].split()]
     rows = numpy.array([[float(x) for x in line.split()] for line in lines[2:]])
@@ -89,7 +90,7 @@ def realisation(engine, scene):
 
 
 def lattice_of(frame):
-    """As the schema says: lx, ly, lz and the tilts by the length that they go along with."""
+    """Returns the lattice by the schema: lx, ly, lz, and tilts over the length of their second axis."""
     lx, ly, lz, xy, xz, yz = frame.configuration.box.astype(float)
     return numpy.array([[lx, xy * ly, xz * lz], [0, ly, yz * lz], [0, 0, lz]])
 
@@ -109,7 +110,7 @@ def is_the_final_configuration(realisation):
     assert (box[:3] == numpy.diag(lattice).astype(numpy.float32)).all()
     assert (box[3:] == numpy.float32([lattice[0, 1] / lattice[1, 1], 0, 0])).all()
     assert (frame.particles.diameter == (2 * radius).astype(numpy.float32)).all()
-    # Whole cells, found anew: the centre of the cell is the origin.
+    # Whole cells, recomputed; the cell is centred at the origin.
     cells = numpy.floor(numpy.linalg.solve(lattice, centre.T).T + 0.5)
     assert (abs(cells) > 0).any() and (cells == 0).any()
     assert (frame.particles.position == (centre - cells @ lattice.T).astype(numpy.float32)).all()
@@ -120,13 +121,13 @@ def is_the_final_configuration(realisation):
 
 
 def ways_have_no_jump(frames):
-    """Unwrapped, a sphere moves in one step by dt times its velocity as it was or is, and the flow's difference."""
+    """Unwrapped, a sphere moves in a step by dt times its mean velocity, up to the flow's difference."""
     dt, changes, last = SCENE["integrator"]["timestep"], 0, None
     for frame in frames:
         lattice = lattice_of(frame)
         image = frame.particles.image
         unwrapped = frame.particles.position + image @ lattice.T
-        # The velocity at the unwrapped place: images move with the cell.
+        # The velocity at the unwrapped position; images move with the cell.
         velocity = frame.particles.velocity.astype(float)
         velocity[:, 0] += SCENE["flow"]["shear_rate"] * lattice[1, 1] * image[:, 1]
         tilt = frame.configuration.box[3]
@@ -149,13 +150,13 @@ def stress_adds_up(realisation):
         parts = frame.log["particles/stress"].astype(float)
         volume = numpy.prod(frame.configuration.box[:3].astype(float))
         of_frame = volume * (frame.log["stress/total"] - frame.log["stress/solvent"])
-        # Four roundings of edges and numbers.
+        # The bound of four roundings of edges and numbers.
         bound = 1.01 * ROUNDING * abs(parts).sum(axis=0) + 4 * ROUNDING * abs(of_frame)
         assert (abs(parts.sum(axis=0) - of_frame) <= bound).all()
 
 
 def contacts_are_those_of_the_network(realisation):
-    """The observable counts them by itself, in the same steps."""
+    """Compares with the observable, which counts the same steps independently."""
     numbers = numpy.concatenate([frame.log["particles/contact_number"] for frame in realisation.frames])
     shares = numpy.bincount(numpy.minimum(numbers, 12), minlength=13) / len(numbers)
     assert numpy.allclose(shares, realisation.result["mean"]["contact_network"]["contacts"], atol=1e-12)
@@ -168,9 +169,9 @@ def contacts_are_those_of_the_network(realisation):
 
 
 def dilute(engine):
-    """A frame without contacts is read before others that have some."""
+    """Reads a frame without contacts before frames with some."""
     frames = realisation(engine, SCENE | {"volume_fraction": 0.1, "trajectory": {"contacts": True}}).frames
-    assert len(frames) == PRODUCTION // (PRODUCTION // 256)  # a 256th of the window, in whole steps
+    assert len(frames) == PRODUCTION // (PRODUCTION // 256)  # a 256th of the window in whole steps
     assert frames[0].bonds.N == 0 and frames[0].log["bonds/gap"].shape == (0,)
     some = next(frame for frame in frames if frame.bonds.N > 0)
     assert some.bonds.group.shape == (some.bonds.N, 2) and some.log["bonds/gap"].shape == (some.bonds.N,)
@@ -184,7 +185,7 @@ def wait_until(is_so):
 
 
 def killed_and_resumed(engine):
-    """Stopped with a checkpoint, killed after some more frames, and resumed."""
+    """Tests a run stopped with a checkpoint, killed after more frames, and resumed."""
     scene = SCENE | {
         "particles": SCENE["particles"] | {"count": 8000},
         "duration": {"equilibration": {"time": 0.02}, "production": {"time": 0.4}},

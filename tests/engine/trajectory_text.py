@@ -1,10 +1,11 @@
 #!/usr/bin/python3
-"""trajectory_text.py ENGINE [LAMMPS]      what `peclet-engine trajectory` writes, as other programs read it
+"""trajectory_text.py ENGINE [LAMMPS]
 
-Beside the GSD file, which Debian's python3-gsd reads. Extended XYZ is parsed by what the format says; every number is,
-rounded to a float, that of the GSD file, and stresses of spheres add up to that of the frame. With LAMMPS its read_dump
-reads the dump: places, images, cell, velocities and radii are those of the file, and the unwrapped ways have no jump
-where the basis of the cell changes. Hostile files end with one message and exit code 2.
+Tests the text formats of `peclet-engine trajectory` with other programs, and compares them with the GSD
+file, read by Debian's python3-gsd. Extended XYZ is parsed by its definition. Every number is that of the
+GSD file, rounded to a float, and stresses of spheres add up to that of the frame. LAMMPS reads the dump
+with read_dump: positions, images, cell, velocities and radii are those of the file, and displacements are
+continuous across changes of basis. Malformed files end with one message and exit code 2.
 """
 import json
 import os
@@ -35,7 +36,7 @@ SCENE = {
     "files": {"final_configuration": True},
 }
 COLUMNS = {"I": int, "R": float, "S": str}
-# As LAMMPS documents it; radii are read where a charge may be. Read, written with every digit, for each frame.
+# The script by LAMMPS' manual; radii are read as charges. Read and written with all digits, for each frame.
 SCRIPT = """
 units lj
 atom_style charge
@@ -59,7 +60,7 @@ def lattice_of(frame):
 
 
 def read_xyz(text):
-    """Frames as (second line, columns by name)."""
+    """Yields frames as (second line, columns by name)."""
     lines = text.splitlines()
     while lines:
         count, about = int(lines[0]), lines[1]
@@ -107,7 +108,7 @@ def xyz_is_the_trajectory(text, frames):
 
 
 def read_dump(path):
-    """Columns by name, and the lattice and the corner by LAMMPS' rule for the bounds of a tilted cell."""
+    """Returns columns by name, the lattice and its corner, by LAMMPS' rule for bounds of tilted cells."""
     with open(path) as file:
         lines = file.read().splitlines()
     assert lines[4] == "ITEM: BOX BOUNDS xy xz yz pp pp pp", lines[4]
@@ -135,7 +136,7 @@ def lammps_reads_the_trajectory(lammps, folder, dump, frames):
         assert abs(low + lattice.sum(axis=1) / 2).max() < 1e-13 * lattice[0, 0]
         columns = {name: numpy.array([read[name + x] for x in "xyz"]).T for name in ("", "i", "v")}
         columns["u"] = numpy.array([read[x + "u"] for x in "xyz"]).T
-        # Of a sphere on the edge either image is right: LAMMPS has the double, where the file has a float.
+        # On the edge of the cell either image is right: LAMMPS has doubles, the file floats.
         moved = columns["i"] - frame.particles.image
         assert abs(columns[""] + moved @ lattice.T - frame.particles.position).max() < 1e-6
         assert (moved == 0).all(axis=1).sum() >= frame.particles.N - 1
@@ -145,7 +146,7 @@ def lammps_reads_the_trajectory(lammps, folder, dump, frames):
         assert (read["type"] == frame.particles.typeid + 1).all()
         tilt = frame.configuration.box[3]
         if last is not None:
-            # In a strain of 0.04 a sphere goes with the flow, which is 4 % of how far from y = 0 it has come.
+            # In a strain of 0.04 a sphere moves with the flow by 4 % of its unwrapped height.
             way = columns["u"] - last[0]
             assert abs(way).max() < 2, abs(way).max()
             changes += last[1] - tilt > 0.5

@@ -1,4 +1,4 @@
-// A pair of spheres as the terms see it, and its grand resistance matrix by unit motions.
+// A pair of spheres as the terms see it, and its grand resistance matrix from unit motions.
 #pragma once
 
 #include "engine/terms/lubrication.h"
@@ -8,7 +8,7 @@
 namespace peclet::engine {
 
 constexpr double inner_gap = 1e-3;
-// beta = a_j / a_i and gaps in which every claim about pairs is tried; overlap and clamped gaps among them.
+// beta = a_j / a_i and gaps for every claim about pairs, overlap and clamped gaps included.
 constexpr double size_ratios[] = {1.0 / 7, 1 / 1.4, 1, 1.4, 3, 7};
 constexpr double gaps[] = {-0.01, 0, 5e-4, 1e-3, 0.01, 0.05, 0.2, 0.5};
 
@@ -21,7 +21,7 @@ inline LubricatedGap plain_gap(const PairGeometry& pair) {
   return lubricated_gap({.inner_gap = inner_gap}, pair.sum_of_radii);
 }
 
-// Of the form kim-karrila.
+// Returns the resistance of the form kim-karrila.
 inline PairResistance resistance_of(double viscosity, double first, double second, const PairGeometry& pair) {
   return pair_resistance(resistance_constants(viscosity, first, second), plain_gap(pair), pair);
 }
@@ -34,13 +34,13 @@ inline ResistanceRoots roots_of(double viscosity, double first, double second, c
 
 inline PairMotion random_motion(Draws& draws) { return {draws.vector(), draws.vector(), draws.vector()}; }
 
-// -power of a load: F_i.U_i + F_j.U_j + T_i.Omega_i + T_j.Omega_j with F_j = -F_i.
+// Returns -power of a load: F_i.U_i + F_j.U_j + T_i.Omega_i + T_j.Omega_j with F_j = -F_i.
 inline double dissipated(const PairLoad& load, const PairMotion& motion) {
   return dot(load.force, motion.velocity) - dot(load.torque_first, motion.spin_first) -
          dot(load.torque_second, motion.spin_second);
 }
 
-// Components of (F_i, F_j, T_i, T_j).
+// Returns the components of (F_i, F_j, T_i, T_j).
 inline Vector12 components(const PairLoad& load) {
   const Eigen::Vector3d force = to_eigen(load.force);
   Vector12 all;
@@ -48,7 +48,7 @@ inline Vector12 components(const PairLoad& load) {
   return all;
 }
 
-// R of (F_i, F_j, T_i, T_j) = -R (U_i, U_j, Omega_i, Omega_j), column by column.
+// Returns R of (F_i, F_j, T_i, T_j) = -R (U_i, U_j, Omega_i, Omega_j), column by column.
 inline Matrix12 grand_resistance(const PairResistance& resistance, const PairGeometry& pair) {
   Matrix12 matrix;
   for (Eigen::Index k = 0; k < 12; ++k) {

@@ -1,4 +1,4 @@
-// Checkpoints: what is below the checksum. It is made to fit, or nothing but the checksum would be tried.
+// Fuzz target for the payload of checkpoints; each input gets a fitting checksum.
 #include <unistd.h>
 
 #include <filesystem>
@@ -52,7 +52,7 @@ const fs::path& path() {
 
 constexpr std::size_t before_length = 12, before_payload = 20, after_payload = 64;
 
-// Checkpoints after 2 and 30 steps, as they are written.
+// Returns the bytes of checkpoints after 2 and 30 steps.
 const std::vector<std::string>& written() {
   static const std::vector<std::string> files = [] {
     std::vector<std::string> all;
@@ -83,7 +83,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     Simulation simulation = fresh();
     read_checkpoint(path(), belonging, simulation);
     ++inputs_accepted;
-  } catch (const CheckpointError&) {  // refused in words
+  } catch (const CheckpointError&) {  // refused with a message
   }
   return 0;
 }

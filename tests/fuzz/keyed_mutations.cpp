@@ -1,8 +1,7 @@
 // TARGET [--seed K] [--runs N] [--seconds S] [--findings FOLDER] [FILE | FOLDER]...
 //
-// Reads every file, then N mutations of valid inputs and files, or as many as S seconds have: mutation n of
-// seed K is always the same. An input that ends the program is left in FOLDER/K-n, the present folder unless
-// given.
+// Reads every file, then N mutations of valid inputs and files, or mutations for S seconds. Mutation n of
+// seed K is reproducible. An input that ends the program is saved as K-n in FOLDER (default: current folder).
 #include <fcntl.h>
 #include <sys/time.h>
 #include <unistd.h>
@@ -22,7 +21,7 @@
 
 #include "tests/fuzz/fuzz_target.h"
 
-// Of the address sanitizer, where there is one.
+// Defined by the address sanitizer, otherwise null.
 extern "C" void __sanitizer_set_death_callback(void (*callback)()) __attribute__((weak));  // NOLINT
 
 namespace {
@@ -36,10 +35,10 @@ struct Options {
   std::vector<fs::path> files;
 };
 
-// The input that is being read, for the case that the program ends there.
+// The input being read, saved if the program ends in it.
 std::string present_input, present_name;
 
-// Leaves the input. Only calls that a handler of signals may make.
+// Saves the present input; uses only async-signal-safe calls.
 void leave_finding() {
   const int file = ::open(present_name.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
   if (file < 0) return;
@@ -65,7 +64,7 @@ void watch_for_the_end() {
   for (const int number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL}) std::signal(number, leave_finding_of_signal);
 }
 
-// Sends SIGPROF after `seconds` of processor time, which does not pass faster on a busy machine. 0: never.
+// Sends SIGPROF after `seconds` of processor time, independent of the machine's load; never if 0.
 void end_after(long seconds) {
   const itimerval limit{.it_interval = {}, .it_value = {.tv_sec = seconds, .tv_usec = 0}};
   ::setitimer(ITIMER_PROF, &limit, nullptr);
@@ -74,8 +73,8 @@ void end_after(long seconds) {
 void read(std::string input, std::string name) {
   present_input = std::move(input);
   present_name = std::move(name);
-  end_after(20);  // an endless loop is a finding, too
-  // A buffer of its own: what is read behind its end is seen.
+  end_after(20);  // ends an endless loop as a finding
+  // A separate buffer, so that sanitizers see reads behind its end.
   const std::vector<std::uint8_t> bytes(present_input.begin(), present_input.end());
   LLVMFuzzerTestOneInput(bytes.data(), bytes.size());
   end_after(0);
@@ -95,7 +94,7 @@ class Mutation {
  private:
   std::size_t below(std::size_t count) { return count == 0 ? 0 : random_() % count; }
 
-  // Numbers at which integers and floats of files go wrong.
+  // Overwrites bytes with a number at which integers and floats of files tend to go wrong.
   template <class Value>
   void put_number(std::string& bytes, std::size_t place) {
     constexpr std::array<Value, 8> integers = {0,
@@ -117,7 +116,7 @@ class Mutation {
     std::memcpy(bytes.data() + place, &value, std::min(sizeof value, bytes.size() - place));
   }
 
-  // Words in the place of a word of a text.
+  // Replaces a word of a text.
   void put_word(std::string& bytes, std::size_t place) {
     constexpr std::array<const char*, 24> words = {"nan",
                                                    "-1",

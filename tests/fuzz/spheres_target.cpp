@@ -1,4 +1,4 @@
-// Files of spheres, GSD or extended XYZ: read, written as texts, read again, and drawn.
+// Fuzz target for files of spheres, GSD or extended XYZ: read, written as text, read again and drawn.
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -20,7 +20,7 @@ namespace {
 using namespace peclet;
 using namespace peclet::engine;
 
-// A file in memory, with a name by which it is opened again.
+// A file in memory with a path by which it is opened again.
 class MemoryFile {
  public:
   explicit MemoryFile(std::span<const std::uint8_t> bytes) : number_(::memfd_create("spheres", MFD_CLOEXEC)) {
@@ -41,7 +41,7 @@ void require(bool holds, const char* claim) {
   if (!holds) throw std::logic_error(claim);
 }
 
-// A frame that was read is written as a text that says the same.
+// Checks that a frame written as text reads back equal.
 void check_text(const Snapshot& snapshot) {
   const std::string text = xyz_frame(snapshot);
   const std::vector<std::string_view> frames = xyz_frames(text, "again");
@@ -66,7 +66,7 @@ void draw(const Snapshot& snapshot) {
     options.colour = colour;
     try {
       picture_of(snapshot, options);
-    } catch (const InputError&) {  // the frame has no such numbers
+    } catch (const InputError&) {  // the frame lacks these quantities
     }
   }
   if (!snapshot.contacts) return;
@@ -125,7 +125,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       if (snapshot.count() <= 20) draw(snapshot);
     }
     ++inputs_accepted;
-  } catch (const InputError&) {  // refused in words
+  } catch (const InputError&) {  // refused with a message
   }
   return 0;
 }

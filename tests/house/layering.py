@@ -1,10 +1,11 @@
 #!/usr/bin/python3
-"""layering.py [--picture FILE.svg]      checks the includes between rooms
+"""layering.py [--picture FILE.svg]
 
-A room is a folder of engine/ or runner/. It may include contract/ and the rooms before it in add_rooms() of the
-CMakeLists.txt there. Errors are: an include of a later room, a cycle of headers, a class with functions in several
-files, SQL outside of runner/store. A file of more than 600 lines is named on standard error, because it may have a
-second subject. --picture draws the rooms and their includes with graphviz.
+Checks the includes between rooms, the folders of engine/ and runner/. A room may include contract/ and the
+rooms before it in add_rooms() of their CMakeLists.txt. Reports includes that run upward, circles of
+headers, classes whose functions are in several files, and SQL outside runner/store. --picture draws the
+rooms and their includes (needs graphviz). A file of more than 600 lines is named on standard error,
+because it may hide a second subject.
 """
 import argparse
 import collections
@@ -29,7 +30,7 @@ def read(source, path):
 
 
 def layers(source, program):
-    """Returns the folders with a program's files, from bottom to top."""
+    """Returns the folders of a program's files, from below to above."""
     rooms = ROOMS.search(read(source, f"{program}/CMakeLists.txt"))[1].split()
     return ["contract", *(f"{program}/{room}" for room in rooms), program]
 
@@ -43,7 +44,7 @@ def sources(source, top):
 
 
 def includes(source, top):
-    """Yields the includes of project headers below a folder: path, line number, included path."""
+    """Yields each include of our own files below a folder: path, line number, included path."""
     for path in sources(source, top):
         for number, line in enumerate(read(source, path).splitlines(), 1):
             found = INCLUDE.match(line)
@@ -66,7 +67,7 @@ def upward(source):
 
 
 def absent(source):
-    """Yields rooms without files, so that a check of an empty folder fails."""
+    """Yields rooms without a file, whose other checks would pass unnoticed."""
     for program in PROGRAMS:
         for layer in layers(source, program)[:-1]:
             if not any(os.path.dirname(path) == layer for path in sources(source, layer)):
@@ -74,7 +75,7 @@ def absent(source):
 
 
 def circles(source):
-    """Yields headers in a cycle: those that remain when headers without includes of others are removed repeatedly."""
+    """Yields headers that include each other, by removing all others one after the other."""
     below = collections.defaultdict(set)
     for top in ("contract", *PROGRAMS):
         for path, _, included in includes(source, top):
@@ -91,7 +92,7 @@ def circles(source):
 
 
 def scattered(source):
-    """Yields classes with functions in several files."""
+    """Yields classes whose functions are in several files."""
     for top in ("contract", *PROGRAMS):
         files = collections.defaultdict(set)
         for path in sources(source, top):
@@ -120,7 +121,7 @@ def long_files(source):
 
 
 def picture(source):
-    """Returns the rooms from bottom to top and their includes as text for dot."""
+    """Returns the rooms from below to above and their includes, for dot."""
     text = (
         'digraph rooms {\n  node [shape=box, style=filled, fillcolor="#eef3f8", fontname="sans"]; '
         'edge [color="#7090b0"];\n'

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Tests that layering.py finds each kind of fault, in a small tree with this fault alone."""
+"""layering.py reports each fault, put into a small tree of its own."""
 import os
 import subprocess
 import sys

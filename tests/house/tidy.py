@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""tidy.py BUILD [PART...]      runs clang-tidy on all files that BUILD compiles, or on those with PART in their path
-tidy.py BUILD --programs     runs it on all files but the tests: half of them
+"""tidy.py BUILD [PART...]      runs clang-tidy on all that BUILD compiles, or on files with PART in their path
+tidy.py BUILD --programs     on all but the tests: half of the files
 
-A unity build is checked as it is compiled, all files of a folder at once, in a third of the time. Two checks work only
-on single files (build/dev): misc-unused-using-decls and misc-unused-alias-decls. The exit code is 1 if something was
-found, or if no file was checked.
+A unity build is checked as it is compiled, a folder at once, in a third of the time of single files. Two
+checks need single files: misc-unused-using-decls and misc-unused-alias-decls (build/dev). The exit code is
+1 if something was found or no file was checked.
 """
 import concurrent.futures
 import json
@@ -12,7 +12,7 @@ import os
 import subprocess
 import sys
 
-# A unity source includes sources.
+# A unity source includes sources on purpose.
 CHECKS = "--checks=-bugprone-suspicious-include"
 
 

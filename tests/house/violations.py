@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""violations.py FOLDER [NAME...]      tests that each check of .ci/run finds the fault that it is for
+"""violations.py FOLDER [NAME...]
 
-Copies the source into FOLDER and, for one fault at a time, runs the check that must find it, first without the fault.
-Takes minutes, and is not part of the tests.
+Tests that each check of .ci/run finds its faults. Copies the source into FOLDER, commits one fault at a
+time, and runs the check for it, first without the fault. Takes minutes, and is run by hand.
 """
 import os
 import shutil
@@ -31,7 +31,7 @@ def test(body):
     return "\n#include <cassert>\nTEST(Violation, IsSeen) {\n" + body + "\n}\n"
 
 
-# Faults by name: the check, the file with the fault, the fault, and a part of the message about it.
+# Name: the check, the file with the fault, the fault, and part of the report.
 VIOLATIONS = {
     "address": (SANITIZED, TEST, test("  const std::vector<int> v(3);\n  EXPECT_EQ(*(v.data() + 3), 0);"), "overflow"),
     "undefined": (

@@ -1,6 +1,6 @@
-"""Coarse mistakes, each shown to every study and every test of the engine and of the physics.
+"""Coarse mistakes, each tried with every study and every test of the engine and the physics.
 
-What is broken; file, text in it that occurs once, and what takes its place.
+Name; file, text in it that occurs once, and its replacement.
 """
 
 COARSE = [

@@ -1,14 +1,13 @@
 #!/usr/bin/python3
-"""mutations.py FOLDER [--named] [--only WORD] [--jobs N]  break the physics in a copy of the source and see who notices
-mutations.py --check [--compiler COMMAND]                only see that every mutation still applies and compiles
+"""mutations.py FOLDER [--named] [--only WORD] [--jobs N]  breaks the physics in a copy and lists failures
+mutations.py --check [--compiler COMMAND]               checks that every mutation still applies and compiles
 
-Each mutation is one change of a line of the engine. It is made in FOLDER, a copy of the source that this script makes,
-and built there. The coarse ones (coarse_mutations.py) are shown to the quick forms of the studies and to the tests of
-the engine and of the physics; the fine ones (named_mutations.py, --named) each to the one test of seconds that has to
-notice it. A mutation that is missed is an error, and so is one that ends a test by a signal: a program that crashes
-has seen nothing. Prints a table, and writes it to its half of mutations.md beside this script when all were tried.
-Some four minutes of two cores for each coarse mutation, a minute for each fine one; a second call with FOLDER goes on
-where the first one was stopped, if the source has the same commit and no changes.
+Each mutation changes a line of the engine. It is made and built in FOLDER, a copy of the source. The coarse
+ones (coarse_mutations.py) are tried with the quick forms of the studies and all tests of the engine and the
+physics. The fine ones (named_mutations.py, --named) are tried each with the one test of seconds that must
+fail. A mutation without a failure is an error, and so is a test that ends by a signal. Prints a table, and
+writes it to its half of mutations.md after a complete run. A coarse mutation takes about four minutes of two
+cores, a fine one a minute. A second call with FOLDER continues a stopped one at the same commit.
 """
 import argparse
 import concurrent.futures
@@ -40,7 +39,7 @@ STUDIES = """
 
 
 def replaced(mutation, root):
-    """Path and text of the broken file."""
+    """Returns the path and the text of the changed file."""
     name, file, old, new = mutation[:4]
     path = os.path.join(root, file)
     with open(path) as f:
@@ -51,7 +50,7 @@ def replaced(mutation, root):
 
 
 def errors_of(mutations, file, root, compiler):
-    """What the compiler says of a file with all of these mutations, the first lines; None where two overlap."""
+    """Returns the first compiler messages for a file with all of these mutations, or None if two overlap."""
     with open(os.path.join(root, file)) as f:
         text = f.read()
     end = len(text)
@@ -65,9 +64,9 @@ def errors_of(mutations, file, root, compiler):
 
 
 def not_compiled(mutations, root, compiler, jobs):
-    """(name, what the compiler says) of mutations that are no C++. A file is compiled once with all of its own, and
-    with each by itself only where that fails; a header by itself, so its templates only as far as they name no
-    parameter."""
+    """Returns (name, compiler messages) of mutations that do not compile. A file is compiled once with all of
+    its mutations, and with each separately only if that fails. Templates of a header are checked as far as
+    they need no parameter."""
     of_file = {}
     for mutation in mutations:
         of_file.setdefault(mutation[1], []).append(mutation)
@@ -91,7 +90,7 @@ def copy_of_source(folder):
     for file in filter(None, files):
         target = os.path.join(folder, file)
         os.makedirs(os.path.dirname(target), exist_ok=True)
-        # Only what differs, so that a second call builds little.
+        # Copies only files that differ, so that a second call builds little.
         source = os.path.join(SOURCE, file)
         if not os.path.exists(target) or open(source, "rb").read() != open(target, "rb").read():
             shutil.copyfile(source, target)
@@ -117,7 +116,7 @@ def build(folder, jobs, targets=("peclet", "peclet-engine", "engine_tests", "phy
 
 
 def programs(folder, name):
-    """The programs that have these tests: one of that name, or of engine_tests one for each room."""
+    """Returns the programs of these tests: the one of that name, or for engine_tests one per room."""
     binaries = os.path.join(folder, "build/release/bin")
     if name != "engine_tests":
         return [os.path.join(binaries, name)]
@@ -126,7 +125,7 @@ def programs(folder, name):
 
 
 def failed_tests(folder, name, arguments):
-    """Names of the tests that fail; what ended them otherwise."""
+    """Returns the names of failing tests; exits if a program ends otherwise."""
     return sorted(set().union(*(failed_in(folder, program, arguments) for program in programs(folder, name))))
 
 
@@ -165,7 +164,7 @@ def who_notices(folder):
 
 
 def who_of_the_named(folder, names):
-    """Of these tests (program:test), those that fail; a program that has none of a name is an error."""
+    """Returns those of the tests (program:test) that fail; exits if a program lacks a test."""
     noticed = []
     for program in sorted({name.split(":")[0] for name in names}):
         tests = [name.split(":")[1] for name in names if name.startswith(program + ":")]
@@ -194,8 +193,7 @@ def commit_of_source():
 
 
 def trees():
-    """Of the engine, its tests and how they are built: what the fine mistakes depend on. Outlives commits on other
-    subjects."""
+    """Returns the hashes of what fine mutations depend on, which commits on other subjects do not change."""
     parts = ("engine", "contract", "schema", "tests/engine", "tests/physics", "tests/CMakeLists.txt")
     parts += ("cmake", "CMakeLists.txt", "CMakePresets.json")
     return " ".join(git("rev-parse", "--short=7", f"HEAD:{part}") for part in parts) + (
@@ -204,8 +202,7 @@ def trees():
 
 
 class Known:
-    """Who noticed what, of this call and of earlier ones with the same commit; of source with changes nothing is
-    kept."""
+    """The failing tests by mutation, kept between calls for one commit without changes."""
 
     def __init__(self, folder, commit, file):
         os.makedirs(folder, exist_ok=True)
@@ -218,7 +215,7 @@ class Known:
 
     @staticmethod
     def key(mutation):
-        """Another one when its text has changed."""
+        """Returns a key that changes with the text of the mutation."""
         return f"{mutation[0]} {hashlib.sha256(repr(mutation).encode()).hexdigest()[:12]}"
 
     def add(self, mutation, noticed):
@@ -232,7 +229,7 @@ MARK = "## Fine mistakes\n"
 
 
 def halves():
-    """Of mutations.md: the coarse half, and the rows of the fine one by name."""
+    """Returns the coarse half of mutations.md, and the rows of the fine half by name."""
     with open(os.path.join(HERE, "mutations.md")) as f:
         before, _, after = f.read().partition(MARK)
     rows = [line for line in after.splitlines() if line.startswith("| ") and not line.startswith("| broken")]
@@ -257,7 +254,7 @@ def coarse(folder, jobs, mutation):
 
 
 def fine(folder, jobs, mutation):
-    """Unbroken source is shown to all of the tests."""
+    """Returns the failing tests of a fine mutation; unchanged source runs the tests of all."""
     names = [mutation[4]] if mutation[1] else mutation[4]
     build(folder, jobs, sorted({name.split(":")[0] for name in names}))
     return who_of_the_named(folder, names)
@@ -299,7 +296,7 @@ def main():
     before, rows = halves()
     lines = []
     missed = 0
-    # Before unbroken source the tests of all of them are tried.
+    # Unchanged source comes first, with the tests of all mutations.
     for mutation in [("nothing", None, None, None, sorted({m[4] for m in NAMED})), *chosen]:
         if arguments.only not in mutation[0]:
             continue

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What mutations.py takes for noticed, shown with programs and sources written for the purpose."""
+"""Tests of mutations.py, with programs and sources written for the purpose."""
 import os
 import sys
 import tempfile
@@ -8,7 +8,7 @@ import unittest
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import mutations  # noqa: E402
 
-# Lists the tests that it has of those asked for, and ends as it is told.
+# Lists its tests that match the filter, and ends as told.
 PROGRAM = """#!/bin/bash
 filter=${1#--gtest_filter=}
 if [ "$2" = --gtest_list_tests ]; then

@@ -1,6 +1,6 @@
-"""Fine mistakes of a physicist's kind, each with the test of seconds that has to notice it.
+"""Fine mistakes of a physicist's kind, each with the test of seconds that must fail.
 
-What is broken; file, text in it that occurs once, what takes its place; program and test.
+Name; file, text in it that occurs once, its replacement; program and test.
 """
 
 from flow_mutations import FLOW

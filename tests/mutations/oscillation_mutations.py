@@ -1,4 +1,4 @@
-"""Fine mistakes in shear to and fro and in the load of friction; see named_mutations.py."""
+"""Fine mistakes in oscillatory shear and in the load of friction; see named_mutations.py."""
 
 OSCILLATION = [
     (

@@ -1,4 +1,4 @@
-"""Mistakes in lubrication by rates of strain; named_mutations.py says how to read them."""
+"""Fine mistakes in lubrication by strain rates; see named_mutations.py."""
 
 STRAINED = [
     (

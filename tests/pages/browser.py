@@ -1,11 +1,12 @@
-"""A page in a real browser: Debian's chromium without a window, spoken to over two pipes with the DevTools protocol.
+"""A page in a real browser: Debian's chromium without a window, driven over two pipes with the DevTools
+protocol.
 
     with Browser() as browser:
         page = browser.open("report.html", width=360, dark=True)
         page.evaluate("document.title")
         page.picture("report.png")
 
-No port is opened. What the browser complains of is in `page.complaints`.
+No port is opened. `page.complaints` lists the browser's errors and warnings.
 """
 
 import base64
@@ -18,11 +19,11 @@ import tempfile
 import time
 
 PROGRAM = "chromium"
-PATIENCE = 60  # seconds that an answer may take
+PATIENCE = 60  # timeout of an answer [s]
 
 
 class Fault(Exception):
-    """What the browser or the page's own script says went wrong."""
+    """An error reported by the browser or by the page's script."""
 
 
 class Browser:
@@ -30,7 +31,7 @@ class Browser:
         self.profile = tempfile.mkdtemp(prefix="peclet-browser-")
         to_browser, self.commands = os.pipe()
         self.answers, from_browser = os.pipe()
-        # The browser reads from descriptor 3 and writes to 4, whatever numbers the pipes have here.
+        # The browser reads from descriptor 3 and writes to 4, for any numbers of the pipes here.
         into = [os.dup2(to_browser, 100), os.dup2(from_browser, 101)]
         words = [
             PROGRAM,
@@ -66,7 +67,7 @@ class Browser:
         shutil.rmtree(self.profile, ignore_errors=True)
 
     def read(self, until):
-        """The next message; nothing when there is none until that time."""
+        """Returns the next message, or None if none arrives by `until`."""
         while b"\0" not in self.unread:
             ready, _, _ = select.select([self.answers], [], [], max(0, until - time.monotonic()))
             if not ready:
@@ -98,7 +99,7 @@ class Browser:
                 page.hear(answer)
 
     def open(self, path, width=1100, height=900, dark=False, touch=False):
-        """`path` is that of a file, or the address of a server of this machine."""
+        """Opens a file, or the address of a server on this machine."""
         address = path if path.startswith("http://127.0.0.1:") else "file://" + os.path.abspath(path)
         return Page(self, address, width, height, dark, touch)
 
@@ -112,7 +113,7 @@ class Page:
         browser.pages[self.session] = self
         for domain in ("Page", "Runtime", "Log", "Network"):
             self.call(f"{domain}.enable")
-        # A page that asks for anything from elsewhere is to be seen doing so.
+        # Requests to other hosts appear as complaints.
         self.resize(width, height, touch)
         features = [{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}]
         self.call("Emulation.setEmulatedMedia", features=features)
@@ -126,7 +127,7 @@ class Page:
                 raise Fault(f"{address} is not there after {PATIENCE} s")
             if message.get("sessionId") == self.session:
                 self.hear(message)
-        # The first frame is drawn: what a person waits for.
+        # The first frame is drawn, which is what a user waits for.
         self.evaluate("new Promise(done => requestAnimationFrame(() => setTimeout(done, 0)))")
         self.seconds = time.monotonic() - begun
 
@@ -152,7 +153,7 @@ class Page:
             raise Fault(self.complaints[-1])
 
     def wait_for(self, expression, seconds=PATIENCE):
-        """The value of an expression, as soon as it is true."""
+        """Returns the value of an expression as soon as it is true."""
         until = time.monotonic() + seconds
         while True:
             value = self.evaluate(expression)
@@ -163,7 +164,7 @@ class Page:
             time.sleep(0.05)
 
     def evaluate(self, expression):
-        """The value of an expression of JavaScript, awaited if it is a promise."""
+        """Returns the value of a JavaScript expression, awaited if it is a promise."""
         answer = self.call("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
         if "exceptionDetails" in answer:
             details = answer["exceptionDetails"]

@@ -1,4 +1,4 @@
-"""Campaigns whose pages are looked at, and what is on a page, for the tests and for pictures."""
+"""Campaigns and access to their pages, for the tests and for pictures."""
 
 import csv
 import http.client
@@ -58,13 +58,13 @@ class Server:
         self.end()
 
     def end(self, signal_number=signal.SIGTERM):
-        """Its exit code."""
+        """Sends a signal and returns the exit code."""
         self.process.send_signal(signal_number)
         self.process.communicate(timeout=60)
         return self.process.returncode
 
     def ask(self, path="", method="GET", body=None, **headers):
-        """Status, headers and text of an answer."""
+        """Returns status, headers and text of an answer."""
         connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=60)
         connection.request(method, "/" + path, body, {name.replace("_", "-"): value for name, value in headers.items()})
         answer = connection.getresponse()
@@ -73,13 +73,13 @@ class Server:
         return answer.status, answer.headers, text
 
     def seconds(self):
-        """Processor time that it has taken."""
+        """Returns the processor time of the server [s]."""
         with open(f"/proc/{self.process.pid}/stat", encoding="ascii") as file:
             fields = file.read().rsplit(")", 1)[1].split()
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
     def memory(self):
-        """Bytes that it has in memory."""
+        """Returns the resident memory of the server [bytes]."""
         with open(f"/proc/{self.process.pid}/statm", encoding="ascii") as file:
             return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
 
@@ -107,11 +107,11 @@ class Folder:
         return document["name"] + ".json"
 
     def serve(self, name, *words):
-        """A server of the campaign's live page."""
+        """Starts a server of the campaign's live page."""
         return Server(self, name, words)
 
     def report(self, name):
-        """The path of the campaign's page."""
+        """Writes the campaign's page and returns its path."""
         self.peclet("report", name, "--output", name + ".html", "--quiet")
         return self.file(name + ".html")
 
@@ -121,7 +121,7 @@ def rows(text):
 
 
 def saved(page, place, what):
-    """The content of a link of the page that saves something; `place` is a selector, `what` the link's text."""
+    """Returns the content behind a saving link; `place` is a selector, `what` the text of the link."""
     links = f"[...document.querySelectorAll({json.dumps(place + ' .saves a')})]"
     address = page.evaluate(f"({links}.find(a => a.textContent === {json.dumps(what)}) || {{}}).href")
     assert address and address.startswith("data:"), f"{place}: nothing to save as {what}"
@@ -129,7 +129,7 @@ def saved(page, place, what):
 
 
 def choose(page, select, text):
-    """Chooses the entry of a list whose text begins so."""
+    """Chooses the entry of a list whose text begins with `text`."""
     found = page.evaluate(
         f"""(() => {{ const list = document.querySelector({json.dumps(select)});
         const entry = [...list.options].find(one => one.text.startsWith({json.dumps(text)}));

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""How many there are of something is what the pages say there are."""
+"""Counts on the pages equal the counted things."""
 import os
 import re
 import sys
@@ -14,7 +14,7 @@ import mutations  # noqa: E402
 
 class Counts(unittest.TestCase):
     def said(self, pattern, *pages):
-        """The numbers of every place of these pages."""
+        """Yields the numbers at every match on these pages."""
         for page in pages:
             with open(os.path.join(ROOT, page), encoding="utf-8") as file:
                 places = re.findall(pattern, file.read())

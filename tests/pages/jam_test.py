@@ -1,12 +1,12 @@
 #!/usr/bin/python3
-"""jam_test.py BIN: a point that has jammed under its stress, in tables, files, figures and on the page."""
+"""jam_test.py BIN: a point jammed under its stress, in tables, files, figures and on the page."""
 
 import json
 
 from campaign_page import choose, rows
 from page_case import PageTest, Stage, main
 
-# No suspension flows under a stress that would need less than 1 + 2.5 phi: the first of these stands still.
+# Relative viscosities exceed 1 + 2.5 phi, so the first jammed viscosity, 1.5, makes the first point jam.
 CAMPAIGN = {
     "name": "still",
     "scene": {
@@ -45,7 +45,7 @@ class Jams(PageTest):
         self.assertIn("jammed", Stage.folder.peclet("status", "still.json").split("\n")[3])
         self.assertIn("jammed", Stage.folder.peclet("explain", "still.json", point["label"]).split("\n")[1])
 
-    # Where crosses are drawn: tests/python/drawing_test.py.
+    # tests/python/drawing_test.py tests where crosses are drawn.
     def test_have_the_rate_zero_and_no_viscosity_in_a_figure(self):
         for quantity, mean in (("apparent_viscosity", None), ("shear_rate", 0)):
             figure = json.loads(Stage.folder.peclet("plot", "still.json", "--json", "--quantity", quantity))
@@ -56,7 +56,7 @@ class Jams(PageTest):
         page = self.open("still.json.html")
         choose(page, "#quantity", "apparent viscosity")
         marks = page.evaluate("document.querySelectorAll('#sweep path.jammed').length")
-        self.assertEqual(marks, 2)  # one of the legend
+        self.assertEqual(marks, 2)  # one in the legend
         at = page.evaluate(
             "document.querySelector('#sweep path.jammed').getAttribute('d').match(/M[-.0-9]+ ([-.0-9]+)L[-.0-9]+ "
             "([-.0-9]+)/).slice(1).map(Number).reduce((a, b) => a + b) / 2"

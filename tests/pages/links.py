@@ -1,13 +1,13 @@
 #!/usr/bin/python3
-"""links.py [ROOT]: every relative link of every page below ROOT (the source) resolves, and pages keep to their lengths.
+"""links.py [ROOT]: checks relative links and lengths of all pages below ROOT, by default the source.
 
-    links      the file is there; the anchor is that of one of its headings
-    `paths`    in code spans, from the folders of the source: the file is there (an installation has not all of them);
-               a script that begins a span or a line of code with its arguments may be executed
+    links      the file exists; the anchor is that of one of its headings
+    `paths`    in code spans, from the folders of the source: the file exists (installations lack some);
+               a script that begins a span or a line of code with its arguments is executable
     README.md  at most 200 lines of at most 120 characters, tables and code included
     .md        at most ten lines of more than 140 characters outside tables and code
 
-Prints one line a fault, with its place, and leaves with 1 if there is any. Links to other hosts are not looked at.
+Prints one line per fault with its place, and exits with 1 if there is any. Ignores links to other hosts.
 """
 import os
 import re
@@ -43,7 +43,7 @@ def pages(root):
 
 
 def prose(text):
-    """Lines outside fenced and indented code, with their numbers."""
+    """Yields the lines outside fenced and indented code, with their numbers."""
     fence, blank_before = None, True
     for number, line in enumerate(text.split("\n"), 1):
         mark = FENCE.match(line)
@@ -55,11 +55,11 @@ def prose(text):
         elif not (blank_before and re.match(r"(    |\t)(?!\s*([-*+]|\d+\.)\s)", line)):
             yield number, line
             blank_before = not line.strip()
-        # An indented block goes on until a line that is not indented: blank_before stays.
+        # An indented block ends at a line without indent, so blank_before stays.
 
 
 def anchors(text):
-    """As GitHub makes them of headings: lower case, no punctuation, blanks as hyphens, repetitions numbered."""
+    """Returns GitHub's anchors of headings: lower case, no punctuation, hyphens, numbered repetitions."""
     found = set()
     for _, line in prose(text):
         found.update(EXPLICIT.findall(line))
@@ -77,13 +77,13 @@ def anchors(text):
 
 
 def joined(text):
-    """The prose with blank lines in the place of code, so that links and spans may go on in the next line."""
+    """Returns the prose with blank lines in place of code; links and spans may extend over lines."""
     lines = dict(prose(text))
     return "\n".join(lines.get(number, "") for number in range(1, max(lines, default=0) + 1))
 
 
 def links(text):
-    """(line, target) of every link."""
+    """Yields (line, target) of every link."""
     whole = CODE_SPAN.sub(lambda span: re.sub(r"[^\n]", " ", span[0]), joined(text))
     for pattern in (INLINE, IMAGE_IN_LINK, REFERENCE, HTML):
         for found in pattern.finditer(whole):
@@ -118,7 +118,7 @@ def path_faults(root, text):
 
 
 def commands(text):
-    """(line, command) of every code span, and of every line of fenced and indented code."""
+    """Yields (line, command) of every code span, and of every line of fenced and indented code."""
     whole = joined(text)
     for span in CODE_SPAN.finditer(whole):
         yield whole.count("\n", 0, span.start()) + 1, span[0].strip("`")
@@ -139,7 +139,7 @@ def command_faults(root, text):
     for number, command in commands(text):
         word, *arguments = command.split() or [""]
         path = os.path.join(root, word)
-        # Not os.access(): root's answer is not everybody's.
+        # Not os.access(), which answers differently for root.
         if arguments and OWN_FILE.fullmatch(word) and is_script(path) and not os.stat(path).st_mode & stat.S_IXOTH:
             yield number, f"{word}: may not be executed; git update-index --chmod=+x {word}"
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What links.py lets pass, and what it notices, on pages written for the purpose."""
+"""Tests of links.py, on pages written for the purpose."""
 import os
 import sys
 import tempfile

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""live_page_test.py BIN: the page of `peclet serve` in a real browser, before, while and after the campaign runs."""
+"""live_page_test.py BIN: the page of `peclet serve` in a browser, before, during and after a campaign."""
 
 import json
 import os
@@ -17,7 +17,7 @@ LIVE = "document.getElementById('live').textContent"
 
 
 class LiveTest(PageTest):
-    """Each with a campaign of its own, which `self.folder` runs."""
+    """Each test has a campaign of its own, which `self.folder` runs."""
 
     def setUp(self):
         path = Stage.folder.file(self.id().rsplit(".", 1)[1])
@@ -28,7 +28,7 @@ class LiveTest(PageTest):
         return self.folder.write(campaign("live", SWEEP))
 
     def copy(self):
-        """The folder of a campaign that has been run, and its database."""
+        """Returns the folder of a completed campaign, and its database."""
         shutil.copytree(Stage.folder.file("curve.peclet"), self.folder.file("copy.peclet"))
         return "copy.peclet", sqlite3.connect(self.folder.file("copy.peclet/campaign.db"))
 
@@ -52,7 +52,7 @@ class Life(LiveTest):
         self.assertTrue(page.evaluate("document.querySelector('main').hidden"))
         self.folder.peclet("plan", file, "--pilot", "4")
         page.wait_for(f"{HEADLINE}.startsWith('0 of 6 points decided')")
-        # It may have looked while the pilot ran.
+        # The first state may be from the pilot run.
         page.wait_for("document.querySelectorAll('#sweep svg g.provisional .target').length === 6")
         self.folder.peclet("run", file, "--quiet", allowed=(0, 3))
         page.wait_for(f"{HEADLINE}.startsWith('6 of 6 points decided')")
@@ -66,7 +66,7 @@ class Life(LiveTest):
         self.assertEqual(server.end(signal.SIGINT), int(self.checked(file)))
 
     def checked(self, file):
-        """What `status --check` leaves with."""
+        """Returns the exit code of `status --check`."""
         for code in (0, 3, 4, 6):
             try:
                 self.folder.peclet("status", file, "--check", allowed=(code,))
@@ -113,7 +113,7 @@ class Life(LiveTest):
         server.process.communicate()
         page.wait_for(f"{LIVE}.startsWith('The server has not answered since ')")
         self.assertEqual(page.evaluate("document.getElementById('live').className"), "alarm")
-        # What the browser itself says of a connection that is refused is its only complaint.
+        # The browser's own message about the refused connection is the only complaint.
         self.assertEqual([one for one in page.complaints if "ERR_CONNECTION_REFUSED" not in one], [])
 
     def test_a_damaged_database_is_told_beside_what_was_known(self):

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""live_server_test.py BIN: what the server of `peclet serve` answers, to whom, and what it costs."""
+"""live_server_test.py BIN: answers of the server of `peclet serve`, refusals, and costs."""
 
 import json
 import re
@@ -22,7 +22,7 @@ class ServerTest(unittest.TestCase):
         cls.server.end()
 
     def raw(self, text):
-        """What is answered to these bytes, until the server hangs up."""
+        """Returns the answer to these bytes, until the server closes the connection."""
         with socket.create_connection(("127.0.0.1", self.server.port), timeout=30) as connection:
             connection.sendall(text)
             answer = b""
@@ -120,7 +120,7 @@ class Answers(ServerTest):
         begun = time.monotonic()
         for _ in range(5):
             self.assertEqual(self.server.ask()[0], 200)
-        self.assertLess(time.monotonic() - begun, 5)  # a connection that gets nowhere is closed after 10 s
+        self.assertLess(time.monotonic() - begun, 5)  # a stalled connection is closed after 10 s
         for one in slow:
             one.close()
 
@@ -139,7 +139,7 @@ class Cost(ServerTest):
         for _ in range(1000):
             self.assertEqual(self.server.ask("state?since=" + token)[0], 204)
         took = self.server.seconds() - before
-        # Measured: 0.1 s of 1000 questions. Ten pages ask ten a second.
+        # Measured: 0.1 s for 1000 requests. Ten pages make ten requests a second.
         self.assertLess(took, 1, f"{time.monotonic() - begun:.1f} s on the wall")
 
     def test_tokens_that_were_made_up_take_no_memory(self):
@@ -149,7 +149,7 @@ class Cost(ServerTest):
         before = self.server.memory()
         for made_up in range(1000):
             self.server.ask(f"state?since={process}.{(-1) ** made_up * (1000 + made_up)}")
-        # Kept, each would take the length of the whole state.
+        # A token that was kept would take the length of the whole state.
         self.assertLess(self.server.memory() - before, 100 * len(everything[2]))
 
     def test_a_report_reads_what_a_server_has_left(self):

@@ -1,4 +1,4 @@
-"""What the tests of the page share: a campaign that is run once for each of them, a young one, and a browser."""
+"""Shared parts of the page tests: a campaign run once for each test file, a young one, and a browser."""
 
 import contextlib
 import os
@@ -30,7 +30,7 @@ def set_up(binaries):
 
 
 class PageTest(unittest.TestCase):
-    """A page must give its browser no cause to complain, whatever is done with it."""
+    """No action on a page may cause a complaint of the browser."""
 
     def open(self, name="curve.json.html", **how):
         page = Stage.browser.open(Stage.folder.file(name), **how)
@@ -38,12 +38,12 @@ class PageTest(unittest.TestCase):
         return page
 
     def exported(self):
-        """Rows of `peclet export --csv` by label."""
+        """Returns the rows of `peclet export --csv` by label."""
         return {row["label"]: row for row in rows(Stage.folder.peclet("export", "curve.json", "--csv"))}
 
 
 def main():
-    """Runs the tests of the calling program, whose first word is the folder of the programs."""
+    """Runs the tests of the calling program, whose first argument is the folder of the programs."""
     binaries = os.path.abspath(sys.argv.pop(1))
     try:
         set_up(binaries)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""page_rules_test.py BIN: functions of the page of `peclet report`, against tables written by hand."""
+"""page_rules_test.py BIN: functions of the page of `peclet report`, compared with tables written by hand."""
 
 import json
 import os
@@ -11,7 +11,7 @@ class Rules(PageTest):
     def test_axes_are_logarithmic_where_numbers_lie_more_evenly_then(self):
         page = self.open()
         for numbers, expected in (
-            ([2.2, 2.9, 4.1, 7.0, 21], True),  # a viscosity towards jamming
+            ([2.2, 2.9, 4.1, 7.0, 21], True),  # a viscosity near jamming
             ([1000, 1, 10, 100], True),
             ([0.1, 0.2, 0.3, 0.4, 0.5, 0.6], False),
             ([0.01, 1, 2, 3, 4], False),
@@ -62,7 +62,7 @@ class Rules(PageTest):
 
     def test_symbols_have_parts(self):
         page = self.open()
-        # tests/python/drawing_test.py holds figures to the same table.
+        # tests/python/drawing_test.py tests figures with this table, too.
         with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "symbols.json"), encoding="utf-8") as file:
             symbols = json.load(file)
         for symbol, element, expected in symbols:

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""page_saving_test.py BIN: what the page of `peclet report` saves, and what becomes of hostile names in it."""
+"""page_saving_test.py BIN: files saved by the page of `peclet report`, and hostile names in it."""
 
 import json
 import shutil
@@ -13,7 +13,7 @@ HOSTILE = "</script><img src=x onerror=\"window.hacked=1\">'''\\\"\n=1+1"
 
 
 def drawn_by(script):
-    """The axes on which a saved script draws."""
+    """Returns the axes on which a saved script draws."""
     import matplotlib
 
     matplotlib.use("Agg")
@@ -41,9 +41,9 @@ class Saved(PageTest):
         self.assertNotIn("var(", text)
         self.assertIn("#0072b2", text.lower().replace("rgb(0, 114, 178)", "#0072b2"))
         marks = [one for one in root.iter() if "mark" in one.get("class", "").split()]
-        self.assertEqual(len(marks), 9 + 3)  # and three of the legend
+        self.assertEqual(len(marks), 9 + 3)  # three in the legend
         self.assertNotIn("target", text)
-        # In a page of its own it has a size.
+        # A page of its own gives the figure a size.
         path = Stage.folder.file("alone.svg")
         with open(path, "w", encoding="utf-8") as file:
             file.write(text)
@@ -70,7 +70,7 @@ class Saved(PageTest):
 
 
 class Hostile(PageTest):
-    """A database in which somebody has written names that no campaign file may have."""
+    """A database with names that no campaign file may contain."""
 
     @classmethod
     def setUpClass(cls):

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""page_test.py BIN: the page of `peclet report` in a real browser, against what `peclet export` says."""
+"""page_test.py BIN: the page of `peclet report` in a real browser, compared with `peclet export`."""
 
 from scipy.stats import t as student
 
@@ -30,7 +30,7 @@ class Numbers(PageTest):
         for line, row in zip(cells, exported.values()):
             self.assertEqual([float(line[0]), float(line[1])], [float(row["/peclet"]), float(row["/volume_fraction"])])
             mean, half = map(float, line[3].split(" ± "))
-            # Two digits of the half-width are shown, and the mean to the same place.
+            # The half-width has two digits, and the mean an equal number of decimals.
             self.assertLessEqual(abs(half / float(row["half_width"]) - 1), 0.05)
             decimals = len(line[3].split(" ± ")[1].partition(".")[2])
             self.assertLessEqual(abs(mean - float(row["mean"])), 0.5001 * 10**-decimals)
@@ -47,7 +47,7 @@ class Numbers(PageTest):
                 continue
             choose(page, "#quantity", name.replace("/", ", ").replace("_", " "))
             for row in rows(saved(page, "#sweep", "CSV")):
-                if row["quantity"] != name:  # another name that begins alike
+                if row["quantity"] != name:  # a name with this prefix
                     self.assertTrue(row["quantity"].startswith(name))
                     continue
                 expected = exported[row["label"]]
@@ -58,7 +58,7 @@ class Numbers(PageTest):
                 if error == 0:
                     self.assertEqual(row["half_width"], "")
                     continue
-                level = 1 - 0.05 * (1 - 1.4 / 8)  # of several stop tests from 8 seeds on
+                level = 1 - 0.05 * (1 - 1.4 / 8)  # several stop tests, from 8 seeds on
                 expected = student.ppf((1 + level) / 2, count - 1) * error
                 # SciPy's quantile has nine digits.
                 self.assertAlmostEqual(float(row["half_width"]), expected, delta=1e-8 * error)
@@ -108,7 +108,7 @@ class Numbers(PageTest):
         self.assertEqual(page.evaluate("document.querySelectorAll('#sweep svg g.provisional .target').length"), 9)
         self.assertEqual(
             page.evaluate("document.querySelectorAll('#sweep svg .mark.solid').length"), 3
-        )  # of the legend
+        )  # in the legend
         cells = page.evaluate(
             "[...document.querySelectorAll('#results tbody tr')].map(row => row.cells[3].textContent)"
         )
@@ -204,7 +204,7 @@ class Controls(PageTest):
 
 
 def luminance(colour):
-    """Of #rrggbb, as the Web Content Accessibility Guidelines define it."""
+    """Returns the luminance of #rrggbb by the Web Content Accessibility Guidelines."""
     parts = [int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)]
     linear = [part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4 for part in parts]
     return sum(weight * part for weight, part in zip((0.2126, 0.7152, 0.0722), linear))

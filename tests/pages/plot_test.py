@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""plot_test.py BIN: figures of `peclet plot`, against the export, the page and matplotlib."""
+"""plot_test.py BIN: figures of `peclet plot`, compared with the export, the page and matplotlib."""
 
 import json
 import os
@@ -15,7 +15,7 @@ NUMBERS = ("mean", "standard_error", "half_width")
 
 
 def peclet(*words, path="/usr/bin:/bin"):
-    """What the program answers, with a python3 that is Debian's."""
+    """Runs the program with Debian's python3 and returns its result."""
     binaries = Stage.folder.environment["PATH"].partition(":")[0]
     environment = dict(os.environ, PATH=f"{binaries}:{path}")
     command = ["peclet", *words]
@@ -23,12 +23,12 @@ def peclet(*words, path="/usr/bin:/bin"):
 
 
 def figure_of(name):
-    """The numbers that a script holds; reading it draws nothing."""
+    """Returns the numbers in a script; reading them draws nothing."""
     return runpy.run_path(Stage.folder.file(name))["FIGURE"]
 
 
 def drawn_by(name):
-    """The figure that a script makes of its numbers, and the axes on which it draws."""
+    """Returns the figure that a script makes of its numbers, and its axes."""
     import matplotlib
 
     matplotlib.use("Agg")
@@ -68,7 +68,7 @@ class Figures(PageTest):
                     if row["label"] == point["label"]
                     and (row["quantity"], row["axis_1_value"]) == (name or quantity, element if name else "")
                 ]
-                # Of the target the stop test's, which sums in another order and has a wider interval.
+                # The target has the stop test's numbers: sums in another order, and a wider interval.
                 expected = (
                     point["stop_test"] if quantity == QUANTITIES[0] else {key: float(row[key]) for key in NUMBERS}
                 )
@@ -156,14 +156,14 @@ class Scripts(PageTest):
         self.assertEqual(done.returncode, 2)
         self.assertRegex(done.stderr, r"^peclet: mine\.py: is there already, .*\n$")
         self.assertFalse(os.path.exists(Stage.folder.file("mine.svg")))
-        # Its own may be.
+        # Its own files may be overwritten.
         for _ in range(2):
             self.assertEqual(peclet("plot", "curve.json", "--output", "own.svg").returncode, 0)
 
 
 class Faults(PageTest):
     def refusal(self, code, *words, path="/usr/bin:/bin"):
-        """What is said; nothing may be written."""
+        """Returns the message; nothing may be written."""
         before = sorted(os.listdir(Stage.folder.path))
         done = peclet("plot", *words, path=path)
         self.assertEqual((done.returncode, done.stdout), (code, ""), done.stderr)
@@ -202,7 +202,7 @@ class Faults(PageTest):
                 for words in (why, cure, f"python3 absent.py absent.{ending}"):
                     self.assertEqual(done.stderr.count(words), 1, done.stderr)
                 self.assertFalse(os.path.exists(Stage.folder.file(f"absent.{ending}")))
-                # What is left draws the figure where matplotlib is.
+                # The files written draw the figure where matplotlib exists.
                 script, picture = Stage.folder.file("absent.py"), Stage.folder.file(f"present.{ending}")
                 subprocess.run(["/usr/bin/python3", script, picture], check=True)
                 os.remove(script)
@@ -247,7 +247,7 @@ class TheSupplement(PageTest):
             # These sum in another order.
             for other in (float(in_long[label]["mean"]), in_json[label]["quantities"][QUANTITIES[0]]["mean"]):
                 self.assertAlmostEqual(other, mean, delta=1e-12 * abs(mean))
-            # What people read has the same digits: "5.73 ± 0.40".
+            # The text has the same digits: "5.73 ± 0.40".
             self.assertRegex(content("README.md"), rf"(?m)^ +{row['/volume_fraction']} +{row['/peclet']} .* {half:.2g}")
 
     def test_is_made_again_from_its_own_campaign_file(self):

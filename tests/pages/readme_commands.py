@@ -1,9 +1,10 @@
 #!/usr/bin/python3
-"""readme_commands.py BIN: types what README.md says, and holds what comes out to what the page shows.
+"""readme_commands.py BIN
 
-The blocks marked ```bash run one after another in one shell, in an empty home, with BIN in the place of
-build/release/bin. Tables are compared in their headings, legends, points and verdicts; a viscosity must lie within the
-sum of both half-widths, because last digits differ between instruction sets.
+Runs the commands of README.md and compares their output with the page. The blocks marked ```bash run one
+after another in one shell, in an empty home, with BIN in place of build/release/bin. Tables are compared in
+headings, legends, points and verdicts. A viscosity must agree within the sum of both half-widths, because
+last digits differ between instruction sets.
 """
 import os
 import re
@@ -29,14 +30,14 @@ def blocks(page, language):
 
 
 def shown(page, campaign):
-    """The table that the page shows for a campaign whose points are all decided."""
+    """Returns the table on the page for a campaign whose points are all decided."""
     tables = [text for text in blocks(page, "") if text.startswith(f"{campaign}: ") and " open" not in text]
     assert len(tables) == 1, f"{len(tables)} tables of {campaign} in README.md"
     return tables[0]
 
 
 def rows(table):
-    """By point: look and half-width, verdict."""
+    """Returns estimate, half-width and verdict by point."""
     found = {}
     for line in table.splitlines():
         look = LOOK.search(line)
@@ -46,7 +47,7 @@ def rows(table):
 
 
 def fixed_text(table):
-    """Headings, legend and the number of points; widths of columns and counts of seeds may differ."""
+    """Returns headings, legend and the number of points, without column widths and counts of seeds."""
     return [
         line.split()
         for line in table.splitlines()
@@ -55,7 +56,7 @@ def fixed_text(table):
 
 
 def compare(page, printed, whole):
-    """`whole`: the page shows all that is printed, not the table alone."""
+    """Compares the tables; `whole` if the page shows all that is printed."""
     mine, its = rows(page), rows(printed)
     assert mine and mine.keys() == its.keys(), f"points: README.md has {list(mine)}, the program {list(its)}"
     for point, (look, half_width, verdict) in mine.items():
@@ -69,7 +70,7 @@ def compare(page, printed, whole):
 
 
 def shell(script, home, folder):
-    # Debian's python3, which has matplotlib, comes before any other.
+    # Debian's python3, which has matplotlib, comes first.
     environment = {**os.environ, "HOME": home, "PATH": f"/usr/bin:{os.environ['PATH']}"}
     done = subprocess.run(
         ["bash", "-euo", "pipefail", "-c", script],

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""screenshots.py BIN FOLDER [NAME...]: runs a small campaign and takes pictures of all that it shows, or those named.
+"""screenshots.py BIN FOLDER [NAME...]
 
-Three minutes on two cores; --list says what there is. The pictures of the pages (docs/pictures) are some of them; one
-of a picture's own is a function with @picture("NAME") below.
+Runs a small campaign and takes all pictures, or those named. Takes three minutes on two cores; --list names
+them. Some are those of the pages (docs/pictures). New ones are functions with @picture("NAME") below.
 """
 
 import contextlib
@@ -27,7 +27,7 @@ FLOW_CURVE = dict(
     duration={"equilibration": {"strain": 0.75}, "production": {"strain": 0.5}},
 )
 SWEEP = {"/volume_fraction": [0.3, 0.4, 0.45, 0.5], "/peclet": [1, 10, 100, 1000]}
-# With seeds that take long enough to be watched.
+# Seeds that take long enough to be watched.
 SLOW_CURVE = dict(
     FLOW_CURVE,
     volume_fraction=0.45,
@@ -40,7 +40,7 @@ PICTURES = {}
 
 
 def picture(name):
-    """The function that takes the picture of that name: of a Studio, into a path."""
+    """Registers a function as the picture `name`; it takes a Studio and a path."""
 
     def entered(function):
         PICTURES[name] = function
@@ -50,7 +50,7 @@ def picture(name):
 
 
 class Studio:
-    """A browser, and campaigns that are run when the first picture needs them."""
+    """A browser, and campaigns that run when the first picture needs them."""
 
     def __init__(self, binaries, place, browser):
         self.binaries, self.place, self.browser = binaries, place, browser
@@ -59,7 +59,7 @@ class Studio:
         path = os.path.join(self.place, name)
         os.makedirs(path, exist_ok=True)
         folder = Folder(self.binaries, path)
-        # The programs, and Debian's python3, which has matplotlib, before any other.
+        # Finds the programs, and Debian's python3 with matplotlib, first.
         folder.environment["PATH"] = f"{self.binaries}:/usr/bin:/bin"
         return folder
 
@@ -68,21 +68,21 @@ class Studio:
 
     @functools.cached_property
     def finished(self):
-        """The folder of a campaign that has ended."""
+        """Returns the folder of a finished campaign."""
         folder = self.folder("finished")
         folder.peclet("run", self.write(folder), "--quiet", allowed=(0, 3))
         return folder
 
     @functools.cached_property
     def begun(self):
-        """That of one of which the first seeds have ended."""
+        """Returns the folder of a campaign whose first seeds have ended."""
         folder = self.folder("begun")
         folder.peclet("plan", self.write(folder), "--pilot", "4")
         return folder
 
     @functools.cached_property
     def working(self):
-        """That of a longer one, which pictures of a run go on with."""
+        """Returns the folder of a longer campaign, which pictures of a run continue."""
         folder = self.folder("working")
         file = self.write(folder, SLOW_SWEEP, SLOW_CURVE, tolerance=0.007, maximum=400)
         folder.peclet("run", file, "--quiet", "--time-limit", "60", allowed=(75,))
@@ -97,7 +97,7 @@ class Studio:
         page.picture(path, whole)
 
     def keep_element(self, page, path, selector, scale=2):
-        """As large as the element, in so many pixels for each of CSS."""
+        """Takes a picture of the size of the element, with `scale` pixels per CSS pixel."""
         box = page.evaluate(f"(b => [b.right, b.bottom])(document.querySelector('{selector}').getBoundingClientRect())")
         width, height = (int(side + 0.999) for side in box)
         page.call(
@@ -111,7 +111,7 @@ class Studio:
         self.keep_element(self.browser.open(file.name, width=2000), path, selector, scale)
 
     def keep_terminal(self, command, path, rows, columns, seconds, folder, scale=2):
-        """The screen of a terminal after so many seconds of a program."""
+        """Takes a picture of the terminal after `seconds` seconds of a program."""
         screen = watched(command, rows, columns, seconds, cwd=folder.path, env=folder.environment)
         self.keep_html(screen.html(), path, "pre", scale)
 
@@ -123,7 +123,7 @@ def page_half_way(studio, path):
 
 @contextlib.contextmanager
 def running(studio):
-    """A run that ends when its picture is taken."""
+    """Runs the campaign until the picture is taken."""
     folder = studio.working
     command = ["peclet", "run", "flow-curve.json", "--quiet"]
     with subprocess.Popen(command, cwd=folder.path, env=folder.environment, stdout=subprocess.DEVNULL) as run:
@@ -138,7 +138,7 @@ def live_page_of_a_run(studio, path, whole=True, **how):
     with studio.working.serve("flow-curve.json") as server, running(studio):
         live = studio.browser.open(server.address, **how)
         live.wait_for("campaign.data && campaign.data.work.now.some(job => job.strain > 0)")
-        live.evaluate("Live.prototype.ask = async () => {}")  # stays as it is now
+        live.evaluate("Live.prototype.ask = async () => {}")  # freezes the page
         live.evaluate("scrollTo(0, 0)")
         studio.keep(live, path, whole)
 
@@ -197,7 +197,7 @@ def page_as_it_is_printed(studio, path):
 
 
 def watch(studio, path, columns, rows):
-    """Of a run that goes on meanwhile."""
+    """Takes a picture of a concurrent run."""
     folder = studio.working
     command = ["peclet", "watch", "flow-curve.json", "--interval", "0.5"]
     with running(studio):
@@ -246,7 +246,7 @@ def engine(folder, *words):
 
 @functools.cache
 def trajectory(studio):
-    """The folder with the frame of docs/pictures/spheres.json."""
+    """Returns the folder with the frame of docs/pictures/spheres.json."""
     folder = studio.folder("trajectory")
     scene = os.path.join(PAGES, "pictures", "spheres.json")
     engine(folder, "run", scene, "--seed", "1", "--output", "spheres.result.json")
@@ -270,7 +270,7 @@ def snapshot_of_force_chains(studio, path):
 
 @functools.cache
 def figures_in_python(studio):
-    """The folder with the figures of docs/python.md."""
+    """Returns the folder with the figures of docs/python.md."""
     folder = studio.folder("python")
     script = os.path.join(PAGES, "..", "tests", "python", "page_test.py")
     program = os.path.join(studio.binaries, "peclet")

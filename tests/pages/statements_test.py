@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""docs/statements.md says of every source in print what the study.json files say, and leaves none out."""
+"""docs/statements.md agrees with study.json files about every published source, and omits none."""
 import json
 import re
 import sys
@@ -11,7 +11,7 @@ sys.path.insert(0, str(ROOT / "results"))
 from studies.verdicts import rows_of, verdict_of_statements, with_failed_checks
 
 PAGE = ROOT / "docs" / "statements.md"
-LINES, WIDTH = 45, 130  # as it is read: without the targets of links
+LINES, WIDTH = 45, 130  # as read: without the targets of links
 # | where in print | what it says | verdict | statements that hold | study |
 ROW = re.compile(
     r"\| (?P<sources>[^|]+?) \| (?P<says>[^|]+?) \| (?P<verdict>[^|]+?) \| (?P<holding>\d+) of (?P<count>\d+) "
@@ -24,7 +24,7 @@ def study_of(name):
 
 
 def rows_with_kinds(name):
-    """Of a study whose rows have no kinds yet none."""
+    """Returns the rows of a study, or none if its rows have no kinds yet."""
     study = study_of(name)
     return list(rows_of(study)) if "kind" in study["statements"][0] else []
 
@@ -34,7 +34,7 @@ def statements_of(name):
 
 
 def found_of(rows, checks):
-    """As of a study, but of a group of its statements: where none holds, none of it does."""
+    """Returns verdict and counts for some of a study's statements; if none holds, the verdict is negative."""
     holding = sum(row.answer() == "holds" for row in rows)
     none_holds = rows and all(row.answer() == "does not hold" for row in rows)
     of_rows = "does not hold" if none_holds else verdict_of_statements(rows)
@@ -42,7 +42,7 @@ def found_of(rows, checks):
 
 
 def faults(page):
-    """What the page says otherwise than the studies, or not at all."""
+    """Returns differences between the page and the studies, and omissions."""
     said = set()
     for row in map(ROW.fullmatch, page.split("\n")):
         if not row:

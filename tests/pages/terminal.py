@@ -1,9 +1,9 @@
-"""What a program shows in a terminal of a given size, as a screen of cells and as HTML to be photographed.
+"""The screen of a program in a terminal of a given size, as cells and as HTML to be photographed.
 
     screen = watched(["peclet", "watch", "curve.json"], rows=24, columns=80, seconds=5)
     print(screen.text())
 
-Knows what programs here print: text, returns, places, erasing, bold, faint and the sixteen colours.
+Knows the output of the programs here: text, returns, positions, erasing, bold, faint and the sixteen colours.
 """
 
 import fcntl
@@ -40,7 +40,7 @@ class Screen:
                 if not found:
                     if len(text) - place > 20:
                         raise ValueError(f"a sequence that is not known: {text[place:place + 20]!r}")
-                    self.unread = text[place:]  # its end is still to come
+                    self.unread = text[place:]  # the sequence is incomplete
                     return
                 self.obey(found[1], found[2])
                 place = found.end()
@@ -68,7 +68,7 @@ class Screen:
 
     def obey(self, numbers, letter):
         if numbers.startswith("?"):
-            return  # shows and hides the cursor, or another screen: nothing that is drawn
+            return  # cursor visibility or alternate screen, not drawn
         values = [int(number or 0) for number in numbers.split(";")]
         if letter == "H":
             self.row, self.column = (max(1, value) - 1 for value in (values + [1])[:2])
@@ -87,7 +87,7 @@ class Screen:
             raise ValueError(f"a sequence that is not known: {numbers}{letter}")
 
     def text(self):
-        """The lines down to the last that is not empty."""
+        """Returns the lines down to the last that is not empty."""
         lines = ["".join(character for character, _ in row).rstrip() for row in self.cells]
         while lines and not lines[-1]:
             lines.pop()
@@ -118,7 +118,7 @@ def span(character, style):
 
 
 def watched(command, rows, columns, seconds, **how):
-    """The screen that `command` leaves at its end, or after so many seconds, when it is asked to end (Ctrl-C)."""
+    """Returns the screen of `command` at its end, or after `seconds` seconds, when it gets a Ctrl-C."""
     process, terminal = pty.fork()
     if process == 0:
         try:

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The terminal that pictures are taken of shows what a terminal shows."""
+"""The terminal used for pictures shows what a real terminal shows."""
 import unittest
 
 from terminal import Screen, watched

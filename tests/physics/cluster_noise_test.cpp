@@ -1,8 +1,8 @@
-// Fluctuation and dissipation of many bodies at once: what the whole force field answers to velocities is the
-// resistance whose noise it draws, pairs, images and drag together.
+// Fluctuation–dissipation for a cluster: the noise of the whole force field has the covariance of its
+// resistance, with pairs, images and drag together. The resistance is that of forces at unit velocities.
 //
-// False failures, were the seeds drawn anew: one of two times 24 * 25 / 2 + 24 deviations beyond 5.5 standard
-// deviations, 2.5e-5.
+// False failures with fresh seeds: 2.5e-5. There are 2 x (24 * 25 / 2 + 24) deviations, and each passes 5.5
+// standard deviations with probability 3.8e-8.
 #include <gtest/gtest.h>
 
 #include "tests/engine/linear_algebra.h"
@@ -21,7 +21,7 @@ using Components = Eigen::Vector<double, components>;  // forces of all spheres,
 using Matrix = Eigen::Matrix<double, components, components>;
 using Form = LubricationParameters::Form;
 
-// A cell as wide as two unit spheres and hardly more, inclined: the first two touch through two images.
+// A cell hardly wider than two unit spheres, and inclined: the first two spheres touch through two images.
 System cluster(const Physics& physics) {
   System system;
   const std::vector<double> radius = {1.0, 1.0, 1.4, 0.5};
@@ -70,7 +70,7 @@ class Cluster {
   VectorField force_{spheres}, torque_{spheres};
 };
 
-// Column by column from unit velocities and spins of one sphere after another.
+// Returns the resistance, column by column, from unit velocities and spins of one sphere after another.
 Matrix felt_resistance(Form form) {
   Cluster cold(form, 0);
   Matrix R;
@@ -85,7 +85,7 @@ Matrix felt_resistance(Form form) {
   return R;
 }
 
-// Lubrication of the form mari is relative to the flow, which is at rest here.
+// The flow is at rest, so lubrication of the form mari sees the velocities themselves.
 class ClusterNoise : public testing::TestWithParam<Form> {};
 INSTANTIATE_TEST_SUITE_P(Of, ClusterNoise, testing::Values(Form::kim_karrila, Form::mari),
                          [](const auto& form) { return form.param == Form::mari ? "Mari" : "KimKarrila"; });

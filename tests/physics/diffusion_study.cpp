@@ -1,10 +1,12 @@
-// Self-diffusion in a suspension at rest, with either method: diffusion_study METHOD PHI FIRST_SEED LAST_SEED
+// Self-diffusion in a suspension at rest: diffusion_study METHOD PHI FIRST_SEED LAST_SEED
 //
-// Table 4.1 of Li's thesis at low Peclet numbers without the flow: radii 1 and 1.4 in equal volumes, eta =
-// rho = 0.1, kT = 0.017, k_n = 1e4, gaps 1e-3 to 0.05, N = 250; 10 Brownian times and then 60. Prints for
-// each seed the slope of the mean squared displacement between one and two Brownian times over that of a free
-// unit sphere, kT / (pi eta a), all particles and origins half a Brownian time apart, and its processor time.
-// See README.md for what it printed.
+// The scene is Table 4.1 of Li's thesis at low Péclet numbers without flow: radii 1 and 1.4 in equal volumes,
+// eta = rho = 0.1, kT = 0.017, k_n = 1e4, gaps 1e-3 to 0.05, N = 250, 10 Brownian times of equilibration and
+// 60 of production. Prints for each seed:
+//   - the slope of the mean squared displacement between one and two Brownian times, over that of a free unit
+//     sphere, kT / (pi eta a); mean over all particles and over origins half a Brownian time apart
+//   - its processor time
+// README.md lists the results.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -48,7 +50,7 @@ std::vector<Vector3> places(const System& system) {
   return result;
 }
 
-// Of the displacements relative to that of all particles together: those of the whole fluid are no diffusion.
+// Returns the mean squared displacement relative to the mean displacement of all particles.
 double squared_displacement(const std::vector<Vector3>& from, const std::vector<Vector3>& to) {
   Vector3 mean;
   double sum = 0;
@@ -61,7 +63,7 @@ double squared_displacement(const std::vector<Vector3>& from, const std::vector<
   return sum / count - dot(mean, mean) / (count * count);
 }
 
-// D / D_0 of one realisation.
+// Returns D / D_0 of one realisation.
 double diffusion(const Scene& scene, std::uint64_t seed) {
   const Schedule schedule = make_schedule(scene, "scene.json");
   const double between = brownian_time / samples_per_brownian_time;

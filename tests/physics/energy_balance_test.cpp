@@ -1,13 +1,13 @@
-// The power that shear puts into a suspension through its stress is what is dissipated and stored.
+// Power balance in shear: the power of the stress equals dissipation plus the rate of storage.
 //
-// With peculiar velocities c = U - (rate y, 0, 0), spins w = Omega + rate / 2 z, all forces F and torques T
-// of a configuration,
+// With peculiar velocities c = U - (rate y, 0, 0), spins w = Omega + rate / 2 z, and all forces F and torques
+// T of a configuration, at every instant
 //   V rate sigma_xy = Phi + dE/dt + sum (zeta c^2 + zeta_r w^2) + sum (F.c + T.w),
-// an identity at every instant: Phi = sum over pairs v.R.v is what lubrication dissipates, E the energy of
-// contacts and repulsion, the third term the dissipation by drag, the last the work that inertia takes up,
-// whose mean over a long time is that of rate sum m c_x c_y. It ties the symmetrised stress, summed over
-// pairs once and not divided by anything but V, to forces, torques, images and levers; physics of section 15
-// item 6.
+//   Phi: dissipation by lubrication, the sum over pairs of v.R.v
+//   E: energy of contacts and repulsion
+//   sum (zeta c^2 + zeta_r w^2): dissipation by drag
+//   sum (F.c + T.w): power of inertia; its long-time mean is that of rate sum m c_x c_y
+// The identity ties the symmetrised stress, with each pair once, to forces, torques, images and levers.
 #include <gtest/gtest.h>
 
 #include "engine/integrators/spurious_energy.h"
@@ -33,7 +33,7 @@ Physics sheared_physics() {
   return physics;
 }
 
-// Forty spheres of radii 1 and 1.4 at a volume fraction of one half, in motion with the flow.
+// Returns forty spheres of radii 1 and 1.4 at a volume fraction of one half, moving with the flow.
 Laboratory sheared_suspension(double timestep) {
   Experiment experiment;
   experiment.physics = sheared_physics();
@@ -63,7 +63,7 @@ struct PairPower {
   }
 };
 
-// Of one pair from the formulas; r and du of j's image relative to i.
+// Returns the power of one pair from the formulas; r and du of j's image relative to i.
 PairPower power_of_pair(const ParticleState& all, std::size_t i, std::size_t j, const Vector3& r,
                         const Vector3& du) {
   const double sum = all.radius[i] + all.radius[j], distance = norm(r), h = distance - sum;
@@ -89,8 +89,8 @@ PairPower power_of_pair(const ParticleState& all, std::size_t i, std::size_t j, 
   return power;
 }
 
-// Over all pairs and images of the lattice (L, 0, 0), (tilt, L, 0), (0, 0, L), whose velocity grows by rate L
-// for each L along y; nothing of the engine's list is used.
+// Returns the sum over all pairs and images of the lattice (L, 0, 0), (tilt, L, 0), (0, 0, L). An image L
+// higher in y is faster by rate L. The engine's neighbour list is not used.
 PairPower power_of_all(const System& system) {
   const ParticleState& all = system.particles;
   const double edge = system.box.lengths().x, tilt = system.box.strain() * edge;
@@ -101,7 +101,7 @@ PairPower power_of_all(const System& system) {
       const Vector3 r = all.position[j] - all.position[i], u = all.velocity[j] - all.velocity[i];
       for (const double z : {-1., 0., 1.}) {
         for (const double y : {-1., 0., 1.}) {
-          // The images in this row that may lie near.
+          // The nearest images in this row.
           const double start = r.x + y * tilt;
           const double x = -std::round(start / edge);
           const Vector3 image = {start + x * edge, r.y + y * edge, r.z + z * edge};
@@ -139,12 +139,12 @@ double sum_of_stress_xy(const PairSums& sums) {
   return xy;
 }
 
-// Round-off alone: products of numbers of order one, thousands of them.
+// Tolerance: round-off of thousands of products of order one.
 TEST(EnergyBalance, HoldsAtEveryInstantOfASheardSuspension) {
   const double timestep = 5e-3;
   Laboratory laboratory = sheared_suspension(timestep);
   for (int moment = 0; moment < 14; ++moment) {
-    for (int step = 0; step < 1000; ++step) {  // a strain of 0.05: the box flips on the way
+    for (int step = 0; step < 1000; ++step) {  // a strain of 0.05: the box flips meanwhile
       laboratory.step();
     }
     System system = laboratory.system();
@@ -168,9 +168,9 @@ TEST(EnergyBalance, HoldsAtEveryInstantOfASheardSuspension) {
   EXPECT_NE(laboratory.system().box.basis(), BasisChange{});
 }
 
-// What goes in over a window of half a strain, by the stress that every step reports, less what is
-// dissipated, taken up and stored meanwhile, over the former. Forces of a step see half-step velocities,
-// powers here are of full-step ones: the rest is of first order in the step.
+// Returns (power in - dissipation - inertia - change of stored energy) / power in, over a window of half a
+// strain. The power in is that of the stress reported at each step. Forces see half-step velocities and
+// powers here full-step ones, so the imbalance is of first order in the step.
 double relative_imbalance(double timestep) {
   Laboratory laboratory = sheared_suspension(timestep);
   const auto steps_of_strain = [&](double strain) { return std::lround(strain / (rate * timestep)); };
@@ -194,7 +194,7 @@ TEST(EnergyBalance, ClosesOverAWindowToFirstOrderInTheStep) {
   EXPECT_NEAR(large / small, 2, 0.05);
 }
 
-// Steps of velocity Verlet taken apart: between kicks the velocities are those that the forces see.
+// Velocity Verlet in two halves: between the kicks, velocities are those that the forces see.
 class StepsTakenApart {
  public:
   StepsTakenApart(const System& system, const Physics& physics, double timestep)
@@ -208,7 +208,7 @@ class StepsTakenApart {
     field_.evaluate(system_, force_, torque_);
   }
 
-  // To the next evaluation of the forces.
+  // Steps to the next evaluation of the forces.
   PairSums advance() {
     kick();
     ParticleState& all = system_.particles;
@@ -221,7 +221,7 @@ class StepsTakenApart {
     return field_.evaluate(system_, force_, torque_);
   }
 
-  // To the end of the step; what it has made.
+  // Completes the step and returns the spurious energy of the step.
   double finish() {
     kick();
     return spurious_energy(system_, field_.kinds(), field_.physics(), force_, torque_, timestep_);
@@ -281,7 +281,7 @@ double elastic_energy(const System& system) {
                 sticking.rolling_stiffness * dot(springs.rolling, springs.rolling));
 }
 
-// |v_t|^2 at the velocities that the forces have seen.
+// Returns |v_t|^2 at the velocities that the forces saw.
 double squared_slip(const ParticleState& all) {
   const Vector3 r = all.position[1] - all.position[0], n = (1 / norm(r)) * r;
   const double half_overlap = 0.5 * (2.4 - norm(r));
@@ -291,9 +291,8 @@ double squared_slip(const ParticleState& all) {
   return dot(velocity, velocity) - dot(velocity, n) * dot(velocity, n);
 }
 
-// Nothing is dissipated in a contact that sticks without a dashpot, nor in one without friction: whatever
-// else the spheres gain or lose is the step's. The rough ones touch all the time, the smooth one opens on the
-// way.
+// A contact that sticks without a dashpot dissipates nothing, nor does one without friction. All other
+// changes of energy come from the step. Rough spheres touch all the time; the smooth contact opens.
 TEST(EnergyBalance, OfTwoSpheresIsMissedByWhatTheStepsMake) {
   Physics rough, damped, smooth;
   rough.contact = damped.contact = sticking;
@@ -302,7 +301,7 @@ TEST(EnergyBalance, OfTwoSpheresIsMissedByWhatTheStepsMake) {
   for (const auto& [physics, count] : {std::pair(rough, 25), std::pair(damped, 25), std::pair(smooth, 50)}) {
     constexpr double timestep = 0.002;
     StepsTakenApart steps(touching_spheres(physics), physics, timestep);
-    // A step changes the elastic energy on the way to its forces, and by them the kinetic energy.
+    // The step changes the elastic energy before, and the kinetic energy after its forces are evaluated.
     double elastic = elastic_energy(steps.system()), before = 0, made = 0, largest = 0;
     for (int step = 0; step < count; ++step) {
       steps.advance();
@@ -319,8 +318,8 @@ TEST(EnergyBalance, OfTwoSpheresIsMissedByWhatTheStepsMake) {
   }
 }
 
-// Half a strain of the suspension above, every power at the velocities that the forces saw. What is left, 2
-// %, are terms of second order in the step and changes of the flow's own velocity within it.
+// Half a strain of the suspension above, with every power at the velocities that the forces saw. The
+// remaining 2 % are terms of second order in the step, and changes of the flow's own velocity within a step.
 TEST(EnergyBalance, OfASuspensionIsMissedByWhatTheStepsMake) {
   const double timestep = 6e-3;
   Laboratory laboratory = sheared_suspension(timestep);

@@ -1,8 +1,8 @@
-// The pressure of Brownian spheres at rest is that of hard spheres: a known number, in which every part of
-// the stress counts, of which the motion is a quarter here.
+// The pressure of Brownian spheres at rest is that of hard spheres, a known number. All terms of the stress
+// enter, and the motion contributes a quarter here.
 //
-// 16 windows of 50 Brownian times have an error of the mean of some 0.3 %. The test allows twice that
-// and 1 %, of which the equation may have 0.3 % and the automatic step some 0.5 %.
+// 16 windows of 50 Brownian times give a standard error of about 0.3 %. The test allows two standard errors
+// plus 1 %: the equation may be off by 0.3 %, the automatic step by about 0.5 %.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,9 +19,9 @@ namespace {
 
 constexpr double volume_fraction = 0.3, kT = 0.017, stiffness = 1e4, second_radius = 1.4;
 
-// Boublik (1970), J. Chem. Phys. 53, 471; Mansoori, Carnahan, Starling & Leland (1971), J. Chem. Phys. 54,
-// 1523, of diameters that are less by the softness of contacts, the integral of 1 - exp(-k_n s^2 / 2 kT) over
-// the overlap s.
+// Sources: Boublik (1970), J. Chem. Phys. 53, 471; Mansoori, Carnahan, Starling & Leland (1971), J. Chem.
+// Phys. 54, 1523. Diameters are reduced by the contact softness, the integral of 1 - exp(-k_n s^2 / 2 kT)
+// over the overlap s.
 double expected_pressure() {
   const double softness = std::sqrt(std::numbers::pi * kT / (2 * stiffness));
   const double weights[] = {1, std::pow(second_radius, -3)}, radii[] = {1, second_radius};

@@ -1,9 +1,9 @@
-// Full-step velocities and spins have the variances kT / m and kT / I, at any stable step: of free spheres
-// and of a dense suspension with contacts, lubrication and its noise.
+// Full-step velocities and spins have the variances kT / m and kT / I at any stable step, for free spheres
+// and for a dense suspension with contacts, lubrication and noise.
 //
-// Drag keeps no momentum, so every sphere has three degrees of freedom of each kind. False failures: errors
-// come from 100 blocks; Student's t with 99 degrees of freedom passes 5 with probability 2.5e-6, here in 30
-// comparisons, were the seeds drawn anew.
+// Drag conserves no momentum, so every sphere has three translational and three rotational degrees of
+// freedom. False failures with fresh seeds: errors come from 100 blocks; Student's t with 99 degrees of
+// freedom passes 5 with probability 2.5e-6, in 30 comparisons.
 #include <gtest/gtest.h>
 
 #include "engine/integrators/stability.h"
@@ -18,7 +18,7 @@ constexpr double largest_deviation = 5;
 constexpr std::size_t blocks = 100;
 constexpr double thermal_energy = 1e-3;
 
-// Of each size class: its spheres' mean m u^2 / 3 and I w^2 / 3 over kT, one value per step.
+// The mean m u^2 / 3 and I w^2 / 3 over kT of one size class, one value per step.
 struct TemperatureSeries {
   std::vector<double> translational, rotational;
 };
@@ -45,12 +45,12 @@ void expect_equipartition(const Temperatures& series) {
     const Estimate w = block_estimate(size.rotational, blocks);
     EXPECT_LT(u.deviation(1), largest_deviation) << u.mean << " +- " << u.error;
     EXPECT_LT(w.deviation(1), largest_deviation) << w.mean << " +- " << w.error;
-    // An error bar too large to see the half-step bias would prove nothing.
+    // Wider error bars would not resolve the half-step bias.
     EXPECT_LT(std::max(u.error, w.error), 0.01);
   }
 }
 
-// Spheres that do not feel each other, of radii 1 and 1.4.
+// Returns spheres of radii 1 and 1.4 without interactions.
 Laboratory free_spheres(double timestep) {
   Experiment experiment;
   experiment.physics.viscosity = natural_viscosity;
@@ -68,7 +68,7 @@ Laboratory free_spheres(double timestep) {
   return laboratory;
 }
 
-// Steps as fractions of the limit of the fastest mode, lambda dt = 2 of the small spheres' spin.
+// The step limit of the fastest mode, the spin of the small spheres: lambda dt = 2.
 constexpr double spin_limit = 2 / natural_spin_rate;
 
 class FreeSpheres : public testing::TestWithParam<double> {};
@@ -85,8 +85,8 @@ TEST_P(FreeSpheres, HaveTheTemperatureOfTheirNoise) {
   expect_equipartition(series);
 }
 
-// What moves the spheres is the half-step velocity, of variance (kT / m) / (1 - lambda dt / 2): the bias that
-// a temperature taken half a step later or earlier would have.
+// Displacements follow the half-step velocity, of variance (kT / m) / (1 - lambda dt / 2). A temperature
+// taken half a step earlier or later would have that bias.
 TEST_P(FreeSpheres, MoveFasterThanTheirTemperatureByTheHalfStepBias) {
   const double timestep = GetParam() * spin_limit;
   Laboratory laboratory = free_spheres(timestep);
@@ -127,7 +127,7 @@ Scene dense_scene() {
   scene.volume_fraction = 0.45;
   scene.physics.viscosity = natural_viscosity;
   scene.physics.thermal_energy = thermal_energy;
-  // Thermal overlaps of a hundredth of a radius.
+  // Thermal overlaps are a hundredth of a radius.
   scene.physics.contact = ContactParameters{.normal_stiffness = 1e4 * thermal_energy};
   scene.physics.lubrication = LubricationParameters{1e-2, 0.05};
   return scene;
@@ -150,7 +150,7 @@ TEST_P(DenseSuspension, HasTheTemperatureOfItsNoise) {
   laboratory.start();
   Temperatures series(2);
   double contacts = 0;
-  const double decay_times = 4 * blocks;  // of the slowest motion, all spheres together
+  const double decay_times = 4 * blocks;  // of the slowest mode, all spheres together
   const auto steps = static_cast<int>(decay_times / experiment.timestep);
   for (int step = 0; step < steps; ++step) {
     const StepReport report = laboratory.step();

@@ -1,4 +1,4 @@
-// Means with their statistical errors.
+// Means with their standard errors.
 #pragma once
 
 #include <cmath>
@@ -7,13 +7,13 @@
 namespace peclet::engine {
 
 struct Estimate {
-  double mean, error;  // error: one standard deviation of the mean
+  double mean, error;  // error: standard error of the mean
 
-  // Distance from an expectation in units of the error.
+  // Returns the distance from `expected` in standard errors.
   double deviation(double expected) const { return std::abs(mean - expected) / error; }
 };
 
-// Of values that are independent of each other.
+// Returns the mean of independent values.
 inline Estimate estimate(const std::vector<double>& values) {
   const auto n = static_cast<double>(values.size());
   double sum = 0, squares = 0;
@@ -24,8 +24,8 @@ inline Estimate estimate(const std::vector<double>& values) {
   return {sum / n, std::sqrt(squares / (n * (n - 1)))};
 }
 
-// Of a series in which neighbours depend on each other: blocks of equal length must be much longer than that
-// dependence lasts. Values beyond the last whole block are left out.
+// Returns the mean of a correlated series. Blocks of equal length must be much longer than the correlation
+// time; values beyond the last whole block are left out.
 inline Estimate block_estimate(const std::vector<double>& series, std::size_t blocks) {
   const std::size_t length = series.size() / blocks;
   std::vector<double> means(blocks);

@@ -1,7 +1,7 @@
-// Where the origin lies and which vectors span the lattice is a matter of description.
+// The stress depends neither on the origin nor on the choice of lattice vectors.
 //
-// Without noise, whose random numbers belong to named images. Round-off differs between descriptions and
-// grows slowly along trajectories; 1e-9 leaves it room over a few hundred steps.
+// Without noise, because its random numbers are tied to the named images. Round-off differs between
+// descriptions and grows slowly along trajectories; 1e-9 allows for it over a few hundred steps.
 #include <gtest/gtest.h>
 
 #include "engine/realisation/packing.h"
@@ -21,7 +21,7 @@ std::vector<double> radii() {
 
 const double edge = cube_edge(radii(), 0.5);
 
-// Every kind of pair force, friction and rolling with their memory among them.
+// Returns a suspension with every kind of pair force, friction and rolling with memory included.
 Laboratory sheared_suspension(double tilt, const LubricationParameters& lubrication) {
   Experiment experiment;
   experiment.physics.viscosity = natural_viscosity;
@@ -40,8 +40,8 @@ Laboratory sheared_suspension(double tilt, const LubricationParameters& lubricat
   return Laboratory(experiment);
 }
 
-// The same state of motion, with the origin moved: what was at height 0 is at -offset.y, where the flow has
-// another velocity.
+// Places the spheres in a fixed state of motion, all shifted by `offset`. Velocities are those of the flow at
+// the new heights plus fixed disturbances.
 void place(Laboratory& laboratory, const Vector3& offset) {
   ParticleState& all = laboratory.particles();
   place_randomly(all, PeriodicCell({edge, edge, edge}, Matrix3{}, 0.4 * edge), /*seed=*/4);
@@ -90,7 +90,7 @@ TEST(Frame, AnotherOriginGivesTheSameStress) {
   }
 }
 
-// A strain of 0.16 takes the tilt from 0.4 beyond one half: one of the boxes flips on the way.
+// A strain of 0.16 takes the tilt of 0.4 beyond one half, so one of the boxes flips.
 TEST(Frame, AnotherBasisOfTheLatticeGivesTheSameStress) {
   for (const LubricationParameters& form : forms) {
     Laboratory one = sheared_suspension(0.4 * edge, form), other = sheared_suspension(-0.6 * edge, form);

@@ -1,10 +1,10 @@
-// Single spheres under implicit steps: velocities decay by r = 1 / (1 + x) a step, x = zeta dt / m, and noise
-// makes their variance (kT / m) / (1 + x / 2). Displacements are dt V, so that
-//   <x_n^2> = (kT / m) dt^2 / (1 + x / 2) [n + 2 sum over k < n of (n - k) r^k],
-// with the slope 2 (kT / zeta) dt of diffusion at any step.
+// Single spheres under implicit steps. Velocities decay by r = 1 / (1 + x) a step, x = zeta dt / m, and noise
+// gives them the variance (kT / m) / (1 + x / 2). Displacements are dt V, so that
+//   <x_n^2> = (kT / m) dt^2 / (1 + x / 2) [n + 2 sum over k < n of (n - k) r^k].
+// The slope is 2 (kT / zeta) dt, that of diffusion, at any step.
 //
-// False failures: 3 N independent numbers give a variance with relative error sqrt(2 / (3 N)); 5 of it is
-// passed with probability 6e-7, here in 9 comparisons, were the seeds drawn anew.
+// False failures with fresh seeds: 3 N independent numbers give a variance with relative error
+// sqrt(2 / (3 N)). Five of these errors are passed with probability 6e-7, in 9 comparisons.
 #include <gtest/gtest.h>
 
 #include "tests/physics/laboratory.h"

@@ -1,4 +1,4 @@
-// A suspension put together by hand: any spheres at any places, stepped by the engine's own integrator.
+// A suspension set up by hand, with any spheres at any places, stepped by the engine's own integrators.
 #pragma once
 
 #include <memory>
@@ -10,12 +10,11 @@
 
 namespace peclet::engine {
 
-// Units of these tests unless said otherwise: radius, mass and drag coefficient 6 pi eta a of a unit sphere
-// are
-// 1. Then the time is that in which its velocity decays, and kT is its diffusion coefficient.
+// Natural units: radius, mass and drag coefficient 6 pi eta a of a unit sphere are 1. The unit of time is the
+// decay time of its velocity, and kT is its diffusion coefficient.
 constexpr double natural_viscosity = 1 / (6 * std::numbers::pi);
 constexpr double natural_density = 3 / (4 * std::numbers::pi);
-// I = 2/5 and a drag coefficient of rotation 8 pi eta a^3 = 4/3: spins decay faster.
+// I = 2/5 and the drag coefficient of rotation is 8 pi eta a^3 = 4/3, so spins decay faster.
 constexpr double natural_spin_rate = 10.0 / 3.0;
 
 struct Experiment {
@@ -25,16 +24,16 @@ struct Experiment {
   PeriodicCell box;
   double timestep = 0;
   std::uint64_t seed = 1;
-  double skin = 0.1;                            // of the neighbour list, a length
-  std::optional<double> solver_tolerance = {};  // of implicit steps; none: explicit ones
+  double skin = 0.1;                            // of the neighbour list [length]
+  std::optional<double> solver_tolerance = {};  // of implicit steps; explicit steps if empty
 };
 
 class Laboratory {
  public:
-  // Spheres at rest at the origin; place them, then start().
+  // Places spheres at rest at the origin; move them, then call start().
   explicit Laboratory(const Experiment& experiment);
 
-  // Adds velocities and spins of equilibrium, from a generator that is not the engine's.
+  // Adds equilibrium velocities and spins, drawn from `generator` and not from the engine's.
   void thermalise(std::mt19937_64& generator);
 
   void start() { integrator_->start(system_); }
@@ -46,7 +45,7 @@ class Laboratory {
   const Physics& physics() const { return physics_; }
   double timestep() const { return integrator_->timestep(); }
 
-  // The place of a particle as if there were no periodic cell.
+  // Returns the position of a particle without periodic wrapping.
   Vector3 unwrapped(std::size_t i) const {
     return system_.particles.position[i] + system_.box.displacement(system_.particles.image[i]);
   }
@@ -57,12 +56,11 @@ class Laboratory {
   std::unique_ptr<Integrator> integrator_;
 };
 
-// Spheres of radius 1 at a volume fraction of 5e-4 that feel drag and its noise alone, started from thermal
-// velocities.
+// Returns spheres of radius 1 at volume fraction 5e-4 with thermal velocities, drag and its noise alone.
 Laboratory single_spheres(std::size_t count, double thermal_energy, double timestep, double skin,
                           std::optional<double> solver_tolerance = {});
 
-// Of every particle, by id: spheres change their places in memory.
+// Returns the unwrapped position of every particle, by id; particles change their index in memory.
 std::vector<Vector3> unwrapped_places(const Laboratory& laboratory);
 
 }  // namespace peclet::engine

@@ -1,9 +1,8 @@
-// Single spheres spread as L4.1 says: <x^2> = (2 kT m / zeta^2)(zeta t / m - 1 + exp(-zeta t / m)) along each
-// axis, from thermal velocities; eq. 31 of Li, Royer & Ness (2023).
+// Single spheres with thermal velocities spread along each axis as (eq. 31 of Li, Royer & Ness 2023)
+//   <x^2> = (2 kT m / zeta^2)(zeta t / m - 1 + exp(-zeta t / m)).
 //
-// False failures: 3 N independent displacements give a variance with relative error sqrt(2 / (3 N)), normal
-// to good accuracy; 5 of it is passed with probability 6e-7, here in 17 comparisons, were the seeds drawn
-// anew.
+// False failures with fresh seeds: 3 N independent displacements give a variance with relative error
+// sqrt(2 / (3 N)), normal to good accuracy. Five errors are passed with probability 6e-7, in 17 comparisons.
 #include <gtest/gtest.h>
 
 #include "tests/physics/estimates.h"
@@ -14,7 +13,7 @@ namespace {
 
 constexpr double largest_deviation = 5;
 
-// Mean of the squared displacement along one axis.
+// Returns the mean squared displacement along one axis.
 double mean_square(const Laboratory& laboratory, const std::vector<Vector3>& origin) {
   const std::vector<Vector3> now = unwrapped_places(laboratory);
   double sum = 0;
@@ -25,7 +24,7 @@ double mean_square(const Laboratory& laboratory, const std::vector<Vector3>& ori
   return sum / (3 * static_cast<double>(origin.size()));
 }
 
-// L4.1 in natural units (m = zeta = 1).
+// Returns <x^2> in natural units (m = zeta = 1).
 double expected_mean_square(double thermal_energy, double time) {
   return 2 * thermal_energy * (time - 1 + std::exp(-time));
 }
@@ -46,7 +45,7 @@ void expect_spreading(std::size_t count, double thermal_energy, double timestep,
   }
 }
 
-// The step makes the first of these times wrong by a part of zeta dt / m, 1e-3: a ninth of the error bar.
+// The step biases the first of these times by zeta dt / m = 1e-3 of it, a ninth of the error bar.
 TEST(MeanSquaredDisplacement, IsBallisticBeforeTheVelocityDecays) {
   expect_spreading(/*count=*/8000, /*thermal_energy=*/0.5, /*timestep=*/1e-3, /*skin=*/8,
                    {0.03, 0.1, 0.2, 0.5});
@@ -56,17 +55,16 @@ TEST(MeanSquaredDisplacement, CrossesOverToDiffusion) {
   expect_spreading(/*count=*/8000, /*thermal_energy=*/0.5, /*timestep=*/5e-3, /*skin=*/8, {1, 2, 4, 8, 16});
 }
 
-// The last displacements, 400 along each axis, are longer than the cell, 232: the counters of images must
-// keep up.
+// The last displacements, 400 along each axis, exceed the cell edge of 232, so image counters are tested.
 TEST(MeanSquaredDisplacement, IsDiffusiveAcrossCells) {
   expect_spreading(/*count=*/1500, /*thermal_energy=*/200, /*timestep=*/2e-2, /*skin=*/30,
                    {20, 50, 100, 200, 400});
 }
 
-// The position of the step n is a sum of half-step velocities, whose covariance decays as (1 - zeta dt /
-// m)^n. In the stationary state the sum is exactly, with x = zeta dt / m and r = 1 - x,
-//   (2 kT m / zeta^2)[n x - (1 - x)(1 - r^n) / (1 - x / 2)]:
-// the slope is that of L4.1 at any stable step. Rotations, which are not measured here, diverge beyond 0.6.
+// The position after n steps is a sum of half-step velocities, whose covariance decays as
+// (1 - zeta dt / m)^n. In the steady state the sum is exactly, with x = zeta dt / m and r = 1 - x,
+//   (2 kT m / zeta^2)[n x - (1 - x)(1 - r^n) / (1 - x / 2)].
+// The slope is the exact one at any stable step. Rotations, not measured here, diverge beyond x = 0.6.
 class LargeSteps : public testing::TestWithParam<double> {};
 
 TEST_P(LargeSteps, LeaveTheDiffusionCoefficientAlone) {
@@ -74,7 +72,7 @@ TEST_P(LargeSteps, LeaveTheDiffusionCoefficientAlone) {
   const double thermal_energy = 0.1, x = GetParam();
   Laboratory laboratory = single_spheres(count, thermal_energy, x, /*skin=*/8);
   for (int step = 0; step < 20 / x; ++step) laboratory.step();
-  std::vector<double> ratios;  // of consecutive, independent windows to the formula
+  std::vector<double> ratios;  // consecutive, independent windows over the formula
   const auto window = static_cast<int>(20 / x);
   const double expected =
       2 * thermal_energy * (window * x - (1 - x) * (1 - std::pow(1 - x, window)) / (1 - 0.5 * x));
@@ -83,7 +81,7 @@ TEST_P(LargeSteps, LeaveTheDiffusionCoefficientAlone) {
     for (int step = 0; step < window; ++step) laboratory.step();
     ratios.push_back(mean_square(laboratory, origin) / expected);
   }
-  // Windows of twenty decay times share hardly a memory: the variance has 3 N * 40 independent terms.
+  // Windows of twenty decay times are nearly independent: the variance has 3 N * 40 independent terms.
   const double error = std::sqrt(2 / (3.0 * count * static_cast<double>(ratios.size())));
   EXPECT_NEAR(estimate(ratios).mean, 1, largest_deviation * error);
 }

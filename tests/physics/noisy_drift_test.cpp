@@ -1,7 +1,6 @@
-// The drift kT div M that belongs to noise whose resistance depends on the place: where it is missing, pairs
-// gather where they move least.
+// The drift kT div M of noise with position-dependent resistance. Without it, pairs gather at low mobility.
 //
-// False failures: the mean is allowed five standard errors, 6e-7, were the seed drawn anew.
+// False failures with a fresh seed: 6e-7, for five standard errors.
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
@@ -17,7 +16,7 @@ constexpr double inner_gap = 1e-4, outer_gap = 0.9, gap = 0.02;
 constexpr std::size_t pairs = 4000;
 constexpr int steps_of_each = 10;
 
-// Of two unit spheres in units of 6 pi eta: of the pair and of the drag on each.
+// Returns the resistance of two unit spheres in units of 6 pi eta, of the pair and of the drag on each.
 Matrix12 resistance_at(const Vector3& separation) {
   Matrix12 R = reference_resistance(natural_viscosity, 1, 1, separation, inner_gap);
   R.diagonal().head<6>().array() += 1;
@@ -25,7 +24,7 @@ Matrix12 resistance_at(const Vector3& separation) {
   return R;
 }
 
-// Component c of the relative velocity that opposite unit forces along c give.
+// Returns component c of the relative velocity under opposite unit forces along c.
 double relative_mobility(const Vector3& separation, Eigen::Index c) {
   const Vector12 force = Vector12::Unit(3 + c) - Vector12::Unit(c);
   return force.dot(resistance_at(separation).llt().solve(force));
@@ -40,14 +39,14 @@ double drift_along_the_line(double distance) {
   return change + 2 * (relative_mobility(r, 0) - relative_mobility(r, 1)) / distance;
 }
 
-// Pairs side by side, all at the same distance along x, out of reach of each other.
+// Returns pairs side by side, all at one distance along x and beyond the range of each other.
 Laboratory many_pairs(double thermal_energy, double timestep, double distance) {
   Experiment experiment;
   experiment.physics.viscosity = natural_viscosity;
   experiment.physics.thermal_energy = thermal_energy;
   experiment.physics.lubrication = LubricationParameters{inner_gap, outer_gap};
   experiment.radius.assign(2 * pairs, 1.0);
-  experiment.density = 1e-9 * natural_density;  // the velocity is that of the forces at once
+  experiment.density = 1e-9 * natural_density;  // negligible inertia: velocities follow the forces
   constexpr std::size_t row = 16;               // pairs in each direction: 16^3 places
   constexpr double spacing = 6;
   experiment.box = PeriodicCell({row * spacing, row * spacing, row * spacing}, Matrix3{});
@@ -64,7 +63,7 @@ Laboratory many_pairs(double thermal_energy, double timestep, double distance) {
   return laboratory;
 }
 
-// Velocities along x that the noise gives each pair where it stands; their mean over keys is zero.
+// The velocities along x that the noise gives each pair at a fixed separation; their mean over keys is zero.
 class LinearAnswer {
  public:
   LinearAnswer(double thermal_energy, double timestep, double distance, std::uint64_t seed)
@@ -110,8 +109,8 @@ TEST(NoisyDrift, OfALubricatedPairIsTheDivergenceOfItsMobility) {
   }
   constexpr double count = pairs * steps_of_each;
   const double mean = sum / count, error = std::sqrt(squares / count - mean * mean) / std::sqrt(count);
-  EXPECT_LT(error, 0.02 * expected);  // a missing drift is seen, and one of half the size
-  // What is left is of higher order in the move over the gap.
+  EXPECT_LT(error, 0.02 * expected);  // detects a missing drift and one of half the size
+  // The remainder is of higher order in move over gap.
   EXPECT_NEAR(mean, expected, 5 * error + 0.02 * expected);
 }
 

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """noisy_steps.py ENGINE PECLET STEP [STEP ...] [--seeds 16] [--count 250] [--equilibration 1] [--strain 6]
 
-What the size of an implicit step with noise does to a suspension: at each STEP means over seeds of the viscosity
-(without its control variate), the pressure and the contacts per sphere, with standard errors. ENGINE is the
-peclet-engine; phi = 0.5, radii 1 and 1.4, limits of the rate and kT as in Table 4.1. One core.
+Measures the effect of the size of an implicit step with noise. Prints at each STEP means over seeds, with
+standard errors, of the viscosity (without its control variate), the pressure and the contacts per sphere.
+ENGINE is a peclet-engine; phi = 0.5, radii 1 and 1.4, limits of the rate and kT as in Table 4.1. One core.
 """
 import argparse
 import json

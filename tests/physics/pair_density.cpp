@@ -9,7 +9,7 @@ namespace peclet::engine {
 namespace {
 
 constexpr double cell_edge = 4, contact_distance = 2;
-// Time in which the slowest mode of the separation decays by e^10: (edge / 2 pi)^2 / (2 D), D = kT.
+// Duration in which the slowest mode of the separation decays by e^10: (edge / 2 pi)^2 / (2 D), D = kT.
 constexpr double burn_in_distance_squared = 2;
 
 double area(double d) {
@@ -27,7 +27,7 @@ double weight(const PairDensityRun& run, StepBias bias, double d) {
   return (1 - 0.5 * run.timestep * (2 * squeeze + 1)) * boltzmann;
 }
 
-// Integral of area times weight by the midpoint rule; the integrand is smooth between edges.
+// Returns the integral of area times weight by the midpoint rule; the integrand is smooth between edges.
 double integral(const PairDensityRun& run, StepBias bias, double from, double to) {
   constexpr int intervals = 4000;
   const double width = (to - from) / intervals;
@@ -89,7 +89,7 @@ std::vector<double> shares_of_realisation(const PairDensityRun& run, std::uint64
   return shares;
 }
 
-// x.C^-1.x of a symmetric positive definite C by its Cholesky factor, which replaces C.
+// Returns x.C^-1.x of a symmetric positive definite C by its Cholesky factor, which replaces C.
 double inverse_form(std::vector<std::vector<double>>& C, std::vector<double> x) {
   double sum = 0;
   for (std::size_t a = 0; a < x.size(); ++a) {
@@ -124,7 +124,7 @@ std::vector<std::vector<double>> sampled_shares(const PairDensityRun& run) {
 }
 
 std::vector<double> expected_shares(const PairDensityRun& run, StepBias bias) {
-  // Beyond the edges of the cube, d > 2 sqrt(2), only the volume matters.
+  // Beyond d > 2 sqrt(2), the edges of the cube, only the volume matters.
   const double edges_at = contact_distance * std::numbers::sqrt2;
   const double inside = integral(run, StepBias::none, contact_distance, edges_at);
   const double ball = 4.0 / 3 * std::numbers::pi * std::pow(contact_distance, 3);

@@ -1,6 +1,5 @@
-// The potential of mean force of two spheres at length: prints, for each bin of the distance, the share of
-// time measured and expected and U / kT = -ln of their ratio to free space. See README.md for what it
-// printed.
+// The potential of mean force of two spheres in long runs. Prints for each bin of the distance the measured
+// and the expected share, and U / kT = -ln of their ratio to free space. README.md lists the results.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -18,9 +17,9 @@ struct Case {
   PairDensityRun run;
 };
 
-// The step is half the largest stable one of one scene, (4 / (2.8 lambda)) / 4 with lambda = 504 at a gap of
-// 1e-3, or far below it. `table` has the ratios of Table 4.1 of Li's thesis at low Peclet numbers, and so do
-// the implicit ones, at the automatic implicit step, half of it and twice as much.
+// Explicit steps are half the largest stable step of one scene, (4 / (2.8 lambda)) / 4 with lambda = 504 at a
+// gap of 1e-3, or far below it. `table` has the ratios of Table 4.1 of Li's thesis at low Péclet numbers. The
+// implicit cases have them too, at the automatic implicit step, at half and at twice that step.
 constexpr Case catalogue[] = {
     {"small-step", {0.5, 1e5, 1e-3, 4e-5, 4'000'000, 40}},
     {"automatic-step", {0.05, 1e5, 1e-3, 7.09e-4, 2'000'000, 40}},

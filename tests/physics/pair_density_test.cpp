@@ -1,11 +1,11 @@
-// The potential of mean force of two spheres: flat outside contact, across the inner and the outer gap of
+// The potential of mean force of two spheres: flat outside contact, across the inner and outer gap of
 // lubrication, and k_n delta^2 / (2 kT) inside.
 //
-// The equilibrium density depends neither on the inner gap nor on inertia. A wide inner gap (1e-2) and hot
-// spheres (free path of the order of a radius) make it affordable: soft contacts, k_n a^2 / kT = 1000, fill
-// the bins of overlaps. pair_density_study does the same at length with the published inner gap.
+// The equilibrium density depends neither on the inner gap nor on inertia. Short runs suffice with a wide
+// inner gap (1e-2) and hot spheres (free path of about a radius). Soft contacts, k_n a^2 / kT = 1000, fill
+// the bins of overlaps. pair_density_study repeats this in long runs with the published inner gap.
 //
-// False failures: 1e-4 each, were the seeds drawn anew; Hotelling's T^2 over 9 bins and 40 realisations.
+// False failures with fresh seeds: 1e-4 each, by Hotelling's T^2 over 9 bins and 40 realisations.
 #include "tests/physics/pair_density.h"
 
 #include <gtest/gtest.h>
@@ -17,8 +17,8 @@ namespace {
 
 constexpr double smallest_probability = 1e-4;
 
-// The step is given in units of the time in which the approach of two spheres decays at the inner gap, by the
-// rate 2 X_A / m + zeta / m.
+// `rate_times_step` is the step in units of the decay time of the approach of two spheres at the inner gap,
+// whose rate is 2 X_A / m + zeta / m.
 PairDensityRun make_run(double thermal_energy, double inner_gap, double rate_times_step,
                         std::uint64_t steps) {
   const double rate = 2 * (0.25 / inner_gap + 9.0 / 40 * std::log(1 / inner_gap)) + 1;
@@ -30,7 +30,7 @@ PairDensityRun make_run(double thermal_energy, double inner_gap, double rate_tim
           .realisations = 40};
 }
 
-// Measured over expected share of all bins between two edges.
+// Returns the measured over the expected share of the bins `first` to `last`.
 Estimate ratio(const std::vector<std::vector<double>>& shares, const std::vector<double>& expected,
                std::size_t first, std::size_t last) {
   std::vector<double> ratios;
@@ -51,14 +51,14 @@ TEST(PairDensity, FollowsTheContactEnergyAndIsFlatOutsideAtSmallSteps) {
   const auto expected = expected_shares(run, StepBias::none);
   EXPECT_GT(probability_of(shares, expected), smallest_probability);
   const Estimate overlapping = ratio(shares, expected, 0, 2), lubricated = ratio(shares, expected, 3, 5);
-  // The resolution of the statement.
+  // The statistical errors that the claim needs.
   EXPECT_LT(overlapping.error, 0.03);
   EXPECT_LT(lubricated.error, 0.03);
 }
 
-// At half of the largest stable step of a dense packing (lambda dt / 2 = 1 / 5.6 for one pair at the inner
-// gap) the density at contact is lower by that fraction; see StepBias. The bins beyond the outer gap are left
-// out: hot spheres fly farther than their width before their velocities forget the lubrication inside.
+// At half the largest stable step of a dense packing (lambda dt / 2 = 1 / 5.6 for one pair at the inner gap)
+// the density at contact is lower by that fraction; see StepBias. Bins beyond the outer gap are left out: hot
+// spheres cross them before their velocities forget the lubrication inside.
 TEST(PairDensity, IsLoweredByTheHalfStepBiasAtLargeSteps) {
   constexpr std::size_t bins_with_lubrication = 6;
   const PairDensityRun run = make_run(0.1, 1e-2, 2 / 5.6, 100'000);
@@ -72,9 +72,9 @@ TEST(PairDensity, IsLoweredByTheHalfStepBiasAtLargeSteps) {
   EXPECT_LT(probability(StepBias::none), smallest_probability);
 }
 
-// Implicit steps as large as "auto" makes them in the scene of Table 4.1 of Li's thesis at low Peclet
-// numbers: a half-step bias of 0.82 in contact must not pass, and none of 0.93 in the bin beyond the outer
-// gap, where the resistance jumps.
+// Implicit steps of the automatic size in the scene of Table 4.1 of Li's thesis at low Péclet numbers. The
+// test rejects a half-step bias of 0.82 in contact, and one of 0.93 in the bin beyond the outer gap, where
+// the resistance jumps.
 TEST(PairDensity, IsKeptByImplicitSteps) {
   PairDensityRun run = {.thermal_energy = 2.0e-3,
                         .stiffness_over_thermal_energy = 5.9e5,

@@ -1,8 +1,8 @@
-// Fluctuation and dissipation of near pairs: the noise that the pair pass draws has the covariance 2 kT R /
-// dt of the resistance that it also applies (physics of eqs. 19-28 of Li, Royer & Ness 2023).
+// Fluctuation–dissipation for near pairs: the noise of the pair pass has the covariance 2 kT R / dt of the
+// resistance that the pair pass applies (eqs. 19-28 of Li, Royer & Ness 2023).
 //
-// False failures, were the seeds drawn anew: one deviation passes 5.5 standard deviations with probability
-// 3.8e-8, one of 90 (12 components and their means) in one of 18 cases with 6e-5, one of 324 with 1.2e-5.
+// False failures with fresh seeds: one deviation passes 5.5 standard deviations with probability 3.8e-8. One
+// of 90 (12 components and their means) in one of 18 cases does so with 6e-5, one of 324 with 1.2e-5.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -23,7 +23,7 @@ constexpr std::uint64_t samples = 100000;
 
 using Components = Vector12;  // F_i, F_j, T_i, T_j
 
-// Two spheres at a gap, in a direction without zeros; forces come from the engine's pair pass alone.
+// Two spheres at a gap, in a direction without zero components; forces are those of the pair pass alone.
 class NoisyPair {
  public:
   NoisyPair(double ratio, double gap, std::uint64_t seed)
@@ -38,7 +38,7 @@ class NoisyPair {
     system_.box = PeriodicCell({edge, edge, edge}, Matrix3{});
     kinds_ = make_pair_kinds(physics_, {radius_i, radius_j_});
     system_.list = NeighbourList(range_table(kinds_, 2), 0.1);
-    // Across the face of the periodic cell.
+    // The pair lies across a face of the periodic cell.
     system_.particles.position.set(0, {edge - 0.1, 0.1, 0.1});
     system_.particles.position.set(1, system_.particles.position[0] + separation_);
     rebuild_neighbours(system_);
@@ -63,8 +63,9 @@ class NoisyPair {
            reference_resistance(viscosity, radius_i, radius_j_, separation_, inner_gap);
   }
 
-  // The same sample with the sign that the published eq. 24 prints before the second root. What theta gives
-  // to T_j is Y_B21 / Y_A F_i x n, where -Y_B21 v x n is the block (F_j, T_j) of -R; the rest is chi's.
+  // Returns the sample with the sign that the published eq. 24 prints before the second root. The
+  // contribution of theta to T_j is Y_B21 / Y_A F_i x n, where -Y_B21 v x n is the block (F_j, T_j) of -R;
+  // the rest comes from chi.
   Components with_printed_sign(Components c) const {
     const Matrix12 R = reference_resistance(viscosity, radius_i, radius_j_, separation_, inner_gap);
     const Eigen::Vector3d n = to_eigen(separation_).normalized(), across = n.unitOrthogonal();
@@ -89,7 +90,7 @@ class NoisyPair {
   PairPass pass_{{.lubrication = true, .noise = true}, chosen_instruction_set()};
 };
 
-// Overlapping, below the inner gap, at it, and up to the outer one.
+// Gaps: overlap, below the inner gap, at it, and up to the outer one.
 constexpr std::array<double, 3> ratios = {1.4, 3.0, 7.0};
 constexpr std::array<double, 6> gaps = {-0.01, 5e-4, 1e-3, 4e-3, 0.02, 0.0499};
 
@@ -125,7 +126,7 @@ TEST(PairNoise, PrintedSignOfTheSecondTorqueFailsByFar) {
   });
 }
 
-// Twenty-four components, of one step and of the next: their blocks must be independent.
+// Twenty-four components, of one step and of the next: the two blocks must be independent.
 TEST(PairNoise, IsFreshAtEveryStep) {
   NoisyPair pair(1.4, 0.01, 1);
   Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(24, 24);

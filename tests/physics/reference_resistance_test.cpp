@@ -1,4 +1,3 @@
-// The resistance of the engine's pairs against the one that the other tests of noise and power measure with.
 #include "tests/physics/reference_resistance.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +16,7 @@ TEST(ReferenceResistance, IsThatOfTheEngineForEverySizeRatioAndGap) {
       const Matrix12 found = grand_resistance(resistance_of(viscosity, radius, ratio * radius, pair), pair);
       const Matrix12 expected =
           reference_resistance(viscosity, radius, ratio * radius, pair.separation, inner_gap);
-      // Forces, couplings and torques are of different sizes.
+      // Forces, couplings and torques differ in size, so each block is compared by itself.
       for (const int row : {0, 6}) {
         for (const int column : {0, 6}) {
           const auto block = expected.block<6, 6>(row, column);

@@ -1,11 +1,11 @@
-// Second moments of a vector that is sampled many times, and how far they are from what they should be.
+// Sampled second moments of a vector, and their deviation from expected ones.
 #pragma once
 
 #include <Eigen/Core>
 
 namespace peclet::engine {
 
-// Of vectors whose mean is known to be zero.
+// The covariance of vectors whose mean is known to be zero.
 class SampledCovariance {
  public:
   explicit SampledCovariance(Eigen::Index size)
@@ -17,8 +17,8 @@ class SampledCovariance {
     ++samples_;
   }
 
-  // The largest |sampled - expected C| in units of its standard deviation, which for normal vectors is
-  // sqrt((C_aa C_bb + C_ab^2) / samples). Every C_aa must be positive.
+  // Returns the largest |sampled - expected C| in units of its standard deviation, which for normal vectors
+  // is sqrt((C_aa C_bb + C_ab^2) / samples). Every C_aa must be positive.
   double largest_deviation(const Eigen::MatrixXd& expected) const {
     const Eigen::MatrixXd squares = expected.diagonal() * expected.diagonal().transpose();
     const Eigen::ArrayXXd variance = (squares.array() + expected.array().square()) / samples_;
@@ -26,7 +26,7 @@ class SampledCovariance {
     return (difference.abs() / variance.sqrt()).maxCoeff<Eigen::PropagateNaN>();
   }
 
-  // The largest |mean| in units of its standard deviation sqrt(C_aa / samples).
+  // Returns the largest |mean| in units of its standard deviation sqrt(C_aa / samples).
   double largest_mean(const Eigen::MatrixXd& expected) const {
     const Eigen::ArrayXd deviation = (samples_ * expected.diagonal().array()).sqrt();
     return (sum_.array().abs() / deviation).maxCoeff<Eigen::PropagateNaN>();

@@ -1,11 +1,15 @@
-// Temperature and diffusion of the strain at a given stress: strain_study PHI COUNT STRESS FIRST_SEED
-// LAST_SEED WINDOW
+// Temperature and diffusion of the strain at a given stress:
+//   strain_study PHI COUNT STRESS FIRST_SEED LAST_SEED WINDOW
 //
-// Table 4.1 of Li's thesis: radii 1 and 1.4 in equal volumes, eta = rho = 0.1, kT = 0.017, k_n = 1e4, gaps
-// 1e-3 to 0.05; STRESS is sigma a^3 / kT, 20 Brownian times go before WINDOW of them. Prints for each seed,
-// with m the mean rate and M the inertia of each step, <(rate - m)^2> M / kT, which must be 1; D V eta / kT
-// by the squares of strains, less the mean, of parts of 6 Brownian times, which must be 1 / eta_r at small
-// stress; the least and the largest M / (V dt eta), and the strain. See README.md for what it printed.
+// The scene is Table 4.1 of Li's thesis: radii 1 and 1.4 in equal volumes, eta = rho = 0.1, kT = 0.017,
+// k_n = 1e4, gaps 1e-3 to 0.05. STRESS is sigma a^3 / kT; WINDOW [Brownian times] follows 20 Brownian times
+// of equilibration. Prints for each seed, with m the mean rate and M the inertia at each step:
+//   - <(rate - m)^2> M / kT, which must be 1
+//   - D V eta / kT, which must be 1 / eta_r at small stress, with the variance of strains over parts of 6
+//     Brownian times
+//   - the smallest and the largest M / (V dt eta)
+//   - the strain
+// README.md lists the results.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -33,7 +37,7 @@ Scene scene_at_stress(double volume_fraction, int count, double stress, int wind
   document["particles"]["count"] = count;
   document["fluid"] = {{"viscosity", viscosity}, {"thermal_energy", thermal_energy}};
   document["volume_fraction"] = volume_fraction;
-  // What has no time to strain has not jammed.
+  // Jamming is disabled: a slow flow has not jammed.
   document["flow"] = {{"stress", stress * thermal_energy}, {"jammed_viscosity", 1e12}};
   document["duration"] = {{"equilibration", {{"brownian_times", equilibration}}},
                           {"production", {{"brownian_times", window}}}};

@@ -1,17 +1,17 @@
-// What spheres whose lubrication is relative to the flow take from it and dissipate.
+// Power balance of spheres whose lubrication is relative to the flow (form mari).
 //
-// With peculiar velocities c = U - u(x), spins w = Omega - curl u / 2, all forces F and torques T of a
-// configuration, an identity at every instant and in any flow:
+// With peculiar velocities c = U - u(x), spins w = Omega - curl u / 2, and all forces F and torques T of a
+// configuration, at every instant and in any flow:
 //   sum (zeta c.(c - f) + zeta_r w^2) + sum (F.c + T.w) + sum over pairs (Phi_0 + P_E + P_C) = 0,
-// f = -a^2 k^2 / 6 times a wave at a sphere's centre is Faxen's correction of its drag,
-// Phi_0 = m.R.m of the relative motion m = (c_j - c_i, w_i, w_j), P_E what the loads of the rates of strain
-// take from that motion, P_C the same of contacts. In a uniform flow the strain joins the motion, v = c_j -
-// c_i
-// + (a_i + a_j) E n, and with the stress of the pairs
+//   f = -a^2 k^2 / 6 times a wave at a sphere's centre: Faxen's correction of the drag
+//   Phi_0 = m.R.m with the relative motion m = (c_j - c_i, w_i, w_j)
+//   P_E: power that the loads of the strain rates take from that motion; P_C: that of contacts
+// In a uniform flow, with v = c_j - c_i + (a_i + a_j) E n in the place of c_j - c_i and the stress of the
+// pairs:
 //   V E:sigma - sum over lubricated pairs h n.E.F = sum (zeta c^2 + zeta_r w^2) + sum (F.c + T.w)
 //                                                   + sum over pairs (Phi + dE_contact/dt).
-// The rest, with the surface distance h, is what r F has more than the stresslets that belong to these rates
-// of strain by reciprocity: of the order of the gap.
+// The term with the surface distance h is the part of r F beyond the stresslets that belong to these strain
+// rates by reciprocity. It is of the order of the gap.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -42,7 +42,7 @@ Physics strained_physics(bool waves) {
   return physics;
 }
 
-// Radii 1, 1.4 and 3 at a volume fraction of one half.
+// Returns radii 1, 1.4 and 3 at a volume fraction of one half.
 Laboratory strained_suspension(bool waves) {
   Experiment experiment;
   experiment.physics = strained_physics(waves);
@@ -64,7 +64,7 @@ Laboratory strained_suspension(bool waves) {
   return laboratory;
 }
 
-// Of one sphere relative to the flow.
+// The motion of one sphere relative to the flow.
 struct Peculiar {
   double radius;
   Vector3 velocity, spin;
@@ -74,14 +74,14 @@ struct Peculiar {
 struct PairPower {
   double of_motion = 0;    // Phi_0
   double of_strain = 0;    // P_E
-  double together = 0;     // Phi, where E is the same at both
+  double together = 0;     // Phi, for one E at both spheres
   double of_contact = 0;   // P_C
   double stored = 0;       // dE_contact/dt
   double of_distance = 0;  // h n.E.F
 };
 
-// g of X_G, Y_G, Y_H as the publication prints them (A.7), of a sphere of radius a, b the other radius over
-// it; `other`: by the strain at the other sphere. Times 6 pi eta.
+// The functions g of X_G, Y_G, Y_H as published (Monti et al. 2021, A.7), times 6 pi eta. a is the radius of
+// the sphere, b the other radius over it, s their sum; `other`: by the strain at the other sphere.
 double x_g(double a, double b) { return 2 * a * a * b * b / std::pow(1 + b, 3); }
 double x_g_other(double s, double b) { return -2 * s * s * b * b / std::pow(1 + b, 5); }
 double y_g(double a, double b) { return a * a / 15 * b * (4 - b + 7 * b * b) / std::pow(1 + b, 3); }
@@ -123,7 +123,7 @@ PairPower power_of_pair(const Peculiar& i, const Peculiar& j, const Vector3& r) 
   return power;
 }
 
-// The sums, over all pairs and images of the sheared lattice; nothing of the engine's list is used.
+// Returns the sums over all pairs and images of the sheared lattice; the engine's neighbour list is not used.
 PairPower power_of_all(const System& system, const std::vector<Peculiar>& spheres) {
   const VectorField& place = system.particles.position;
   const Matrix3& edges = system.box.edges();
@@ -156,7 +156,7 @@ class StrainedPower : public testing::TestWithParam<bool> {};
 INSTANTIATE_TEST_SUITE_P(InShear, StrainedPower, testing::Bool(),
                          [](const auto& waves) { return std::string(waves.param ? "AndWaves" : "Alone"); });
 
-// Round-off alone.
+// Tolerance: round-off.
 TEST_P(StrainedPower, IsBalancedAtEveryInstant) {
   Laboratory laboratory = strained_suspension(GetParam());
   for (int moment = 0; moment < 8; ++moment) {

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """strained_steps.py ENGINE FRICTION OUTER_DISTANCE [--seeds 16]
 
-How wrong implicit steps with lubrication of the form mari make the viscosity: a row with that at an eighth of the
-automatic step, and the relative differences of half of it, of it and of its double from that, seed by seed, in percent,
-with standard errors. ENGINE is a peclet-engine; 500 spheres of radii 1 and 1.4 at phi = 0.5 in the units of Monti et
-al. (results/studies/monti.py), strains 2 to 6. One core.
+Measures the error of the viscosity by implicit steps with lubrication mari. Prints a row: the viscosity at an
+eighth of the automatic step, and relative differences from it, seed by seed, in percent with errors, at half
+the automatic step, at it and at twice it. ENGINE is a peclet-engine; 500 spheres of radii 1 and 1.4 at
+phi = 0.5 in the units of Monti et al. (results/studies/monti.py), strains 2 to 6. One core.
 """
 import argparse
 import json

@@ -1,9 +1,9 @@
-// What a step does to the stress, beyond the largest one that a scene may have too.
+// The effect of the step on the stress, also beyond the largest step that a scene may have.
 //
 // A suspension of Table 4.1 of Li (2023) at rate 0.045 without noise follows a reference at a small step.
-// From the same states of the reference, windows of strain are run at larger steps, whatever the gate thinks
-// of them: differences between stresses of a window are those of the step, until chaos parts the runs. Prints
-// one JSON object per window and step; results/timestep-gate has the table.
+// Windows of strain start from states of the reference and are run at larger steps, without regard to the
+// stability check. Differences between stresses of a window come from the step until chaos separates the
+// runs. Prints one JSON object per window and step; results/timestep-gate has the table.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -21,9 +21,9 @@ constexpr double reference_step = 5e-5, equilibration_step = 1.5e-4;
 constexpr double steps_to_try[] = {reference_step, 1e-4, 2e-4, 3e-4, 3.2e-4, 3.4e-4,
                                    3.6e-4,         4e-4, 5e-4, 7e-4, 1e-3};
 constexpr double equilibration_strain = 1, window_strain = 0.3;
-constexpr double settling_strain = 0.02;  // of a window, in which runs adjust to their step; not measured
+constexpr double settling_strain = 0.02;  // not measured: runs adjust to their step
 
-// Those of a realisation (engine/realisation/simulation.cpp, default guards).
+// The default guards of a realisation (engine/realisation/simulation.cpp).
 constexpr long stability_check_interval = 5000, energy_sampling_interval = 500;
 constexpr double largest_overlap = 0.05, largest_displacement = 0.05;
 
@@ -74,7 +74,7 @@ System packed(const Arguments& arguments) {
 
 long steps_of(double strain, double step) { return std::lround(strain / (rate * step)); }
 
-// Stress and energy of the part of a window that is measured.
+// Stress and energy of the measured part of a window.
 class Sums {
  public:
   void add(const StepReport& report) {

@@ -1,13 +1,15 @@
-// The power that a wave and the mean shear put into a suspension is what is dissipated and stored.
+// Power balance in shear with waves: the power of shear and waves is dissipated and stored.
 //
-// With c = U - (rate y, 0, 0) and w = Omega + rate / 2 z, all forces F and torques T of a configuration, and
-// what a wave u'_x(y) lends a sphere, u* = u'(y_i) (1 - a^2 k^2 / 6) and w* = -u''(y_i) / 2 z,
+// With c = U - (rate y, 0, 0), w = Omega + rate / 2 z, and all forces F and torques T of a configuration. A
+// wave u'_x(y) gives a sphere u* = u'(y_i) (1 - a^2 k^2 / 6) and w* = -u''(y_i) / 2 z. At every instant
 //   V rate sigma_xy + sum (D.u* + G.w*) = Phi + dE/dt + sum (zeta (c - u*)^2 + zeta_r (w - w*)^2)
 //                                         + sum (F.c + T.w),
-// D = zeta (u* - c) and G = zeta_r (w* - w) the drag: an identity at every instant. Phi is what lubrication
-// and the damping of contacts dissipate, E the energy of contacts, repulsion and attraction; the last sum,
-// the work of inertia, is zero where spheres are free of force. Lubrication of the form kim-karrila, which
-// feels the wave through the drag alone; strained_power_test.cpp has the other form.
+//   D = zeta (u* - c), G = zeta_r (w* - w): drag
+//   Phi: dissipation by lubrication and by the damping of contacts
+//   E: energy of contacts, repulsion and attraction
+//   sum (F.c + T.w): power of inertia, zero for spheres free of force
+// Lubrication has the form kim-karrila, which feels the wave through the drag alone; strained_power_test.cpp
+// tests the other form.
 #include <gtest/gtest.h>
 
 #include "engine/flow/waves.h"
@@ -19,7 +21,7 @@ namespace peclet::engine {
 namespace {
 
 constexpr double rate = 0.02, stiffness = 500, damping = 2, inner_gap = 1e-2, outer_gap = 0.1;
-constexpr double repulsion = 0.3, debye_length = 0.03;  // of radius 1, force at contact
+constexpr double repulsion = 0.3, debye_length = 0.03;  // force at contact for radius 1
 constexpr double hamaker = 0.02, regularisation = 0.02, attraction_range = 0.3;
 struct Amplitudes {
   int periods;
@@ -45,7 +47,7 @@ Physics wavy_physics() {
   return physics;
 }
 
-// Radii 1, 1.4 and 3 at a volume fraction of one half, in motion with the shear.
+// Returns radii 1, 1.4 and 3 at a volume fraction of one half, moving with the shear.
 Laboratory wavy_suspension() {
   Experiment experiment;
   experiment.physics = wavy_physics();
@@ -70,7 +72,7 @@ struct PairPower {
   double dissipated = 0, stored = 0;
 };
 
-// Of one pair from the formulas; r and du of j's image relative to i.
+// Returns the power of one pair from the formulas; r and du of j's image relative to i.
 PairPower power_of_pair(const ParticleState& all, std::size_t i, std::size_t j, const Vector3& r,
                         const Vector3& du) {
   const double a = all.radius[i], b = all.radius[j], sum = a + b, mean = 2 * a * b / sum;
@@ -93,7 +95,7 @@ PairPower power_of_pair(const ParticleState& all, std::size_t i, std::size_t j, 
   return power;
 }
 
-// Over all pairs and images of the sheared lattice; nothing of the engine's list is used.
+// Returns the sums over all pairs and images of the sheared lattice; the engine's neighbour list is not used.
 PairPower power_of_all(const System& system) {
   const ParticleState& all = system.particles;
   const Matrix3& edges = system.box.edges();
@@ -141,7 +143,7 @@ SpherePower power_of_spheres(const System& system, const VectorField& force, con
   return power;
 }
 
-// Round-off alone.
+// Tolerance: round-off.
 TEST(WavePower, IsDissipatedAndStoredAtEveryInstant) {
   Laboratory laboratory = wavy_suspension();
   double stored = 0, by_shear = 0, by_wave = 0, dissipated = 0;
@@ -165,7 +167,7 @@ TEST(WavePower, IsDissipatedAndStoredAtEveryInstant) {
     by_wave += spheres.by_wave;
     dissipated += pairs.dissipated + spheres.by_drag;
   }
-  // None of them is so small that it would not be missed.
+  // Every part is large enough that its omission would fail the test.
   for (const double part : {stored, by_shear, by_wave}) EXPECT_GT(part, 1e-2 * dissipated);
 }
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What is drawn of a figure: names, axes, marks, bars and crosses, against tables written by hand."""
+"""Names, axes, marks, bars and crosses of a figure, compared with tables written by hand."""
 import json
 import os
 import sys
@@ -14,7 +14,7 @@ from peclet import drawing
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-# tests/pages/page_rules_test.py holds the page to the same table.
+# tests/pages/page_rules_test.py tests the page with this table, too.
 with open(os.path.join(ROOT, "tests", "pages", "symbols.json"), encoding="utf-8") as file:
     SYMBOLS = json.load(file)
 KEYS = {
@@ -100,7 +100,7 @@ class Names(unittest.TestCase):
 class OverASweep(unittest.TestCase):
     def test_axes_are_logarithmic_where_numbers_lie_more_evenly_then(self):
         for numbers, expected in (
-            ([2.2, 2.9, 4.1, 7.0, 21], True),  # a viscosity towards jamming
+            ([2.2, 2.9, 4.1, 7.0, 21], True),  # a viscosity near jamming
             ([1000, 1, 10, 100], True),
             ([0.1, 0.2, 0.3, 0.4, 0.5, 0.6], False),
             ([0.01, 1, 2, 3, 4], False),
@@ -187,7 +187,7 @@ class Drawn(unittest.TestCase):
             (guide,) = (line for line in axes.lines if line.get_linestyle() == "-")
             self.assertEqual(list(guide.get_xdata()), [0, 2])
 
-    # 10 ± 26 and 1000 ± 1: the bar goes below zero, its mean stays.
+    # 10 ± 26 and 1000 ± 1: the bar ends below zero, but its mean must be drawn.
     def test_every_positive_mean_lies_within_a_logarithmic_axis(self):
         axes = self.axes_of([point({"/peclet": 1}, 10, 26), point({"/peclet": 2}, 1000, 1)], log="y")
         low, high = axes.get_ylim()

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The fits of the jamming point: exact points, refusals, how often intervals hold the truth, and what is proposed."""
+"""Fits of the jamming point: exact points, refusals, coverage of intervals, and proposals."""
 import collections
 import json
 import math
@@ -45,14 +45,14 @@ def refusal(function, *arguments, **options):
 
 
 def scattered(truth, points, chi_squared):
-    """The points with residuals in ln eta whose chi^2 is this. The residuals are a zigzag without its part along g, 1
-    and x (see the normal equations), so that least squares finds the same law."""
+    """Returns the points with residuals in ln eta of this chi^2. The residuals are a zigzag without its part
+    along g, 1 and x (see the normal equations), so that least squares finds the same law."""
     phi = np.array([point[0] for point in points])
     gap = truth.fraction - phi
     columns = np.stack([-truth.exponent * phi / (truth.fraction * gap), np.ones(len(phi)), -np.log(gap)], axis=1)
     zigzag = (-1.0) ** np.arange(len(phi))
     residuals = zigzag - columns @ np.linalg.lstsq(columns, zigzag, rcond=None)[0]
-    s = points[0][2] / points[0][1] * math.sqrt(15 / 13)  # the deviation of Student's t of 15 degrees
+    s = points[0][2] / points[0][1] * math.sqrt(15 / 13)  # standard deviation of Student's t of 15 degrees
     residuals *= s * math.sqrt(chi_squared / (residuals @ residuals))
     return [(p[0], p[1] * math.exp(r), *p[2:]) for p, r in zip(points, residuals)]
 
@@ -77,14 +77,14 @@ class TheLaw(unittest.TestCase):
             self.assert_near([law.phi_m[0], law.exponent[0], law.prefactor[0]], (0.642, 1.5, 1), 1e-6)
             self.assertEqual((law.exponent[1] == 0, law.prefactor[1] == 0), (exponent is not None, unit))
             self.assertEqual(law.degrees, degrees)
-        # Of another exponent the divergence is elsewhere, and the points say that they do not follow it.
+        # Another exponent shifts the divergence, and chi^2 shows that the points do not follow it.
         steeper = fit_law(points, 0.62, 3)
         self.assertGreater(steeper.phi_m[0], 0.66)
         self.assertGreater(steeper.chi_squared / steeper.degrees, 4)
 
     def test_small_errors_are_those_of_the_normal_equations(self):
-        """Of small errors the profile is a parabola: with the columns g = -beta phi / (phi_m (phi_m - phi)), 1 and x
-        the covariance is (J^T W J)^-1."""
+        """For small errors the profile is a parabola. With the columns g = -beta phi / (phi_m (phi_m - phi)),
+        1 and x the covariance is (J^T W J)^-1."""
         truth, phi = Truth(), np.array(DENSE)
         gap = truth.fraction - phi
         jacobian = np.stack([-truth.exponent * phi / (truth.fraction * gap), np.ones(9), -np.log(gap / truth.fraction)])
@@ -106,10 +106,10 @@ class TheLaw(unittest.TestCase):
     def test_is_refused_where_the_points_do_not_bound_it(self):
         truth = Truth()
         self.assertEqual(refusal(fit_law, truth.exact(DENSE[:3]), 0.60), "3 of the 4 points that a fit needs")
-        # Far from jamming, with errors of 10 %: any phi_m would do.
+        # Far from jamming and with errors of 10 % any phi_m fits.
         far = refusal(fit_law, truth.exact((0.40, 0.42, 0.44, 0.46), 0.1), 0.46)
         self.assertRegex(far, "^the points do not bound it from above")
-        # A fraction that flows beyond the one where the points diverge.
+        # A flowing point lies beyond the divergence of the others.
         beyond = refusal(fit_law, truth.exact(), 0.66)
         self.assertRegex(beyond, "^the points rise more steeply than any power law that diverges above 0.66, which")
         falling = [(phi, 100 / value, 1 / value, 16) for phi, value, _, _ in truth.exact()]
@@ -117,14 +117,14 @@ class TheLaw(unittest.TestCase):
 
 
 def sampled(generator, mean, seeds, deviation=0.06):
-    """Mean, standard error and number of seeds with this relative deviation."""
+    """Returns mean, standard error and number of seeds with this relative standard deviation."""
     values = mean * (1 + deviation * generator.standard_normal(seeds))
     return values.mean(), values.std(ddof=1) / math.sqrt(seeds), seeds
 
 
 def until_known(generator, mean):
-    """As many seeds, of 8, 10, 12 ... 64, as make the 95 % interval narrower than 3 %: points whose spread comes out
-    small by luck have fewer."""
+    """Samples 8, 10, 12 ... 64 seeds until the 95 % interval is narrower than 3 %. Points with a small sample
+    spread by chance get fewer seeds."""
     values = mean * (1 + 0.06 * generator.standard_normal(64))
     for seeds in range(8, 65, 2):
         own = values[:seeds]
@@ -135,10 +135,10 @@ def until_known(generator, mean):
 
 
 class Coverage(unittest.TestCase):
-    """Of intervals from points whose spread is estimated from their seeds."""
+    """Coverage of intervals from points whose spread is estimated from their seeds."""
 
     def coverage(self, point_of, curves=1000):
-        """Shares of intervals, and of standard errors, that hold the truth; no curve is refused."""
+        """Returns the shares of intervals and of standard errors that contain the truth; refuses no curve."""
         truth, generator = Truth(), np.random.default_rng(20)
         held = within = 0
         for _ in range(curves):
@@ -147,14 +147,14 @@ class Coverage(unittest.TestCase):
             within += abs(law.phi_m[0] - truth.fraction) <= law.phi_m[1]
         return held / curves, within / curves
 
-    # Binomial bounds that chance leaves once in a thousand: 0.95 ± 3.3 sqrt(0.95 0.05 / 1000) = 0.95 ± 0.023, and of
-    # one standard error 0.683 ± 0.049. max(1, chi^2 / degrees) only widens: that may cost 0.01, and 0.05.
+    # Binomial bounds at a probability of one in a thousand: 0.95 ± 3.3 sqrt(0.95 0.05 / 1000) = ± 0.023, and
+    # 0.683 ± 0.049 for one standard error. The factor max(1, chi^2 / degrees) adds up to 0.01 and 0.05.
     def test_of_eight_seeds(self):
         held, within = self.coverage(lambda generator, mean: sampled(generator, mean, 8))
         self.assertTrue(0.95 - 0.023 <= held <= 0.95 + 0.033, held)
         self.assertTrue(0.683 - 0.049 <= within <= 0.683 + 0.099, within)
 
-    # Without allowing for the uncertain spread of four seeds they hold it 88 % of the time.
+    # Without a correction for the uncertain spread of four seeds the coverage is 88 %.
     def test_of_four_seeds(self):
         self.assertGreaterEqual(self.coverage(lambda generator, mean: sampled(generator, mean, 4))[0], 0.95 - 0.023)
 
@@ -163,8 +163,8 @@ class Coverage(unittest.TestCase):
         self.assertGreaterEqual(held, 0.95 - 0.023)
         self.assertGreaterEqual(within, 0.683 - 0.049)
 
-    # Of 4 curves in 100 campaigns, whose errors hang together by the exponent: bounds as if 100 were independent,
-    # 0.95 - 3.3 sqrt(0.95 0.05 / 100) and 0.683 - 3.3 sqrt(0.22 / 100).
+    # 4 curves in 100 campaigns have errors correlated by the exponent. The bounds are those of 100
+    # independent ones: 0.95 - 3.3 sqrt(0.95 0.05 / 100) and 0.683 - 3.3 sqrt(0.22 / 100).
     def test_of_a_common_exponent(self):
         generator = np.random.default_rng(21)
         held = within = exponents = 0
@@ -206,10 +206,11 @@ class ACommonExponent(unittest.TestCase):
             self.assertEqual(law.exponent, common.exponent)
 
     def test_many_curves_know_it_better_than_one(self):
-        """Curves alike tell the exponent as one with more seeds does: its error falls with the root of their number.
-        Each phi_m keeps the larger part of its own error, and is known better than with an exponent of its own:
+        """Equal curves determine the exponent like one curve with more seeds: its error falls as the root of
+        their number. Each phi_m keeps the larger part of its error, and is known better than with an exponent
+        of its own:
             var(phi_m) = var given beta + (d phi_m / d beta)^2 var(beta),
-        whose second part is a ninth of what it was."""
+        whose second term is a ninth of its value for one curve."""
         points, flowing = curve_of(Truth(0.64, 1.8, 1.4), 1e-4)
         alone, (common, laws) = fit_law(points, flowing), fit_common_law([(points, flowing)] * 9)
         self.assertAlmostEqual(alone.exponent[1] / common.exponent[1], 3, delta=0.1)
@@ -239,7 +240,7 @@ class ACommonExponent(unittest.TestCase):
         self.assertEqual(str(why), "no exponent from 0.25 to 6 describes two curves or more together")
         self.assertEqual(laws, [why, why])
 
-    # With errors of half the value the steepest exponent is as good as the true one.
+    # With errors of half the value the steepest exponent fits as well as the true one.
     def test_is_refused_where_the_points_do_not_bound_it(self):
         why, laws = fit_common_law([curve_of(truth, 0.5) for truth in TRUTHS[:2]])
         self.assertRegex(str(why), "^the points do not bound the common exponent: smaller errors, or points nearer")
@@ -248,7 +249,7 @@ class ACommonExponent(unittest.TestCase):
 
 class TheSteepestRise(unittest.TestCase):
     def step(self, middle, error):
-        """A smooth step of height 100 at `middle`, and a fixed error."""
+        """Returns a smooth step of height 100 at `middle`, with a fixed error."""
         fractions = [0.5 + 0.005 * i for i in range(21)]
         return [(phi, 20 + 50 * (1 + math.tanh((phi - middle) / 0.004)), error, 8) for phi in fractions]
 
@@ -260,8 +261,8 @@ class TheSteepestRise(unittest.TestCase):
         self.assertFalse(found.to_jammed)
 
     def test_errors_of_the_values_make_it_wider(self):
-        """Half-way between two intervals both have the same slope, and a draw is in the other one half of the time: the
-        mean square is spacing^2 / 2, give or take five times its own error, sqrt(0.25 / 2000)."""
+        """Midway between two intervals both have equal slopes, so a draw picks the other one half of the
+        time. The mean square is spacing^2 / 2, within five times its error, sqrt(0.25 / 2000)."""
         found = find_steepest(self.step(0.53, 2))
         squares = (found.phi_m[1] / 0.005) ** 2 - 1 / 12
         self.assertAlmostEqual(squares, 0.5, delta=5 * math.sqrt(0.25 / 2000))
@@ -278,7 +279,7 @@ class TheSteepestRise(unittest.TestCase):
 
 
 def point(phi, state="flowing", mean=None, relative=0.01, **more):
-    """A point of a curve, as the program gives it."""
+    """Returns a point of a curve in the program's format."""
     numbers = {"mean": mean, "standard_error": mean and relative * mean, "count": 8 if mean else 0}
     seeds = {"seeds": 8, "jammed": 8 if state == "jammed" else 0, "cpu_seconds": 10}
     overlaps = {"overlap": 1e-4 if mean else None, "largest_overlap": 5e-3 if mean else None}
@@ -290,7 +291,7 @@ def curve(points, name="", settings=()):
 
 
 def law_and_jam(truth=Truth()):
-    """Six points of the law and one that is jammed."""
+    """Returns six points of the law and a jammed one."""
     return [*(point(phi, mean=truth.at(phi)) for phi in GRID[:-1]), point(GRID[-1], "jammed")]
 
 
@@ -318,7 +319,7 @@ class Estimates(unittest.TestCase):
             self.assertEqual(found.remarks, [])
 
     def test_the_law_is_of_flowing_points_above_the_bound(self):
-        # 1.4 (1 - 0.45 / 0.65)^-1.6 = 9.22 is below 10, 0.50 gives 14.6.
+        # 1.4 (1 - 0.45 / 0.65)^-1.6 = 9.22 is below 10; 0.50 gives 14.6.
         self.assertEqual(len(one_estimate(law_and_jam()).fitted), 5)
         self.assertEqual(len(one_estimate(law_and_jam(), above=9).fitted), 6)
         few = "3 of the 4 flowing points with a viscosity above 25 that it needs"
@@ -343,11 +344,11 @@ class Estimates(unittest.TestCase):
         self.assertIn("0.6 (1 of 8): left out, some seeds jammed", said(found))
         self.assertIn("0.62: left out, half of the seeds or more were lost", said(found))
         self.assertIn("0.66: left out, no seed has ended yet", said(found))
-        self.assertNotIn("0.57", said(found))  # jammed has its column
+        self.assertNotIn("0.57", said(found))  # jammed points have a column
         largest = point(0.5, "soft", mean=20, overlap=None, largest_overlap=0.0101)
         self.assertIn("0.5 (overlap 0.01 at most): left out, soft", said(one_estimate([largest])))
 
-    # A fraction that flows, if only by a few seeds, is below phi_m.
+    # A volume fraction at which some seeds flow is below phi_m.
     def test_a_point_needs_four_seeds_and_a_spread(self):
         found = one_estimate([point(0.62, mean=50, count=3)])
         self.assertEqual((found.flowing, found.largest_flowing, found.fitted), (1, 0.62, []))
@@ -383,7 +384,7 @@ class Proposals(unittest.TestCase):
     def test_halve_what_is_between_flowing_and_jammed(self):
         estimate = flowing_and_jammed([0.56, 0.60], [0.66, 0.70])
         self.assert_next(estimate, [], 0.63)
-        # The widest gap of what is left, the lower one first.
+        # The widest remaining gap, the lower one first.
         self.assert_next(estimate, [0.63], 0.615)
         self.assert_next(estimate, [0.63, 0.615], 0.645)
 
@@ -394,14 +395,14 @@ class Proposals(unittest.TestCase):
         self.assertIsNone(next_fraction(flowing_and_jammed([], [0.01])))
 
     def test_lessen_the_error_of_the_law_most(self):
-        """The best fraction by trying: the law is fitted again with a point more at each, of the same error."""
+        """Compares with the best fraction by trial: fits with a further point of equal error."""
         flowing = [0.50, 0.53, 0.56, 0.58, 0.60]
         found, _ = next_fraction(flowing_and_jammed(flowing, [0.66]))
 
         def error_with(phi):
             return fit_law(Truth().exact([*flowing, phi], 1e-4), max(0.60, phi)).phi_m[1]
 
-        # Up to half-way from 0.60 to 0.65.
+        # The proposal is at most midway between 0.60 and 0.65.
         self.assertLessEqual(found, 0.625 + 1e-9)
         for phi in np.arange(0.502, 0.6245, 0.004):
             self.assertLessEqual(error_with(found), 1.001 * error_with(phi), phi)
@@ -410,8 +411,8 @@ class Proposals(unittest.TestCase):
     def test_are_as_many_as_the_budget_pays(self):
         estimates = [flowing_and_jammed([0.5, 0.6], [0.66]), flowing_and_jammed([0.4, 0.5], [0.60])]
         points, cost, _ = propose(estimates)
-        self.assertEqual([phi for phi, _ in points], [0.63, 0.55])  # one a curve
-        self.assertEqual(cost, 20)  # the dearest point of both curves
+        self.assertEqual([phi for phi, _ in points], [0.63, 0.55])  # one per curve
+        self.assertEqual(cost, 20)  # the most expensive point of both curves
         self.assertEqual(len(propose(estimates, 79)[0]), 3)
         self.assertLessEqual(len(propose(estimates, 1e9)[0]), 20)
         points, _, obstacle = propose(estimates, 19)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""package_test.py PECLET ENGINE: the Python package says of a campaign what `peclet export` says, and draws it."""
+"""package_test.py PECLET ENGINE: compares the Python package with `peclet export`, and tests figures."""
 import json
 import os
 import signal
@@ -45,7 +45,7 @@ def export_of(path):
     return json.loads(subprocess.run([PECLET, "export", path], check=True, capture_output=True).stdout)
 
 
-# No suspension flows under a stress that would need less than 1 + 2.5 phi: the first point stands still.
+# Relative viscosities exceed 1 + 2.5 phi, so the first jammed viscosity, 1.5, makes the first point jam.
 UNDER_STRESS = SCENE | {
     "fluid": {"viscosity": 1},
     "particles": SCENE["particles"] | {"density": 0.001},
@@ -155,7 +155,7 @@ class OfACampaign(unittest.TestCase):
     def test_a_trajectory_has_the_frames_of_its_seed(self):
         label = self.results.estimates()["label"][0]
         frames = self.results.trajectory(label, 1)
-        self.assertGreaterEqual(len(frames), 4)  # a strain of 0.2 in twentieths
+        self.assertGreaterEqual(len(frames), 4)  # a strain of 0.2 in steps of a twentieth
         self.assertEqual(frames[0].particles.N, 20)
         with self.assertRaisesRegex(peclet.PecletError, f"nowhere: must be the label of one point.*{label}"):
             self.results.trajectory("nowhere")
@@ -288,7 +288,7 @@ class Files(unittest.TestCase):
         self.assertEqual((document["scene"]["peclet"], document["scene"]["volume_fraction"]), (2, 0.25))
 
 
-# Plays peclet: says that it is there, and after a signal how many came within a second.
+# Replaces peclet: reports that it runs, and after a signal the signals of the next second.
 PROGRAM = f"""#!{sys.executable}
 import signal, sys, time
 came = []
@@ -307,7 +307,7 @@ sys.exit(75)
 
 class Interrupted(unittest.TestCase):
     def came(self, send):
-        """What comes at the program when `send` does something to Python, which calls run()."""
+        """Returns the signals that reach the program when `send` acts on Python, which calls run()."""
         with tempfile.TemporaryDirectory() as folder:
             program = Path(folder, "program")
             program.write_text(PROGRAM)
@@ -462,7 +462,7 @@ class Installed(unittest.TestCase):
     def test_by_pip_from_the_checkout_it_imports_with_the_version_of_the_project(self):
         with tempfile.TemporaryDirectory() as folder:
             pip = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--no-build-isolation"]
-            # pip builds where the source is: in a copy, so that nothing is left in the checkout.
+            # pip builds in the source folder, so it gets a copy and leaves the checkout clean.
             subprocess.run(["cp", "-r", ROOT / "python", os.path.join(folder, "source")], check=True)
             target = os.path.join(folder, "target")
             subprocess.run([*pip, "--target", target, os.path.join(folder, "source")], check=True, capture_output=True)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""page_test.py PECLET [FOLDER]: runs the examples of docs/python.md in an empty folder; FOLDER gets their figures."""
+"""page_test.py PECLET [FOLDER]: runs the examples of docs/python.md; FOLDER gets their figures."""
 import os
 import re
 import shutil

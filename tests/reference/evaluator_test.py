@@ -1,6 +1,5 @@
 #!/usr/bin/python3
-"""The evaluator of forces, by what any right one must obey: gradients of energies, conservation and invariance. No
-engine takes part."""
+"""Tests of the evaluator by gradients of energies, conservation and invariance, without any engine."""
 import copy
 import json
 import unittest
@@ -18,7 +17,7 @@ MONTI = json.loads((Path(__file__).resolve().parent / "monti.json").read_text())
 
 
 class Energies(unittest.TestCase):
-    """Forces that have an energy are minus its gradient, by central differences."""
+    """Conservative forces are minus the gradient of their energy, by central differences."""
 
     @staticmethod
     def contact_energy(pairs):
@@ -66,7 +65,7 @@ class Energies(unittest.TestCase):
 
 class Box(unittest.TestCase):
     def configurations(self):
-        """Without springs, which are named by their images."""
+        """Yields configurations without springs, which are named by their images."""
         for scene in (QUIET, MONTI):
             scene = {**scene, "contact": {**scene["contact"], "friction": 0.0}}
             configuration = random_configuration("1-1.4", scene, 4)

@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""forces.py make MIXTURE SEED [--scene SCENE.json]    print a case: a random configuration and the answer expected
-forces.py check ENGINE [--seeds N] [--scene FILE]  compare the engine with the evaluator on random configurations
-forces.py packing ENGINE FINAL.xyz [--scene FILE]  the same on a packing that an engine has left, of any size
-forces.py confirm [CASE.json...]                   compare stored cases (those of forces/) with the evaluator
+"""forces.py make MIXTURE SEED [--scene SCENE.json]   prints a case: a random configuration and its answer
+forces.py check ENGINE [--seeds N] [--scene FILE]  compares the engine with the evaluator on random ones
+forces.py packing ENGINE FINAL.xyz [--scene FILE]  compares on an engine's packing, of any size
+forces.py confirm [CASE.json...]                   compares stored cases (those of forces/) with the evaluator
 
-Forces, torques, stresses and advanced springs by the evaluator beside this file (README.md). Differences are relative
-to the largest number of a term; more than 1e-10 is an error.
+Compares forces, torques, stresses and advanced springs with the evaluator beside this file (README.md).
+Differences are relative to the largest number of a term; more than 1e-10 is an error.
 """
 import argparse
 import json
@@ -24,7 +24,7 @@ CASES = Path(__file__).resolve().parent / "forces"
 
 
 class Comparison:
-    """What was compared, and the worst of it."""
+    """The number of comparisons and the worst differences."""
 
     def __init__(self):
         self.count, self.failures, self.worst = 0, 0, {}
@@ -73,7 +73,7 @@ def answer_of(engine, configuration):
 
 
 def variants(scene, seed):
-    """All terms with other numbers for each seed; and the laws of one block alone."""
+    """Yields scenes of all terms, with other numbers for each seed, and of each block's laws alone."""
     scene = varied(scene, np.random.default_rng(seed))
     yield "all terms", scene
     for block in PAIR_TERMS:

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
-"""The laws of the evaluator of forces, by what any right one must obey: conservation, invariance, dissipation,
-fluctuation and dissipation, and numbers worked out by hand. No engine takes part."""
+"""Tests of the evaluator's laws, without any engine: conservation, invariance, dissipation,
+fluctuation-dissipation, and numbers calculated by hand.
+"""
 import copy
 import json
 import unittest
@@ -17,7 +18,7 @@ MONTI = json.loads((Path(__file__).resolve().parent / "monti.json").read_text())
 
 
 def some_pairs(count, radius_i=None, radius_j=None, gap=None):
-    """Pairs of any sizes, directions and velocities; xi from overlap to half of the mean radius."""
+    """Returns pairs of any sizes, directions and velocities; xi from overlap to half of the mean radius."""
     a_i = GENERATOR.uniform(0.3, 7, count) if radius_i is None else np.full(count, float(radius_i))
     a_j = GENERATOR.uniform(0.3, 7, count) if radius_j is None else np.full(count, float(radius_j))
     xi = GENERATOR.uniform(-0.02, 0.5, count) if gap is None else np.full(count, float(gap))
@@ -30,7 +31,7 @@ def some_pairs(count, radius_i=None, radius_j=None, gap=None):
 
 
 def turned(pairs, rotation):
-    """The same pairs, looked at from elsewhere."""
+    """Returns the pairs in a rotated frame."""
     vectors = ("separation", "velocity_i", "velocity_j", "spin_i", "spin_j")
     result = copy.copy(pairs)
     for name in vectors:
@@ -39,7 +40,7 @@ def turned(pairs, rotation):
 
 
 def rigidly_moved(pairs):
-    """With the velocities of one rigid body."""
+    """Returns the pairs with the velocities of a rigid body."""
     velocity, spin = GENERATOR.normal(size=(2, 3))
     result = copy.copy(pairs)
     result.velocity_i = np.broadcast_to(velocity, pairs.separation.shape)
@@ -49,7 +50,7 @@ def rigidly_moved(pairs):
 
 
 def power(pairs, force, torque_i=0.0, torque_j=0.0):
-    """Of a load on the motion of each pair."""
+    """Returns the power of a load on the motion of each pair."""
     parts = force * (pairs.velocity_i - pairs.velocity_j) + torque_i * pairs.spin_i + torque_j * pairs.spin_j
     return parts.sum(axis=1)
 
@@ -60,7 +61,7 @@ def spring_of(pairs):
 
 class Lubrication(unittest.TestCase):
     def test_of_equal_spheres_has_the_resistances_of_printed_tables(self):
-        # In units of 6 pi eta a: 1/(4 xi) + 9/40 ln(1/xi) and ln(1/xi)/6 (Kim & Karrila).
+        # Expected (Kim & Karrila), in units of 6 pi eta a: 1/(4 xi) + 9/40 ln(1/xi) and ln(1/xi)/6.
         for xi, squeeze, shear in ((1e-3, 251.55, 1.1513), (0.05, 5.674, 0.4993), (0.5, 0.6560, 0.11553)):
             found = lubrication.resistances(some_pairs(1, 1, 1, xi), 1.0, INNER)
             self.assertAlmostEqual(found[0][0] / (6 * np.pi), squeeze, delta=1e-4 * squeeze)
@@ -101,7 +102,7 @@ class Lubrication(unittest.TestCase):
 
 
 class LubricationInAFlow(unittest.TestCase):
-    """The form with rates of strain."""
+    """The form with strain rates."""
 
     sizes = GENERATOR.uniform(0.3, 7, (2, 50))
     g = strained_lubrication.mari_coefficients(*sizes)
@@ -111,20 +112,19 @@ class LubricationInAFlow(unittest.TestCase):
         for strain, motion, factor in (("XG", "XA", 1), ("YG", "YA", 0.5), ("YH", "YB", -0.5)):
             for places in ((0, 2), (1, 3)):
                 found = sum(self.g[strain][place] for place in places)
-                # Of forces, those on j are the opposite ones; of torques, Y_B of j is the one with index ji.
+                # Forces on j are opposite; for torques Y_B of j is the one with index ji.
                 row = 2 if places == (1, 3) and motion == "YB" else places[0]
                 np.testing.assert_allclose(found, factor * total * self.g[motion][row], rtol=1e-12)
 
     def test_exchanging_the_spheres_exchanges_the_indices(self):
         for name, values in strained_lubrication.mari_coefficients(*self.sizes[::-1]).items():
-            # The normal turns round: what is odd in it changes its sign.
+            # The normal is reversed, so functions odd in it change sign.
             sign = -1 if name in ("YB", "XG", "YG") else 1
             np.testing.assert_allclose(values[0], sign * self.g[name][3])
             np.testing.assert_allclose(values[1], sign * self.g[name][2])
 
     def test_near_contact_it_is_the_other_form_in_any_shear(self):
-        # They differ by terms of the order of xi; squeezing is 1 / xi stronger than the rest and is looked at by
-        # itself.
+        # They differ by terms of order xi. Squeezing, 1 / xi stronger, is compared by itself.
         pairs = some_pairs(50, gap=1e-6)
         shear = flow.Flow({"shear_rate": 0.7}, 10.0)
         ours, other = strained_lubrication.mari_lubrication(pairs, VISCOSITY, 0.0, shear), lubrication.lubrication(
@@ -141,7 +141,7 @@ class LubricationInAFlow(unittest.TestCase):
         pairs.velocity_i, pairs.velocity_j = shear.velocity(pairs.height_i), shear.velocity(pairs.height_j)
         pairs.spin_i, pairs.spin_j = shear.spin(pairs.height_i), shear.spin(pairs.height_j)
         force, *_ = strained_lubrication.mari_lubrication(pairs, VISCOSITY, 1e-3, shear)
-        approach = 0.7 * pairs.normal[:, 0] * pairs.normal[:, 1]  # n.E.n: positive where the flow parts them
+        approach = 0.7 * pairs.normal[:, 0] * pairs.normal[:, 1]  # n.E.n: positive if they separate
         self.assertTrue(np.all(np.sign(np.sum(force * pairs.normal, axis=1)) == np.sign(approach)))
 
 
@@ -155,8 +155,8 @@ class Flows(unittest.TestCase):
         np.testing.assert_allclose(self.waves.gradient(self.height), numeric, rtol=1e-8)
 
     def assert_mean(self, of, weight):
-        """Small spheres feel a mean: of a function of y alone, one over heights; Gauss-Legendre in 8 points. The next
-        term of the series is some (k a)^2 / 20 of this one."""
+        """Compares with a mean over a small sphere: of a function of y alone, over heights, by Gauss-Legendre
+        in 8 points. The next term of the series is about (k a)^2 / 20 of this one."""
         nodes, weights = np.polynomial.legendre.leggauss(8)
         radius = 0.1
         correction = of(self.height[:, None] + radius * nodes) @ (weights * weight(nodes)) - of(self.height)
@@ -164,7 +164,7 @@ class Flows(unittest.TestCase):
         np.testing.assert_allclose(found, correction, rtol=0, atol=4e-3 * abs(correction).max())
 
     def test_drag_is_by_the_mean_over_the_surface(self):
-        self.assert_mean(self.waves.speed, lambda height: 0.5)  # all heights have the same area
+        self.assert_mean(self.waves.speed, lambda height: 0.5)  # all heights have equal areas
 
     def test_stresslets_are_by_the_mean_over_the_volume(self):
         self.assert_mean(self.waves.gradient, lambda height: 0.75 * (1 - height**2))
@@ -182,7 +182,7 @@ class Contact(unittest.TestCase):
     pairs = some_pairs(200, gap=-0.01)
 
     def test_normal_force_parts_the_spheres_by_stiffness_times_overlap(self):
-        pairs = some_pairs(3, 1, 3, -0.01)  # an overlap of 0.01 (1 + 3) / 2
+        pairs = some_pairs(3, 1, 3, -0.01)  # overlap 0.01 (1 + 3) / 2
         force = contact.contact_normal(pairs, 1e4)
         np.testing.assert_allclose(force, -200 * pairs.normal, rtol=1e-10)
 

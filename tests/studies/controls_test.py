@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Control variates against their formulas, and contacts of frames that are made up."""
+"""Control variates compared with their formulas, and contacts of constructed frames."""
 import sys
 import unittest
 from pathlib import Path
@@ -19,14 +19,14 @@ class CrossFitting(unittest.TestCase):
         np.testing.assert_allclose(found, 7)
 
     def test_leaves_the_mean_where_controls_are_odd_in_what_the_values_are_even_in(self):
-        # Values z^2 - 1, control z: a fit of all 40 of a set has the bias -E[(z^2 - 1) z^2] / 40 = -0.05. The mean of
-        # 400 sets has a standard error of sqrt(2 / 16000) = 0.011; the seed is fixed.
+        # Values z^2 - 1, control z: a fit of all 40 of a set has the bias -E[(z^2 - 1) z^2] / 40 = -0.05. The
+        # mean of 400 sets has a standard error of sqrt(2 / 16000) = 0.011. The seed is fixed.
         z = np.random.default_rng(2).normal(size=(400, 40))
         means = [cross_fitted(row**2 - 1, row[:, None]).mean() for row in z]
         self.assertAlmostEqual(np.mean(means), 0, delta=0.03)
 
     def test_never_uses_a_realisation_for_its_own_coefficients(self):
-        # With as many controls as others to fit to, a fit of everything would leave nothing.
+        # A common fit with 30 controls would leave little; each value is fitted by 30 others.
         generator = np.random.default_rng(3)
         values, controls = generator.normal(size=40), generator.normal(size=(40, 30))
         self.assertGreater(cross_fitted(values, controls).var(), values.var())
@@ -34,8 +34,8 @@ class CrossFitting(unittest.TestCase):
 
 class Ratios(unittest.TestCase):
     def test_of_independent_halves_are_a_half(self):
-        # Var(a) / Var(a + b) of normal a, b, whose squared correlation is 1/2: its relative error is sqrt(4 (1 - 1/2) /
-        # n), 0.0316 at 2000.
+        # Var(a) / Var(a + b) of normal a, b with squared correlation 1/2: its relative error is
+        # sqrt(4 (1 - 1/2) / n), 0.0316 at n = 2000.
         a, b = np.random.default_rng(4).normal(size=(2, 2000))
         value, error = variance_ratio(a + b, a)
         self.assertAlmostEqual(value, 0.5, delta=0.08)
@@ -51,7 +51,7 @@ class Contacts(unittest.TestCase):
         return np.array(rows, dtype=int).reshape(-1, 2)
 
     def test_last_as_many_frames_as_they_are_there(self):
-        # One contact in frames 1 and 2, another one in 3 ... 6: three frames on the mean.
+        # A contact in frames 1 and 2, another in 3 ... 6: three frames on average.
         one, other = self.pairs((0, 1)), self.pairs((1, 2))
         frames = [self.pairs(), one, one, other, other, other, other, self.pairs()]
         self.assertEqual(lifetime(frames), 3)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Numbers with standard errors, and fits, against printed tables and formulas."""
+"""Numbers with standard errors, and fits, compared with printed tables and formulas."""
 import math
 import os
 import sys
@@ -91,7 +91,7 @@ class Functions(unittest.TestCase):
     def test_propagated_errors_of_a_sum_are_those_of_the_formula(self):
         value, error = propagated([(1, 3), (2, 4)], sum)
         self.assertEqual(value, 3)
-        # 400 draws know a standard deviation to 1 / sqrt(800): 3.5 %. The seed is fixed.
+        # 400 draws give a standard deviation to 1 / sqrt(800) = 3.5 %. The seed is fixed.
         self.assertAlmostEqual(error, 5, delta=0.5)
 
     def test_propagated_errors_of_several_numbers_come_from_the_same_draws(self):
@@ -106,7 +106,7 @@ class Jackknife(unittest.TestCase):
     def test_of_a_mean_has_the_error_of_the_mean(self):
         value, error = jackknife(lambda chosen: self.values[chosen].mean(), 5)
         self.assertAlmostEqual(value, 5.6)
-        self.assertAlmostEqual(error, math.sqrt(12.8 / 5))  # the variance of these is 12.8
+        self.assertAlmostEqual(error, math.sqrt(12.8 / 5))  # their variance is 12.8
 
     def test_of_several_numbers_has_an_error_for_each(self):
         _, (first, second) = jackknife(lambda chosen: (self.values[chosen].mean(), 3 * self.values[chosen].mean()), 5)
@@ -123,7 +123,7 @@ class Fits(unittest.TestCase):
         self.assertAlmostEqual(error, 0.5 / math.sqrt(14 / 3))
 
     def test_weights_draw_a_line_to_points_with_small_errors(self):
-        # Two exact points and one that nobody knows.
+        # Two exact points and one without weight.
         _, slope, _ = line_through([0, 1, 2], [0, 1, 50], [1e-3, 1e-3, 1e6])
         self.assertAlmostEqual(slope, 1)
 
@@ -138,7 +138,7 @@ class Fits(unittest.TestCase):
         self.assertAlmostEqual(constants[0], 5)
         self.assertAlmostEqual(slopes[0], 2)
         self.assertAlmostEqual(left[0], 0)
-        # Means 4/3 and 9; sum of products 2, of squares 2/3, of squares of the values 8.
+        # Means 4/3 and 9; sum of products 2, of squares 2/3, of squared values 8.
         self.assertAlmostEqual(slopes[1], 3)
         self.assertAlmostEqual(constants[1], 5)
         self.assertAlmostEqual(left[1], 2)
@@ -153,7 +153,7 @@ class Fits(unittest.TestCase):
         self.assertEqual(log_minimum([1, 10, 100], [3, 2, 1]), 2)
 
     def test_thickening_is_from_the_minimum_to_most_of_the_rise(self):
-        # Vertex at 10; ln from 0 to 3, of which 2.85 is reached after 0.85 of the last decade.
+        # The vertex is at 10. ln rises from 0 to 3, and reaches 2.85 after 0.85 of the last decade.
         values = np.exp([2, 0, 2, 3])
         self.assertAlmostEqual(log_of_share([1, 10, 100, 1000], values, 0.95), 2.85)
         self.assertAlmostEqual(thickening_decades([1, 10, 100, 1000], values), 1.85)
@@ -203,7 +203,7 @@ class Jamming(unittest.TestCase):
 
 
 class Packings(unittest.TestCase):
-    """The models, whose papers print where they start from."""
+    """The packing models, compared with the starting values printed in their papers."""
 
     RADII = 1, 1.4, 5, 7
 
@@ -215,7 +215,7 @@ class Packings(unittest.TestCase):
             self.assertAlmostEqual(linear_mixture(alpha, 0.2, 0.6, 0.64), dense)
 
     def test_small_spheres_that_fit_into_any_hole_take_no_place(self):
-        # Ratio 0: 1 / phi = 1 / 0.64 less the volume of the small ones, and phi_m + phi_m (1 - phi_m) at its largest.
+        # Ratio 0: 1 / phi = 1 / 0.64 less the small volume; the maximum is phi_m + phi_m (1 - phi_m).
         self.assertAlmostEqual(linear_mixture(0.9, 0, 0.64, 0.64), 0.64 / 0.9)
         best = 0.64 / (0.64 + 0.36 * 0.64)
         self.assertAlmostEqual(linear_mixture(best, 0, 0.64, 0.64), 0.64 + 0.36 * 0.64)
@@ -232,7 +232,7 @@ class Packings(unittest.TestCase):
         self.assertAlmostEqual(again, one, delta=1e-5)
 
     def test_chords_are_as_long_as_four_volumes_over_surface(self):
-        # Cauchy: 4 V / S = 4 R / 3 of a sphere, and of all spheres together.
+        # Cauchy: 4 V / S = 4 R / 3 for a sphere, and for all spheres together.
         numbers = [share / r**3 for share, r in zip(self.shares(0.5), self.RADII)]
         mean = 4 / 3 * sum(n * r**3 for n, r in zip(numbers, self.RADII))
         mean /= sum(n * r**2 for n, r in zip(numbers, self.RADII))
@@ -240,7 +240,7 @@ class Packings(unittest.TestCase):
 
 
 class AtRest(unittest.TestCase):
-    """From the study of it, and from slow shear where that has no row."""
+    """Results at rest, from the study or from slow shear if the study lacks a row."""
 
     def rows(self, tables):
         with tempfile.TemporaryDirectory() as folder:

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What the pictures of studies have in them."""
+"""Content of the figures of studies."""
 import math
 import os
 import struct

@@ -1,6 +1,5 @@
 #!/usr/bin/python3
-"""Bins of flows that vary, maps that are learned from them, and profiles that are solved for, by examples with known
-answers."""
+"""Bins of inhomogeneous flows, maps learned from them and solved profiles, by examples with known answers."""
 import math
 import os
 import sys
@@ -30,7 +29,7 @@ FLOW = Flow("one", [wave(0.3)], 50, 0.5, 40, 100)
 
 
 def profiles_of(fraction, velocity, stress, variance):
-    """As a result has them."""
+    """Returns profiles in the format of a result."""
     return {
         "volume_fraction": fraction,
         "velocity": {"flux": (fraction * velocity).tolist(), "volume_fraction": fraction},
@@ -73,7 +72,7 @@ class Bins(unittest.TestCase):
         velocity = 0.2 * np.sin(2 * math.pi * (2 * np.arange(25) + 1) / 50)
         stress = np.array([np.full(25, s) for s in (-3.0, -2.0, -1.0, 0.5)])
         (row, *_) = bin_rows(FLOW, [profile_of(FLOW, profiles_of(fraction, velocity, stress, np.full(25, 0.04)))] * 2)
-        # Central differences of a sine over two bins of 2.
+        # Central differences of a sine over two bins of width 2.
         rate = 0.2 * math.cos(2 * math.pi / 50) * math.sin(4 * math.pi / 50) / 2
         self.assertAlmostEqual(row["rate"], rate)
         self.assertAlmostEqual(row["pressure"], 2)
@@ -85,8 +84,8 @@ class Bins(unittest.TestCase):
         self.assertAlmostEqual(row["largest share"], 0.6)
 
     def test_symmetries_are_those_of_the_driving(self):
-        # A sine: half a turn about its zeros, sides changed about its crests, sign changed by half its length.
-        self.assertEqual(len(symmetries(FLOW.driving_of_bins())), 2)  # crests of 25 bins lie on no middle or edge
+        # A sine: half a turn about zeros, reflection at crests, change of sign after half its length.
+        self.assertEqual(len(symmetries(FLOW.driving_of_bins())), 2)  # crests of 25 bins are off-centre
         sine = Flow("sine", [wave(0.1)], 16, 0.5, 1, 1).driving_of_bins()  # 8 bins
         found = {(tuple(image.tolist()), sign, shear) for image, sign, shear in symmetries(sine)}
         self.assertEqual(
@@ -99,7 +98,7 @@ class Bins(unittest.TestCase):
             },
         )
         self.assertEqual(distinct_bins(sine), [0, 1])
-        # sin(2 pi y / 16 + 3 pi / 8) has crests in the middle of bins 0 and 4, where its mirror leaves no rate.
+        # sin(2 pi y / 16 + 3 pi / 8) has crests at the centres of bins 0 and 4, where the rate is zero.
         crests = Flow("crests", [wave(math.cos(3 * math.pi / 8), 1, math.sin(3 * math.pi / 8))], 16, 0.5, 1, 1)
         self.assertEqual(len(symmetries(crests.driving_of_bins())), 4)
         self.assertEqual(distinct_bins(crests.driving_of_bins()), [1, 2])
@@ -127,7 +126,7 @@ class Bins(unittest.TestCase):
         self.assertEqual([row["y"] for row in symmetric_bin_rows(sine, [mean, mean])], [1, 3])
 
     def test_errors_are_those_of_a_mean(self):
-        """For what is linear, the jackknife is the standard error of the mean."""
+        """For linear functions the jackknife gives the standard error of the mean."""
         stress = np.array([np.full(25, s) for s in (-1.0, -1.0, -1.0, 0.5)])
         values = [0.50, 0.52, 0.51, 0.55]
         profiles = [
@@ -141,11 +140,11 @@ class Bins(unittest.TestCase):
         shape = np.cos(np.arange(20) * 2 * math.pi / 20)
         halves = np.array([1, 1, 1.1, 1.1])
         seeds = [0.5 + halves[:, None] * shape * (1 + e) for e in (-0.1, 0.1)]
-        # By a tenth of the first half, which is 1 / 1.05 of the mean: (0.1 * 0.9, 0.1 * 1.1) / 1.05.
+        # Growth by a tenth of the first half, which is 1 / 1.05 of the mean: (0.1 * 0.9, 0.1 * 1.1) / 1.05.
         value, error = growth(seeds)
         self.assertAlmostEqual(value, 0.1 / 1.05)
         self.assertAlmostEqual(error, 0.01 / 1.05)
-        other = np.sin(np.arange(20) * 2 * math.pi / 20)  # another shape, in the last quarter alone
+        other = np.sin(np.arange(20) * 2 * math.pi / 20)  # another shape, only in the last quarter
         noisy = [one + np.outer([0, 0, 0, 1], e * other) for one, e in zip(seeds, (3.0, -3.0))]
         self.assertAlmostEqual(growth(noisy)[0], 0.1 / 1.05)
 
@@ -165,7 +164,7 @@ class Maps(unittest.TestCase):
         model = LawOfFraction(("J", "fraction", "mean"), "mu").fit(table)
         new = {"fraction": np.array([0.58]), "J": np.array([1e-2]), "mean": np.array([0.58])}
         self.assertAlmostEqual(model.predict(new)[0], 1e-2 / (3 * 0.08**2), places=6)
-        # ln J from 1e-4 to 5e-2 was seen.
+        # The training range of ln J is 1e-4 to 5e-2.
         beyond = model.beyond({"fraction": np.array([0.55]), "J": np.array([5e-1]), "mean": np.array([0.55])})
         self.assertAlmostEqual(beyond[0], math.log(10) / math.log(500))
 
@@ -185,7 +184,7 @@ class Solver(unittest.TestCase):
         np.testing.assert_allclose(found, expected, atol=1e-12)
 
     def test_a_fluid_of_one_viscosity_lags_by_its_momentum_balance(self):
-        """eta u'' = -c phi (u_driving - u), with second differences in the place of u''."""
+        """eta u'' = -c phi (u_driving - u), with second differences in place of u''."""
         wave_number, viscosity, fraction = 2 * math.pi / 100, 1.7, 0.5
         driving = np.sin(wave_number * self.Y)
         found = velocity_of(driving, np.full(50, fraction), np.full(50, viscosity), 2.0)
@@ -200,7 +199,7 @@ class Solver(unittest.TestCase):
         self.assertAlmostEqual(drag_by_share(0.0), 4.5 * VISCOSITY)  # 6 pi eta / (4 pi / 3)
 
     def test_the_shear_stress_is_the_integral_of_the_drag(self):
-        """d sigma / dy = -c phi a sin ky; by trapezia, c phi a w cos ky / (2 tan(k w / 2)), 0 with the rate."""
+        """d sigma / dy = -c phi a sin ky; by trapezia c phi a w cos ky / (2 tan(k w / 2)), or 0."""
         wave_number = 2 * math.pi / 100
         table = {
             "largest share": np.full(50, 0.6),
@@ -213,7 +212,7 @@ class Solver(unittest.TestCase):
         np.testing.assert_allclose(stress_of_drag(table, 2.0), expected, atol=1e-12)
 
     class OfOneViscosity:
-        """mu = 3 J, and the mean volume fraction everywhere."""
+        """A law with mu = 3 J and the mean volume fraction everywhere."""
 
         reach = 1.0
 
@@ -224,7 +223,7 @@ class Solver(unittest.TestCase):
             return 3 * j, np.full(len(j), FLOW.fraction)
 
     def test_a_law_of_one_viscosity_gives_its_fluid(self):
-        """sigma = mu P = 3 eta du/dy, whatever the pressure."""
+        """Expected: sigma = mu P = 3 eta du/dy for any pressure."""
         found = solve(FLOW, self.OfOneViscosity())
         bend = (2 / 2.0 * math.sin(2 * math.pi / 50 * 2.0 / 2)) ** 2
         lag = 1 + 3 * VISCOSITY * bend / (DRAG * FLOW.fraction)
@@ -236,7 +235,7 @@ class Solver(unittest.TestCase):
             solve(FLOW, self.OfOneViscosity(), most=3)
 
     def test_a_law_is_found_with_its_reach(self):
-        """Bins whose Theta is spread by 3, and whose mu and phi are those of a law of second degree."""
+        """Bins whose Theta is spread by 3, with mu and phi of a law of second degree."""
         y = (np.arange(50) + 0.5) * 2
         uniform = {"fraction": np.array([0.4, 0.5, 0.6]), "J": np.full(3, 1e-2)}
         uniform["Theta"] = uniform["J"] * np.exp(1 + 2 * uniform["fraction"])

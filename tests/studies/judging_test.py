@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""That studies judge alike when they judge again, from their tables alone; some draw their pictures on the way."""
+"""Tests that studies reach the same verdicts again from their tables alone; some also draw their figures."""
 import os
 import shutil
 import subprocess
@@ -18,7 +18,7 @@ def again(results, name):
 
 class Judging(unittest.TestCase):
     def test_again_gives_what_study_json_and_the_page_have(self):
-        """Of a copy, so that nothing of the source is written."""
+        """Works on a copy, so that nothing is written to the source."""
         self.assertGreaterEqual(len(JUDGED), 13)
         with tempfile.TemporaryDirectory() as folder:
             copy = os.path.join(folder, "results")
@@ -33,7 +33,7 @@ class Judging(unittest.TestCase):
                             self.assertEqual(a.read(), b.read())
 
     def test_without_what_rows_are_made_of_is_refused(self):
-        """Of a study that judges what its runs return, as some may."""
+        """Tests a study that judges the return values of its runs."""
         with tempfile.TemporaryDirectory() as folder:
             copy = os.path.join(folder, "results")
             shutil.copytree(os.path.join(RESULTS, "studies"), os.path.join(copy, "studies"))

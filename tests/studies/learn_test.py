@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""learn.py: what it makes of an export, of tables and of models, and what it refuses."""
+"""Tests of learn.py with exports, tables and models, and its refusals."""
 import csv
 import json
 import os
@@ -42,7 +42,7 @@ class Learn(unittest.TestCase):
         self.folder = Path(self._folder.name)
 
     def learn(self, *words):
-        """Exit code, output, errors."""
+        """Returns exit code, output and errors."""
         environment = {**os.environ, "PECLET": str(self.folder / "peclet")}
         done = subprocess.run(
             [LEARN, *map(str, words)], cwd=self.folder, env=environment, capture_output=True, text=True
@@ -50,7 +50,7 @@ class Learn(unittest.TestCase):
         return done.returncode, done.stdout, done.stderr
 
     def exporting(self, points, quarters=()):
-        """A peclet whose export has these points, and whose results have these volume fractions by seed and quarter."""
+        """Writes a peclet that exports these points, with volume fractions by seed and quarter."""
         (self.folder / "export").write_text(json.dumps({"campaign": "waves", "points": points}))
         blocks = ({"blocks": {"profiles": {"volume_fraction": one}}} for one in quarters)
         lines = [json.dumps({"deciding": True, "label": "one", "result": result}) for result in blocks]
@@ -60,7 +60,7 @@ class Learn(unittest.TestCase):
         program.chmod(program.stat().st_mode | stat.S_IXUSR)
 
     def table(self, flows=("a", "b", "c")):
-        """Bins with mu = 100 J, known to a tenth."""
+        """Writes bins with mu = 100 J, known to a tenth."""
         path = self.folder / "bins.csv"
         with open(path, "w", newline="") as f:
             writer = csv.writer(f)
@@ -127,7 +127,7 @@ class Learn(unittest.TestCase):
         code, text, errors = self.learn("predict", "mu.json", "new.csv")
         self.assertEqual(code, 0)
         self.assertIn("1 of 1 rows lie beyond what the model was trained on", errors)
-        # ln J from 1e-3 to 1e-2: another decade is one range more.
+        # The training range of ln J is 1e-3 to 1e-2, so another decade is beyond by one range.
         self.assertAlmostEqual(float(list(csv.DictReader(text.splitlines()))[0]["beyond"]), 1, places=2)
 
     def test_errors_are_of_flows_that_were_left_out(self):

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Scenes of Monti et al. against the groups that they publish."""
+"""Scenes of Monti et al. compared with their published groups."""
 import math
 import os
 import sys
@@ -12,7 +12,7 @@ from studies.scenes import merged
 
 
 def groups(scene):
-    """St, k_n / (eta a rate), gamma_n rate / k_n, size ratio."""
+    """Returns St, k_n / (eta a rate), gamma_n rate / k_n and the size ratio."""
     viscosity, rate = scene["fluid"]["viscosity"], scene["flow"]["shear_rate"]
     first, second = (s["radius"] for s in scene["particles"]["species"])
     stiffness = scene["contact"]["normal_stiffness"]

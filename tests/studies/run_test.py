@@ -1,6 +1,5 @@
 #!/usr/bin/python3
-"""That studies are listed with what they found; that one is made as asked, and all in turn: they go on after an
-interruption, and say what remains."""
+"""Tests that studies are listed with their findings, and run alone or all, also after an interruption."""
 import json
 import signal
 import subprocess
@@ -15,7 +14,7 @@ sys.path.insert(0, str(SOURCE / "results"))
 from run import READ, RESULTS, in_turn, summaries
 
 RUN = SOURCE / "results" / "run.py"
-# A driver that says that it ran; it fails, or waits, while there is a file of that name beside it.
+# A driver that reports its run; it fails, or waits, while a file of that name is beside it.
 DRIVER = """#!/usr/bin/python3
 import sys, time
 from pathlib import Path
@@ -30,7 +29,7 @@ sys.exit(3 if (here / "fails").exists() else 0)
 
 
 class Results:
-    """A folder of studies, each with the hours that it took before; None: it was never made."""
+    """A folder of studies, each with the hours of its last run; None if it never ran."""
 
     def __init__(self, folder, **hours):
         self.root, self.campaigns = Path(folder) / "results", Path(folder) / "campaigns"
@@ -64,7 +63,7 @@ class Results:
         return (self.root / "ran").read_text().split()
 
 
-# Three published statements, two of which hold, two checks, one of which passed, and a finding.
+# Three published statements, two of which hold; two checks, one of which passed; and a finding.
 ROWS = [
     {"kind": kind, "answer": answer}
     for kind, answers in {"statement": ["holds", "does not hold", "holds"], "check": ["ok", "failed"]}.items()

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Storage by loss, and prices, against formulas."""
+"""Storage moduli from loss moduli, and prices, compared with formulas."""
 import sys
 import unittest
 from pathlib import Path
@@ -32,7 +32,7 @@ class HighFrequency(unittest.TestCase):
 
 class Prices(unittest.TestCase):
     def test_are_of_five_percent(self):
-        # Standard error sqrt(2 / (2 1)) = 1 of 10 values' scale: twice 5 %, so four times the 2 seconds.
+        # The standard error sqrt(2 / (2 1)) = 1 of 10 is twice 5 %, so the price is four times 2 seconds.
         needed, error = price([9.0, 11.0], [1.0, 1.0], 10)
         self.assertAlmostEqual(needed, 8)
         self.assertAlmostEqual(error, 8 * 2**0.5)

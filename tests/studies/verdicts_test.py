@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""How studies answer published statements, and whether their pages say what was found."""
+"""Verdicts of studies on published statements, and the findings on their pages."""
 import contextlib
 import glob
 import io

@@ -19,11 +19,11 @@
 namespace peclet::engine {
 namespace {
 
-// What a contestant computes at a time: long beside the clock, short beside what else the machine does.
+// Work of a contestant per round: long for the clock's resolution, short between disturbances.
 constexpr std::size_t particle_steps_per_round = 100000;
-// An implicit step costs as much as tens of explicit ones.
+// An implicit step costs tens of explicit ones.
 constexpr std::size_t implicit_particle_steps_per_round = 10000;
-// The packing's contacts must have given way to those of the flow.
+// The strain in which contacts of the packing are replaced by those of the flow.
 constexpr double warm_up_strain = 0.2;
 
 void advance(Simulation& simulation, std::uint64_t steps) {
@@ -32,7 +32,7 @@ void advance(Simulation& simulation, std::uint64_t steps) {
   }
 }
 
-// Packs and shears; returns how many steps a list held in the second half of it.
+// Packs and shears; returns the steps per rebuild of the neighbour list in the second half of the warm-up.
 double warm_up(Simulation& simulation, const Scene& scene) {
   const auto half = static_cast<std::uint64_t>(0.5 * warm_up_strain / scene.physics.flow.rate() /
                                                simulation.schedule().timestep);
@@ -44,7 +44,7 @@ double warm_up(Simulation& simulation, const Scene& scene) {
   return static_cast<double>(half) / std::max(1.0, rebuilds);
 }
 
-// A system after the warm-up, and how long its lists held.
+// A system after the warm-up, and the steps between rebuilds of its list.
 struct Warm {
   System system;
   double steps_per_rebuild;
@@ -80,7 +80,7 @@ class Runner {
     simulation_ = std::make_unique<Simulation>(scene, make_schedule(scene, contestant.name), 0,
                                                contestant.threads, contestant.name);
     if (is_implicit()) {
-      // Springs of friction that begin anew would be pushed beyond Coulomb's limit: steps would be divided.
+      // Contacts without their springs would be pushed beyond Coulomb's limit, and steps divided.
       steps_per_rebuild_ = warm_up(*simulation_, scene);
       return;
     }
@@ -89,8 +89,8 @@ class Runner {
     steps_per_rebuild_ = warm.steps_per_rebuild;
   }
 
-  // Nanoseconds per particle of one step, or nothing where the list was rebuilt meanwhile: except of implicit
-  // steps, whose lists serve only a few, so that rebuilds are a part of every round.
+  // Returns nanoseconds per particle and step. Returns nothing if the list of explicit steps was rebuilt
+  // meanwhile; with implicit steps rebuilds are part of every round.
   std::optional<double> measure() {
     const std::size_t all = is_implicit() ? implicit_particle_steps_per_round : particle_steps_per_round;
     const std::uint64_t steps = std::max<std::uint64_t>(10, all / count());
@@ -102,7 +102,7 @@ class Runner {
     return 1e9 * taken / static_cast<double>(steps * count());
   }
 
-  // Nanoseconds per particle of one rebuild.
+  // Returns nanoseconds per particle of one rebuild.
   double measure_rebuild() const {
     std::vector<double> times;
     for (int r = 0; r < 5; ++r) {
@@ -118,7 +118,7 @@ class Runner {
   bool is_implicit() const { return contestant_.scene.method == Method::implicit_steps; }
   std::size_t count() const { return simulation_->system().particles.count(); }
   double steps_per_rebuild() const { return steps_per_rebuild_; }
-  // Of the solver until now.
+  // Returns the solver's iterations since the start.
   std::uint64_t iterations() const { return simulation_->step_errors().solver_iterations; }
   const System& system() const { return simulation_->system(); }
   double timestep() const { return simulation_->schedule().timestep; }
@@ -131,11 +131,11 @@ class Runner {
 };
 
 struct Measured {
-  Spread nanoseconds;  // per particle and step, rebuilds spread over the steps that their lists serve
-  Spread ratio;        // to the first contestant of the same round
+  Spread nanoseconds;             // per particle and step, rebuilds included in proportion
+  Spread ratio;                   // over the first contestant of the same round
   double near, listed, crossing;  // pairs per particle
   double rebuild;                 // nanoseconds per particle
-  double iterations;              // of the solver in a step
+  double iterations;              // of the solver per step
 };
 
 std::vector<Measured> measure(std::vector<Runner>& runners, int rounds) {
@@ -209,12 +209,12 @@ void print_times(const std::vector<Runner>& runners, const std::vector<Measured>
   }
 }
 
-// What the machine's measured limits allow, per particle and step.
+// Lower bounds of a step by the machine's measured rates, per particle.
 struct Roof {
   double arithmetic, memory;  // ns
 };
 
-// A logarithm or exponential is a quotient and a polynomial of some ten products and sums.
+// A logarithm or exponential costs a quotient and a polynomial of about ten products and sums.
 constexpr double polynomial = 20;
 
 Roof roof_of(const Operations& done, double bytes, const Machine& machine, double count) {
@@ -261,7 +261,7 @@ void run(const Group& group, const Machine& machine) {
   fmt::print("\n{}: {}{} {} rounds\n\n", group.name, group.question, wall ? " (time on the wall)" : "",
              group.rounds);
   print_times(runners, results);
-  // A group has steps of one kind.
+  // All contestants of a group have steps of one kind.
   if (!runners.front().is_implicit()) {
     print_roofline(runners, results, machine);
     std::fflush(stdout);

@@ -15,7 +15,6 @@
 namespace peclet::engine {
 namespace {
 
-// A periodic system does not know how many of its cells are called one: forces and the stress are the same.
 TEST(Tiling, LeavesEveryParticleTheForcesThatItHas) {
   const Physics physics = physics_with({.lubrication = true, .contact = true, .damping = true});
   System small = dense_suspension(physics, 150, 3);
@@ -35,7 +34,7 @@ TEST(Tiling, LeavesEveryParticleTheForcesThatItHas) {
     torque.set(i, of_small.torque[i % 150]);
     EXPECT_EQ(large.particles.id[i], i);
   }
-  constexpr double fewer_digits = 1e-9;  // places three cells away have less of them behind the point
+  constexpr double fewer_digits = 1e-9;  // coordinates three cells away have fewer decimals
   expect_near(components(force), components(of_large.force), "force", fewer_digits);
   expect_near(components(torque), components(of_large.torque), "torque", fewer_digits);
   std::vector<double> stress = components(of_small.sums);
@@ -44,8 +43,8 @@ TEST(Tiling, LeavesEveryParticleTheForcesThatItHas) {
   EXPECT_EQ(27 * of_small.sums.contacts, of_large.sums.contacts);
 }
 
-// By the formulas: of each near pair the distance and ln(1/xi); at least one quotient each for the normal and
-// for 1/xi; with noise two more roots of the squeeze mode and of the logarithm.
+// The formulas of each near pair need a distance and ln(1/xi), and at least one quotient each for the
+// normal and for 1/xi. Noise needs two more roots, of the squeeze mode and of the logarithm.
 TEST(Operations, OfEachNearPairAreOneLogarithmAndTheRootsOfItsFormulas) {
   for (const bool noise : {false, true}) {
     const Physics physics = physics_with({.lubrication = true, .noise = noise, .contact = true});
@@ -93,7 +92,7 @@ TEST(Catalogue, TakesImplicitStepsOnlyWhereTheirNameSaysSo) {
   EXPECT_EQ(implicit, 9u + std::bit_width(processors));  // on 1, 2, 4 ... threads
 }
 
-// What cost most time before it was looked at.
+// These cases used most time before they were optimised.
 TEST(Catalogue, HasImplicitStepsOfFrictionNoiseAndSpheresOfSeveralSizes) {
   const auto scene = [](const char* name) { return chosen_groups({name}).at(0).contestants.at(0).scene; };
   EXPECT_EQ(scene("implicit-friction").physics.contact->friction, 1);
@@ -105,7 +104,7 @@ TEST(Catalogue, HasImplicitStepsOfFrictionNoiseAndSpheresOfSeveralSizes) {
 }
 
 TEST(Catalogue, GivesImplicitStepsTheirOwnDefaults) {
-  // Of the schema: 0.3 of the smallest radius, with explicit steps 0.05.
+  // The schema's default is 0.3 of the smallest radius, and 0.05 with explicit steps.
   EXPECT_EQ(chosen_groups({"implicit"}).at(0).contestants.at(0).scene.guard.largest_displacement, 0.3);
   EXPECT_EQ(chosen_groups({"frictionless"}).at(0).contestants.at(0).scene.guard.largest_displacement, 0.05);
 }
@@ -121,7 +120,7 @@ TEST(Catalogue, SaysWhatItHasWhenAskedForSomethingElse) {
   }
 }
 
-// What is there with a strength of zero is computed by the same kernel as what is not there.
+// A term of strength zero is left out before a kernel is chosen.
 TEST(Catalogue, ATermOfNoStrengthIsATermThatIsAbsent) {
   std::size_t groups = 0;
   for (const Group& group : chosen_groups({})) {

@@ -13,8 +13,8 @@
 namespace peclet::engine {
 namespace {
 
-// Of every case, unless it says otherwise: radii 1 and 1.4 in equal volumes at volume fraction 0.5, rough
-// gaps, rate 0.045, which is a Stokes number of 0.045.
+// Returns the scene that every case patches: radii 1 and 1.4 in equal volumes, volume fraction 0.5 and shear
+// rate 0.045, a Stokes number of 0.045.
 Json reference_document(std::size_t count) {
   Json scene = Json::parse(R"({
     "particles": { "density": 0.1,
@@ -30,7 +30,7 @@ Json reference_document(std::size_t count) {
   return scene;
 }
 
-// `patch` as of JSON merge patches: null removes a key.
+// `patch` is a JSON merge patch: null removes a key.
 Contestant contestant(const std::string& name, const std::string& meaning, std::size_t count,
                       const char* patch = "{}") {
   Json document = reference_document(count);
@@ -72,8 +72,7 @@ constexpr const char* four_sizes = R"({ "particles": { "species": [
   { "radius": 1, "volume_share": 0.25 }, { "radius": 1.4, "volume_share": 0.25 },
   { "radius": 5, "volume_share": 0.25 }, { "radius": 7, "volume_share": 0.25 } ] } })";
 
-// In production from the first step on: iterations are counted, and what is sampled costs what it costs in a
-// run.
+// Production begins with the first step, so that iterations are counted and samples are taken.
 Contestant implicit_contestant(const std::string& name, const std::string& meaning, std::size_t count,
                                const std::string& patch = "{}") {
   Json document = reference_document(count);
@@ -83,7 +82,7 @@ Contestant implicit_contestant(const std::string& name, const std::string& meani
   return {name, meaning, read_scene(document, name), 1, 1};
 }
 
-// The solver's share: links, preconditioner, iterations; with noise two systems for each step.
+// Cases for the solver: links, preconditioner, iterations; with noise two systems per step.
 Group implicit() {
   const auto at_peclet = [](int peclet) {
     return fmt::format(R"({{ "flow": null, "peclet": {},
@@ -100,8 +99,7 @@ Group implicit() {
            implicit_contestant("implicit-peclet-100", "at Pe = 100", 1000, at_peclet(100))}};
 }
 
-// Packed as they are: in copies of a small system nothing moves that is larger than it, and iterations would
-// be those of the small one.
+// Large systems are packed as they are. Copies of a small system would move alike and need its iterations.
 Group implicit_size() {
   Group group{"implicit-size", "What does an implicit step cost in a larger system?", {}, 9};
   for (const std::size_t count : {1000U, 4000U, 16384U, 65536U}) {
@@ -138,7 +136,7 @@ Group threads() {
   return group;
 }
 
-// What a block costs that is absent, that is there with a strength of zero, and that acts.
+// Cases of a block that is absent, present with strength zero, and present.
 Group term(const std::string& name, const char* without, const char* zero, const char* present) {
   return {"term-" + name,
           "What does " + name + " cost?",

@@ -8,7 +8,7 @@
 
 namespace peclet::engine {
 
-// One scene, on some threads, `tiles` times as large along each edge as what is packed and sheared.
+// A scene on some threads, enlarged `tiles`-fold along each edge after packing and shearing.
 struct Contestant {
   std::string name, meaning;
   Scene scene;
@@ -16,15 +16,15 @@ struct Contestant {
   int threads = 1;
 };
 
-// Measured in alternation, so that each ratio to the first one is from the same moments.
+// Contestants that are measured in alternation, so that each ratio to the first one is from one moment.
 struct Group {
   std::string name, question;
   std::vector<Contestant> contestants;
   int rounds = 41;
 };
 
-// The groups that `names` ask for: all without a name; a group, or contestants of it, by name.
-// Throws InputError for a name that is not in the catalogue.
+// Returns the groups that `names` select: all if empty; a group, or contestants of it, by name. Throws
+// InputError for a name that is not in the catalogue.
 std::vector<Group> chosen_groups(const std::vector<std::string>& names);
 
 }  // namespace peclet::engine

@@ -1,5 +1,4 @@
-// A double that counts what is done with it: the kernel's own code, instantiated with it, says how many
-// operations a pair takes.
+// A double that counts its operations. The kernel's code, instantiated with it, gives those of a pair.
 #pragma once
 
 #include "engine/kernels/lane_access.h"

@@ -1,8 +1,7 @@
-// The kernels of the implicit system once more, with single-precision numbers that count.
+// The kernels of the implicit system, compiled with single-precision numbers that count operations.
 //
-// Their rows and links are then other types. So they, and all headers that they stand on, have a namespace of
-// their own here, and nothing of the engine's may be included but what says counts, and
-// teams, which have no numbers.
+// Their rows and links are then other types. They and all headers below them get a namespace of their own
+// here. Outside it only the headers of counters and teams are included, which contain no numbers.
 #include "tests/bench/engine/counted_links.h"
 
 #include <array>
@@ -23,7 +22,7 @@ static engine::Operations done;
 struct CountedFloat {
   CountedFloat() = default;
   CountedFloat(float x) : value(x) {}       // NOLINT(google-explicit-constructor): constants of a formula
-  operator float() const { return value; }  // NOLINT(google-explicit-constructor): what is not counted
+  operator float() const { return value; }  // NOLINT(google-explicit-constructor): uncounted uses
 
   CountedFloat& operator+=(const CountedFloat& b) { return ++done.sums, value += b.value, *this; }
 
@@ -65,7 +64,7 @@ class alignas(4 * width) CountedVector {
   CountedVector& operator+=(const CountedVector& b) { return *this = *this + b; }
   CountedVector& operator-=(const CountedVector& b) { return *this = *this - b; }
 
-  // The numbers that `number` gives for each lane.
+  // Returns the vector of number(k) for each lane k.
   template <class Number>
   static CountedVector each(const Number& number) {
     CountedVector result;
@@ -80,7 +79,7 @@ class alignas(4 * width) CountedVector {
 using Floats = CountedVector<8>;
 using FourFloats = CountedVector<4>;
 
-// What the compiler has for vectors of its own, by the names of the macros below. None of it counts.
+// Substitutes for the compiler's vector built-ins, under the names of the macros below; they do not count.
 template <int width>
 float lane_of_both(const CountedVector<width>& a, const CountedVector<width>& b, int place) {
   return place < width ? a[place].value : b[place - width].value;
@@ -104,7 +103,7 @@ using engine::Team;
 
 #define PECLET_FLOATS
 #define engine counting_engine
-// The kernels call these by their names. NOLINTBEGIN(bugprone-reserved-identifier)
+// The kernels call these built-ins by name. NOLINTBEGIN(bugprone-reserved-identifier)
 #define __builtin_shufflevector of_lanes
 #define __builtin_convertvector(numbers, To) converted<To>(numbers)
 // NOLINTEND(bugprone-reserved-identifier)
@@ -117,7 +116,7 @@ using engine::Team;
 namespace peclet::counting_engine {
 namespace {
 
-// Whatever a processor's table has; assembly, of double-precision numbers, apart.
+// All kernels of a processor's table, except for assembly, which uses double-precision numbers.
 constinit const LinkKernels counting_kernels = {
     nullptr, nullptr, &factorise, &multiply, &set_residual, &squared_motion, &add_motion, &begin, &solve};
 
@@ -157,8 +156,7 @@ class Counting {
 
 namespace peclet::engine {
 
-// The engine's rows and links are read as those of the counting kernels: numbers of the same size at the same
-// places.
+// The engine's rows and links are read as those of the counting kernels, so sizes and layout must agree.
 static_assert(sizeof(counting_engine::Floats) == 8 * sizeof(float) && alignof(counting_engine::Floats) == 32);
 
 SolverOperations count_solver_operations(const LinkSystem& system, const MotionRow* right, int iterations) {

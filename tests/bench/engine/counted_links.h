@@ -1,4 +1,4 @@
-// What the solver of implicit steps does, counted by its own kernels.
+// Counts the operations of the solver of implicit steps by its own kernels.
 #pragma once
 
 #include "tests/bench/engine/operation_counts.h"
@@ -9,12 +9,12 @@ struct LinkSystem;
 struct MotionRow;
 
 struct SolverOperations {
-  Operations factorisation, iteration;  // of single-precision numbers, empty lanes of rows included
-  double squared_residual;              // that the last iteration leaves
+  Operations factorisation, iteration;  // in single precision, including empty lanes
+  double squared_residual;              // after the last iteration
 };
 
-// Of the kernels without any processor's own instructions, in the last of `iterations` >= 1 iterations for
-// A x = right. The pivots of `system` are made anew.
+// Counts the factorisation and the last of `iterations` >= 1 iterations for A x = right, with the baseline
+// kernels. The pivots of `system` are computed anew.
 SolverOperations count_solver_operations(const LinkSystem& system, const MotionRow* right, int iterations);
 
 }  // namespace peclet::engine

@@ -1,4 +1,3 @@
-// The kernels of the implicit system, compiled with numbers that count.
 #include "tests/bench/engine/counted_links.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +19,7 @@ std::span<const LinkLevel> levels_of(const LinkSystem& system) {
   return {system.levels, system.blocks[system.count_of_blocks - 1].levels_end};
 }
 
-// What the compiled kernels leave after as many iterations.
+// Returns the squared residual that the compiled kernels leave after equally many iterations.
 double squared_residual(const Links& links, const std::vector<MotionRow>& right, int iterations) {
   std::vector<MotionRow> rows[7];
   for (std::vector<MotionRow>& each : rows) each = right;
@@ -50,8 +49,7 @@ TEST(SolverOperations, AreTheSameInEveryIteration) {
             count_solver_operations(links.view(), right.data(), 5).iteration);
 }
 
-// A = L D L^T of a 6 x 6 matrix has six pivots, each of which is divided by once; matrices of a level's rows
-// are factorised eight at a time.
+// A = L D L^T of a 6 x 6 matrix divides once by each of six pivots. Rows of a level are done eight at a time.
 TEST(SolverOperations, OfTheFactorisationAreSixQuotientsForEachRow) {
   const Links links = links_of();
   const LinkSystem system = links.view();
@@ -65,8 +63,8 @@ TEST(SolverOperations, OfTheFactorisationAreSixQuotientsForEachRow) {
   EXPECT_EQ(done.iteration.quotients, 0u);
 }
 
-// In each of the two sweeps of an iteration six numbers of a row are multiplied by the six columns of P^-1,
-// in one by K; and a link's load, six numbers, is added to its row.
+// Each of the two sweeps of an iteration multiplies six numbers of a row by the six columns of P^-1, and one
+// sweep also by K. A link adds its load of six numbers to its row.
 TEST(SolverOperations, OfAnIterationAreAtLeastThoseOfItsProducts) {
   const Links links = links_of();
   const LinkSystem system = links.view();
@@ -89,7 +87,7 @@ TEST(SolverOperations, OfAnIterationAreAtLeastThoseOfItsProducts) {
   EXPECT_EQ(of_links.products % places, 0u);
 }
 
-// Where nothing moves within the step, links are the near pairs.
+// Without motion within the step, the links are the near pairs.
 TEST(SolverCost, IsThatOfEveryNearPair) {
   const Scene scene = chosen_groups({"implicit"}).at(0).contestants.at(0).scene;
   const System system = dense_suspension(scene.physics, 200, 5);
@@ -106,7 +104,7 @@ TEST(SolverCost, IsThatOfEveryNearPair) {
   EXPECT_GE(cost.levels, 2u);
   EXPECT_LE(cost.levels, 16u);
   EXPECT_GT(cost.iteration.median, 0);
-  // Each number that an iteration walks through is read at least once.
+  // An iteration reads each number in its memory range at least once.
   EXPECT_GE(cost.bytes, static_cast<double>(cost.room));
 }
 

@@ -13,7 +13,7 @@ namespace {
 constexpr int repetitions = 7;
 constexpr std::size_t beyond_caches = std::size_t{192} << 20;
 
-// Fewest seconds that `work` took.
+// Returns the shortest duration of `work` [s].
 template <class Work>
 double fastest(Work&& work) {
   double least = std::numeric_limits<double>::infinity();
@@ -48,7 +48,7 @@ struct alignas(64) CacheLine {
 double stream_rate(InstructionSet set, std::size_t room) {
   const std::size_t lines = std::max<std::size_t>(1, room / (3 * sizeof(CacheLine))), count = 8 * lines;
   std::vector<CacheLine> a(lines), b(lines, {{1, 1, 1, 1, 1, 1, 1, 1}}), c(b);
-  constexpr std::size_t streamed = std::size_t{1} << 26;  // bytes at a time, or one pass
+  constexpr std::size_t streamed = std::size_t{1} << 26;  // bytes per measurement; at least one pass
   const std::size_t passes = std::max<std::size_t>(1, streamed / room);
   const auto stream = loops_of(set).stream;
   volatile double factor = 3;

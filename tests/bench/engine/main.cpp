@@ -1,5 +1,4 @@
-// engine_bench [CASE...]: processor time per particle and step of the named cases of the catalogue, or of
-// all.
+// engine_bench [CASE...]: prints processor time per particle and step of the named cases, or of all.
 #include <fmt/format.h>
 
 #include <exception>

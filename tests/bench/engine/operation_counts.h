@@ -1,4 +1,4 @@
-// How many operations something takes.
+// Counts of floating-point operations.
 #pragma once
 
 #include <cstdint>

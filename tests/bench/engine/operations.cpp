@@ -57,18 +57,18 @@ double bytes_per_particle(const Physics& physics, const System& system, int thre
   const double crossings = static_cast<double>(system.list.crossings()) / count;
   double bytes = 0;
   if (threads == 1 && !terms.friction) {
-    // One walk: state, forces and torques are read and written back.
+    // A single loop reads the state, forces and torques and writes them back.
     bytes += 10 * row + sizeof(std::uint16_t);
   } else {
-    // Kick and drift: forces, torques and the whole state are read, the state is written back.
+    // Kick and drift read forces, torques and the whole state, and write the state back.
     bytes += 8 * row + sizeof(std::uint16_t);
-    // Pairs, drag and noise: the state is read, forces and torques are overwritten.
+    // Pairs, drag and noise read the state and overwrite forces and torques.
     bytes += 3 * row + 2 * fetched_and_written + sizeof(std::uint16_t);
   }
   bytes += terms.noise ? sizeof(std::uint32_t) : 0;
   bytes += pairs * sizeof(Pair);
   bytes += 2 * pairs * static_cast<double>(system.springs.components() * sizeof(double));
-  // Force and torque of a crossing pair: left aside, then fetched by the other block.
+  // Force and torque of a crossing pair are stored aside, then fetched by the other block.
   bytes += crossings * (2 * fetched_and_written + 2 * row + sizeof(IncomingPair));
   return bytes;
 }

@@ -1,4 +1,4 @@
-// What an evaluation of the forces takes from the machine, counted and not measured.
+// Counted operations and bytes of a force evaluation.
 #pragma once
 
 #include <optional>
@@ -8,13 +8,12 @@
 
 namespace peclet::engine {
 
-// Operations of the kernel in one pass over the pairs of `system`, its random numbers and the sums into the
-// particles' rows left out. Nothing for terms that are not compiled for counting.
+// Returns the operations of one kernel pass over the pairs of `system`. Random numbers and the sums into
+// particle rows are left out. Returns nothing for terms that are not compiled for counting.
 std::optional<Operations> count_operations(const Physics& physics, System system, double timestep);
 
-// Bytes per particle that one step moves between the processor and a memory whose caches hold nothing from
-// one step to the next: rows, classes, identities, pairs, springs and crossing loads, each read once per walk
-// through them; what is overwritten is fetched first.
+// Returns the bytes per particle that one step moves if caches keep nothing between loops. Rows, classes,
+// identities, pairs, springs and crossing loads are read once per loop over them; written memory is fetched.
 double bytes_per_particle(const Physics& physics, const System& system, int threads);
 
 }  // namespace peclet::engine

@@ -1,6 +1,6 @@
-// Loops that do nothing but one kind of arithmetic, as fast as an instruction set can.
+// Loops of a single kind of arithmetic at the peak rate of an instruction set.
 //
-// Plain data, because this is shared with files that are compiled for one processor only.
+// Plain data, because files compiled for one processor include this header.
 #pragma once
 
 #include <cstddef>
@@ -10,15 +10,15 @@
 
 namespace peclet::engine {
 
-// Each loop does `rounds` rounds of `per_round` operations on as many numbers; returns a number that depends
-// on all of them.
+// Each loop does `rounds` rounds of `per_round` operations on independent numbers. It returns a number that
+// depends on all of them.
 struct PeakLoops {
   using Loop = double (*)(std::uint64_t rounds);
   Loop multiply_add, divide, square_root;
   std::uint64_t per_round;
-  Loop multiply_add_single;  // of single-precision numbers
+  Loop multiply_add_single;  // in single precision
   std::uint64_t singles_per_round;
-  // a = b + s c, of rows that are a whole number of cache lines.
+  // a = b + s c; rows are a whole number of cache lines.
   void (*stream)(double* a, const double* b, const double* c, double s, std::size_t count);
 };
 
@@ -58,8 +58,7 @@ double square_root_loop(std::uint64_t rounds) {
   return run_chains<Real>(rounds, [&](const Real& x) { return square_root(x); });
 }
 
-// Single-precision numbers side by side. Real marks the instruction set, which keeps code for one apart from
-// others'.
+// A vector of single-precision numbers. Real names the set and keeps code of sets apart.
 template <class Real, int width>
 struct Singles {
   typedef float Vector __attribute__((vector_size(4 * width)));
@@ -88,7 +87,7 @@ void stream_loop(double* a, const double* b, const double* c, double s, std::siz
 
 template <class Real>
 constexpr PeakLoops peak_loops_of() {
-  // As many as a register of the set holds; every processor has one of four.
+  // The width of a register of the set; every processor has registers of four.
   constexpr int singles = width_of<Real> == 1 ? 4 : 2 * width_of<Real>;
   return {&multiply_add_loop<Real>,
           &divide_loop<Real>,

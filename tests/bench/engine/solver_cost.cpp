@@ -13,7 +13,7 @@ namespace peclet::engine {
 namespace {
 
 constexpr int repetitions = 15;
-// Of the squared residual: some ten to forty iterations.
+// Reduction of the squared residual, about ten to forty iterations.
 constexpr double taken_away = 1e-8;
 
 double flops(const Operations& done) { return static_cast<double>(done.sums + done.products); }
@@ -32,13 +32,12 @@ std::vector<MotionRow> ones(std::size_t count) {
   return std::vector<MotionRow>(count, row);
 }
 
-// Each of the three walks of an iteration through all rows reads and writes what is named here once, and
-// finds nothing that the walk before has left in a cache; what is overwritten is fetched first.
+// Returns the bytes of an iteration, which loops three times over all rows. Each loop reads and writes the
+// following once and finds nothing in a cache; overwritten memory is fetched first.
 // - Back through the levels: z, p, t and s; all but z are written. Pivots and links are read.
 // - Forward: y and s, which are written, p and t. Pivots and links are read.
 // - New solution: x, r, z and s, which are written, t and y.
-// What links read of other levels' rows and add to them is among these, but not what is put aside for other
-// blocks.
+// Links' accesses to rows of other levels are included; buffers for other blocks are not.
 double bytes_of_iteration(std::size_t rows, std::size_t groups) {
   constexpr std::size_t row = sizeof(MotionRow), changed = 2 * row;
   constexpr std::size_t back = row + 3 * changed + sizeof(Pivot);
@@ -60,7 +59,7 @@ std::size_t groups_of_crossing(const LinkLevel& level) {
   return (level.count_of_crossing + links_per_group - 1) / links_per_group;
 }
 
-// The same system without its links.
+// The system of `system` without its links.
 class RowsAlone {
  public:
   explicit RowsAlone(const LinkSystem& system)
@@ -78,13 +77,13 @@ class RowsAlone {
     return count_solver_operations(system_, right.data(), 1).iteration;
   }
 
-  // Seconds of an iteration.
+  // Returns the seconds of an iteration.
   double time(const LinkKernels& kernels, const std::vector<MotionRow>& right) const {
     std::array<std::vector<MotionRow>, 7> v;
     v.fill(std::vector<MotionRow>(right.size()));
     const SolverRows rows = {v[0].data(), v[1].data(), v[2].data(), v[3].data(),
                              v[4].data(), v[5].data(), v[6].data()};
-    constexpr int few = 3;  // so that something is left to solve
+    constexpr int few = 3;  // before convergence
     std::vector<double> times(repetitions);
     Team alone;
     for (double& time : times) {
@@ -106,7 +105,7 @@ double links_in(const LinkGroup* groups, std::size_t count) {
   std::size_t links = 0;
   for (const LinkGroup& group : std::span(groups, count)) {
     for (int k = 0; k < links_per_group; ++k) {
-      // What fills a group up has no normal.
+      // Links that pad a group have no normal.
       links += group.normal[0][k] != 0 || group.normal[1][k] != 0 || group.normal[2][k] != 0 ? 1 : 0;
     }
   }
@@ -148,7 +147,7 @@ SolverCost solver_cost(const Scene& scene, const System& given, double timestep)
   const InstructionSet set = chosen_instruction_set();
   System system = given;
   const ParticleState& particles = system.particles;
-  // As midpoint.h and noisy_midpoint.h begin.
+  // Settings at the start of midpoint.h and noisy_midpoint.h.
   const bool noise = scene.physics.thermal_energy > 0;
   const double approach_time = noise ? 0.5 * timestep : 0;
   const auto part = noise ? StepResistance::Part::at_beginning : StepResistance::Part::on_the_way;
@@ -161,7 +160,7 @@ SolverCost solver_cost(const Scene& scene, const System& given, double timestep)
   StepOrigin origin;
   origin.mark(system, 1);
   VelocitySolver solver(scene.physics, particles, timestep, scene.solver_tolerance, 1, set);
-  solver.assemble(system, field);  // with the order of rows, which later ones have already
+  solver.assemble(system, field);  // sets the order of rows, which later calls find done
   std::vector<double> assembly, residuals, iteration;
   for (int r = 0; r < repetitions; ++r) {
     assembly.push_back(seconds_of([&] { solver.assemble(system, field); }));

@@ -1,4 +1,4 @@
-// What the solver of implicit steps takes for a system, and what it would have to: its roofline.
+// The measured cost of the solver of implicit steps, and its roofline.
 #pragma once
 
 #include <string>
@@ -12,24 +12,24 @@
 
 namespace peclet::engine {
 
-// Of one thread; times in seconds.
+// Costs on one thread; times in seconds.
 struct SolverCost {
-  double rows, links;  // a row for each particle
+  double rows, links;  // one row per particle
   std::size_t levels;
   Spread iteration;
   double rows_alone;                         // of an iteration without links
-  double assembly, factorisation, residual;  // of a system, before its iterations
-  Operations of_rows, of_links;              // in an iteration; links that fill up groups of eight included
+  double assembly, factorisation, residual;  // per system, before its iterations
+  Operations of_rows, of_links;              // per iteration, padding links included
   Operations of_factorisation;
-  double bytes;      // that an iteration moves at least
-  std::size_t room;  // that it walks through, in bytes
-  double stream;     // bytes per second of a = b + s c in as much room
+  double bytes;      // moved per iteration, at least
+  std::size_t room;  // memory range of an iteration [bytes]
+  double stream;     // bytes per second of a = b + s c in arrays of that size
 };
 
-// At the system's places and velocities.
+// Measures at the positions and velocities of `system`.
 SolverCost solver_cost(const Scene& scene, const System& system, double timestep);
 
-// A line for each case.
+// Prints a line per case.
 void print_solvers(const std::vector<std::string>& names, const std::vector<SolverCost>& costs,
                    const Machine& machine);
 

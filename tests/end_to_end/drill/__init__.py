@@ -1,2 +1,3 @@
-"""The fault drill's parts: what a disturbed campaign is (campaign), how it is disturbed (board, power), what counts as
-a loss (tally), and the cases, by what they disturb."""
+"""Parts of the fault drill: the disturbed campaign (campaign), the faults (board, power), the losses (tally),
+and the cases, by what they disturb.
+"""

@@ -1,4 +1,4 @@
-"""The faults that the preloaded shim makes (shim/plan.h): at which call of which process, and what has come of it."""
+"""Faults made by the preloaded shim (shim/plan.h): at which call of which process, and with what result."""
 import mmap
 import os
 import struct
@@ -8,7 +8,7 @@ LAYOUT = struct.Struct("<5q256s")  # calls, struck, off, sequence, process, what
 
 
 class Board:
-    """One page that the drill shares with the processes it disturbs."""
+    """A page of memory that the drill shares with the processes it disturbs."""
 
     def __init__(self, folder):
         self.path = os.path.join(folder, "board")
@@ -31,7 +31,7 @@ class Board:
             time.sleep(0.002)
 
     def switch_off(self):
-        """Nothing is hit any more."""
+        """Ends the faults."""
         struct.pack_into("<q", self.page, 16, 1)
 
     def environment(

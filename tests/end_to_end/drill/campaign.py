@@ -1,4 +1,4 @@
-"""A campaign that is run, disturbed and run again, and what its database and spool say has been acknowledged."""
+"""A campaign that is run, disturbed and run again, and the results that it has acknowledged."""
 import contextlib
 import hashlib
 import json
@@ -15,7 +15,7 @@ from campaign_folder import CampaignFolder, comes_true, processes_with
 
 MARKER = "PECLET_DRILL_FOLDER"
 
-# The fake engine's campaign: two points, looks at 8, 10, 13 and 14 seeds.
+# A campaign of the fake engine: two points, stop tests at 8, 10, 13 and 14 seeds.
 FAKE = {
     "name": "drill",
     "scene": {"fluid": {"viscosity": 1}, "peclet": 1},
@@ -48,12 +48,12 @@ REAL = {
     "realisations": {"minimum": 8, "maximum": 20},
 }
 
-# Nothing takes this long: a run that does hangs.
+# A run that takes longer hangs [s].
 PATIENCE = 120
 
 
 def alive(process):
-    """Whether a process runs; a zombie does not."""
+    """Returns True if a process runs and is not a zombie."""
     try:
         with open(f"/proc/{process}/stat") as f:
             return f.read().rsplit(")", 1)[1].split()[0] not in "ZX"
@@ -62,7 +62,7 @@ def alive(process):
 
 
 def ends_within(process, seconds):
-    """Waits for a child without the naps that Popen.wait() takes."""
+    """Waits for a child without the naps of Popen.wait(); returns False if it takes longer than `seconds`."""
     descriptor = os.pidfd_open(process.pid)
     try:
         return bool(select.select([descriptor], [], [], seconds)[0])
@@ -71,12 +71,12 @@ def ends_within(process, seconds):
 
 
 def stragglers(folder):
-    """The processes that were started for the campaign in `folder` and still run."""
+    """Returns the processes of the campaign in `folder` that still run."""
     return [process for process in processes_with(MARKER, folder) if alive(process)]
 
 
 class Campaign(CampaignFolder):
-    """A folder with drill.json, the runs of it, and what they have acknowledged so far."""
+    """A folder with drill.json, its runs, and the results acknowledged until now."""
 
     def __init__(self, lab, document=None, workers=2, lease=120, checkpoint=60, **fake):
         self.lab = lab
@@ -85,9 +85,9 @@ class Campaign(CampaignFolder):
         document = dict(document or FAKE, engine=[engine, "serve"])
         fake.setdefault("files", 2)
         variables = {f"PECLET_FAKE_{name.upper()}": str(value) for name, value in fake.items()}
-        self.safe = {}  # (hash, seed) -> (final state, last attempt when it was acknowledged)
-        self.left_alone = False  # whether workers may have outlived their owner
-        self.unmount = None  # a file system of its own that goes with it
+        self.safe = {}  # (hash, seed) -> (final state, last attempt when acknowledged)
+        self.left_alone = False  # True if workers may outlive their owner
+        self.unmount = None  # unmounts the campaign's own file system
         super().__init__(os.path.dirname(lab.peclet), tempfile.mkdtemp(dir=lab.folder), document, variables)
 
     def start(self, environment=None, command=None):
@@ -97,17 +97,17 @@ class Campaign(CampaignFolder):
         return super().start(*words.split(), str(self.checkpoint), command=command, environment=variables)
 
     def run(self, environment=None):
-        """The exit code of a run; negative when a signal ended it. A run that hangs is stopped by SIGABRT."""
+        """Returns the exit code of a run, negative after a signal. A run that hangs is stopped by SIGABRT."""
         left_alone = self.left_alone
         process = self.start(environment)
         if not ends_within(process, PATIENCE):
             process.send_signal(signal.SIGABRT)
         code = process.wait()
-        self.left_alone = left_alone or code < 0  # one that exits waits for its workers
+        self.left_alone = left_alone or code < 0  # an owner that exits waits for its workers
         return code
 
     def settle(self):
-        """Waits until the workers of dead owners have left."""
+        """Waits until the workers of dead owners have ended."""
         if not self.left_alone:
             return
         comes_true(lambda: not stragglers(self.folder), nap=0.005)
@@ -117,7 +117,7 @@ class Campaign(CampaignFolder):
         self.left_alone = False
 
     def spool(self):
-        """Of the results that lie in the spool whole."""
+        """Returns the final states of complete results in the spool, by point and seed."""
         found = {}
         with contextlib.suppress(FileNotFoundError):
             for name in os.listdir(self.path("spool")):
@@ -130,9 +130,9 @@ class Campaign(CampaignFolder):
         return found
 
     def query(self, sql):
-        """Rows of the database, [] before it has tables."""
-        # A rollback journal is there only until the database has been told to keep a write-ahead log, before its tables
-        # are made; a reader cannot roll it back.
+        """Returns rows of the database, [] before it has tables."""
+        # A rollback journal exists only until the database switches to a write-ahead log, before its tables
+        # are made. A reader cannot roll it back.
         set_up = not os.path.exists(self.path("campaign.db-journal"))
         if not os.path.exists(self.path("campaign.db")):
             return []
@@ -149,7 +149,7 @@ class Campaign(CampaignFolder):
         return rows[0][0] if rows else 0
 
     def results(self):
-        """The final states of what lies in spool or database: (hash's beginning, seed) -> hash of the state."""
+        """Returns the final states in spool and database: (prefix of the hash, seed) -> hash of the state."""
         spooled = self.spool()
         stored = self.query(
             "SELECT substr(hash, 1, 16), seed, final_state_sha256 FROM realisation JOIN point USING "
@@ -158,8 +158,8 @@ class Campaign(CampaignFolder):
         return {**spooled, **{(point, seed): state for point, seed, state in stored}}
 
     def misplaced_files(self):
-        """What is wrong with the files that realisations have left: those of the table that are absent or other ones,
-        those that no row has, those that lie in the spool."""
+        """Returns faults of the files of realisations: files that are absent or differ, files without a row,
+        and files in the spool."""
         files = dict(self.query("SELECT path, sha256 FROM files WHERE kept"))
         found = {
             os.path.relpath(os.path.join(folder, name), self.data)
@@ -177,7 +177,7 @@ class Campaign(CampaignFolder):
         return wrong or ([] if len(files) == each * ended else [f"{len(files)} files of {ended} results"])
 
     def hashes_of_files(self):
-        """Of what realisations of the real engine have left: (point, seed, name) -> hash."""
+        """Returns the hashes of files of the real engine's realisations: (point, seed, name) -> hash."""
         if self.document["engine"][0] != self.lab.engine:
             return {}
         return {tuple(row[:3]): row[3] for row in self.query("SELECT hash, seed, name, sha256 FROM files")}
@@ -186,7 +186,7 @@ class Campaign(CampaignFolder):
         return self.count("SELECT coalesce(max(attempt_id), 0) FROM attempt")
 
     def acknowledge(self):
-        """Notes what has been acknowledged; requires that no owner runs."""
+        """Notes the acknowledged results; no owner may run."""
         last = self.last_attempt()
         for key, state in self.results().items():
             self.safe.setdefault(key, (state, last))
@@ -203,7 +203,7 @@ class Campaign(CampaignFolder):
 
 
 class Lab:
-    """Where the programs are and where campaigns are put; undisturbed answers, each computed once."""
+    """The programs, the folder of campaigns, and undisturbed answers, each computed once."""
 
     def __init__(self, programs, folder):
         self.peclet, self.engine, self.fake_engine, self.shim = (
@@ -214,7 +214,7 @@ class Lab:
         self.known = {}
 
     def undisturbed(self, campaign):
-        """Exit code, canonical export and hashes of files of the same campaign, run by one worker in peace."""
+        """Returns exit code, canonical export and hashes of files of an undisturbed run by one worker."""
         steps = {name: value for name, value in campaign.environment.items() if name == "PECLET_FAKE_STEPS"}
         key = json.dumps([campaign.document, steps])
         if key not in self.known:

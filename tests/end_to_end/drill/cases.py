@@ -1,4 +1,4 @@
-"""The cases of the drill, in the table's order: a name, and what is done in the full and in the quick form."""
+"""The cases of the drill in the order of the table: a name, and the full and the quick form."""
 import dataclasses
 import typing
 
@@ -17,7 +17,7 @@ class Case:
 
 
 def case(name, function, full, quick):
-    """`full` has the keyword arguments of the full form, `quick` those that are others in the quick one."""
+    """Returns a case. `full` has the arguments of the full form, `quick` the changes of the quick form."""
     quick = full | quick
     return Case(name, lambda *about: function(*about, **full), lambda *about: function(*about, **quick))
 
@@ -26,12 +26,11 @@ ALLOCATIONS = {"call": "allocation", "action": "fail", "path": ""}
 
 
 def every_allocation():
-    """The full form takes one in twenty of some ten thousand allocations; this takes them all, which is an hour's
-    work."""
+    """Returns the case of all ten thousand allocations, which takes an hour; the full form has 5 %."""
     return case("database: every allocation fails in turn", storage.failing_calls, ALLOCATIONS, {})
 
 
-# Of the quick form: every so many calls.
+# Strides of calls in the quick form.
 STRIDES = {"write": 40, "sync": 5, "truncate": 1, "read": 9}
 KILLS = {"kills": 500, "document": FAKE, "per_campaign": 5, "step_ms": 1, "checkpoint": 0.005}
 REAL_KILLS = {"kills": 40, "document": REAL, "per_campaign": 10, "checkpoint": 0.02}

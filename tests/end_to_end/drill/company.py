@@ -1,4 +1,4 @@
-"""Other processes at the same campaign: a second owner, and readers."""
+"""Other processes at a campaign: a second owner, and readers."""
 import os
 import signal
 import threading
@@ -11,7 +11,7 @@ from drill.stops import busy_workers
 
 
 def second_owners(lab, tally, chance, times):
-    """At a random moment of a run another one is started: exit code 5, and not one call that changes a file."""
+    """Starts a second owner at a random moment of a run: exit code 5, and no call that changes a file."""
     while tally.tried < times:
         campaign = Campaign(lab, steps=10, step_ms=60)
         owner = campaign.start()
@@ -30,10 +30,10 @@ def second_owners(lab, tally, chance, times):
 
 
 def readers(lab, tally, chance, loops, seeds):
-    """`loops` loops of `peclet status` beside the run, and a reader that is stopped while it holds its snapshot."""
+    """Loops `peclet status` in `loops` readers beside the run, and stops one that holds its snapshot."""
     campaign = Campaign(lab, steps=10, step_ms=4)
     hold = campaign.environment["PECLET_FAKE_HOLD"] = campaign.place("hold")
-    with open(hold, "w"):  # no seed ends before there are readers
+    with open(hold, "w"):  # seeds wait until there are readers
         pass
     campaign.document["realisations"] = {"minimum": seeds, "maximum": seeds}
     campaign.write()
@@ -74,7 +74,7 @@ def readers(lab, tally, chance, loops, seeds):
 
 
 def stop_a_reader(campaign, tally):
-    """A `peclet status` that is stopped half-way through the pages it reads."""
+    """Stops a `peclet status` half-way through the pages it reads."""
     command = [campaign.lab.peclet, "status", "drill.json"]
     count = Board(campaign.folder)
     campaign.start(count.environment(campaign.lab.shim, call="read", path="campaign.db"), command).wait()

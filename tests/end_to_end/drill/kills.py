@@ -1,4 +1,4 @@
-"""Kills and power cuts: at random moments, and before every single call that changes a file or sends a frame."""
+"""Kills and power cuts at random moments, and before each call that changes a file or sends a frame."""
 import collections
 import contextlib
 import itertools
@@ -14,7 +14,7 @@ from drill.power import acknowledged_spool, cut, read_journal
 
 
 def strike(process, whom):
-    """Kills the owner, one worker, or the owner and all workers. Returns how many processes were hit."""
+    """Kills the owner, one worker, or the owner and all workers. Returns the number of processes killed."""
     workers = children(process.pid)
     victims = {"owner": [process.pid], "worker": workers[:1], "both": [process.pid, *workers]}[whom]
     for victim in victims:
@@ -24,8 +24,7 @@ def strike(process, whom):
 
 
 def seconds_alone(lab, document, **settings):
-    """How long such a campaign takes on this machine, so that random moments are of its whole length; of a slow one
-    some seconds will do."""
+    """Returns the duration of such a campaign, at most 2.5 s, for random moments within it."""
     campaign = Campaign(lab, document, **settings)
     started = time.monotonic()
     campaign.run()
@@ -35,7 +34,7 @@ def seconds_alone(lab, document, **settings):
 
 
 def random_kills(lab, tally, chance, kills, document, per_campaign, **settings):
-    """Kills at random moments; a campaign takes up to `per_campaign` of them before it is run to its end."""
+    """Kills at random moments, up to `per_campaign` times before a campaign is run to its end."""
     struck = collections.Counter()
     whole = seconds_alone(lab, document, **settings)
     while sum(struck.values()) < kills:
@@ -47,7 +46,7 @@ def random_kills(lab, tally, chance, kills, document, per_campaign, **settings):
             whom = chance.choice(("owner", "worker", "both"))
             if process.poll() is None and strike(process, whom):
                 struck[whom] += 1
-            if whom == "worker":  # the owner goes on with a new one, and is killed later
+            if whom == "worker":  # the owner replaces it, and is killed later
                 time.sleep(chance.uniform(0, whole / 2))
                 if process.poll() is None:
                     process.kill()
@@ -61,26 +60,26 @@ def random_kills(lab, tally, chance, kills, document, per_campaign, **settings):
 
 
 def edges(lab, tally, chance, role, stride, document=FAKE, action="kill"):
-    """Every call of the owner or of its workers that changes a file or sends a frame, and a kill before it."""
+    """Kills before every call of the owner or of its workers that changes a file or sends a frame."""
     struck = collections.Counter()
     for number in calls_of(stride, chance):
         campaign = Campaign(lab, document, workers=1, checkpoint=0.001)
         board = Board(campaign.folder)
         campaign.run(board.environment(lab.shim, role=role, number=number, action=action))
         if not board.struck:
-            break  # the campaign was through before
+            break  # the campaign ended before
         struck[kind_of(board.what)] += 1
         tally.judge(campaign)
     tally.count(struck)
 
 
 def calls_of(stride, chance):
-    """Returns the numbers of calls, every `stride`th from one of the first on."""
+    """Returns the numbers of every `stride`th call, from a random one of the first `stride`."""
     return itertools.count(1 if stride == 1 else chance.randint(1, stride), stride)
 
 
 def kind_of(what):
-    """The kind of call and of file, without what differs between seeds and processes."""
+    """Returns the kind of call and of file, without the parts that differ between seeds and processes."""
     call, path = what.split(" ", 1)
     if path == "socket":
         return "send"
@@ -91,12 +90,12 @@ def kind_of(what):
 
 
 def power_cuts(lab, tally, chance, cuts, document=FAKE):
-    """Everything dies before a random call, and a part of what was not synchronised is not on the disk."""
+    """Ends everything before a random call, and drops a part of the data that was not synchronised."""
     at_stake = collections.Counter()
     calls = 650 if document is FAKE else 1500
     while tally.tried < cuts:
         campaign = Campaign(lab, document, checkpoint=0.001 if document is FAKE else 0.1)
-        for round_ in range(2):  # the second cut hits what the first has left
+        for round_ in range(2):  # the second cut hits the remains of the first
             board = Board(campaign.folder)
             journal = os.path.join(campaign.folder, f"journal-{round_}")
             campaign.run(board.environment(lab.shim, number=chance.randint(1, calls), action="cut", journal=journal))
@@ -111,7 +110,7 @@ def power_cuts(lab, tally, chance, cuts, document=FAKE):
 
 
 def take_back(campaign, journal, chance):
-    """Results are safe from the moment on at which their spool file and its name were synchronised."""
+    """Counts results as safe once their spool file and its name were synchronised."""
     states = campaign.results()
     durable = acknowledged_spool(read_journal(journal))
     contents, names = cut(campaign, journal, chance)

@@ -1,5 +1,6 @@
-"""What comes by socket and spool: frames and files that are repeated, out of order, cut off, too large, or somebody
-else's; and engines that hang, crash or lie."""
+"""Messages by socket and spool: frames and files that are repeated, reordered, truncated, too large or
+foreign; and engines that hang, crash or lie.
+"""
 import json
 import os
 import re
@@ -12,7 +13,7 @@ ENGINES = ["hang", "lie", "swap", "nan", "crash", "exit", "kill", "mute", "refus
 
 
 def engine_faults(lab, tally, chance, times, faults):
-    """Six seeds of each point meet a fault, once or twice, at a random step; the third try is sound."""
+    """Makes six seeds of each point fail once or twice at a random step; the third try is sound."""
     for _ in range(times):
         kinds = " ".join(
             f"{chance.choice(faults)}:{seed}x{chance.randint(1, 2)}" for seed in chance.sample(range(12), 6)
@@ -36,8 +37,7 @@ def crash_at_each_step(lab, tally, chance, steps):
 
 
 def other_answer(lab, tally, chance, times):
-    """A worker that wakes up late has another result for its seed: exit code 6 from then on, the numbers as they
-    were."""
+    """Gives a late worker another result for its seed: exit code 6 from then on, numbers unchanged."""
     for _ in range(times):
         campaign = Campaign(lab, workers=1)
         board = Board(campaign.folder)
@@ -60,7 +60,7 @@ def other_answer(lab, tally, chance, times):
 
 
 def spool_files(lab, tally, chance, times):
-    """An owner dies beside a full spool, and somebody has put there what does not belong there."""
+    """Kills an owner beside a full spool, and adds foreign files to it."""
     for _ in range(times):
         campaign = Campaign(lab)
         board = Board(campaign.folder)
@@ -81,7 +81,7 @@ def spool_files(lab, tally, chance, times):
 
 
 def litter(spool, name, chance):
-    """Puts files beside the complete one. Returns how many of them must be set aside."""
+    """Adds files beside the complete one. Returns the number that must be set aside."""
     with open(os.path.join(spool, name), "rb") as f:
         good = f.read()
     point, seed, attempt = name.removesuffix(".json").split("-")
@@ -91,22 +91,22 @@ def litter(spool, name, chance):
     lie = json.dumps(result).encode()
     foreign = json.dumps(dict(json.loads(good), point="f" * 64)).encode()
     bad = {
-        f"{point}-{seed}-9001.json": good[: chance.randint(1, len(good) - 1)],  # cut off
+        f"{point}-{seed}-9001.json": good[: chance.randint(1, len(good) - 1)],  # truncated
         f"{point}-{seed}-9002.json": b"",
         f"{point}-{seed}-9003.json": chance.randbytes(len(good)),
-        f"{point}-{other}-9004.json": lie,  # another seed's, and wrong
-        f"{'0' * 16}-{seed}-9005.json": good,  # another point's name
+        f"{point}-{other}-9004.json": lie,  # wrong, under the name of another seed
+        f"{'0' * 16}-{seed}-9005.json": good,  # under the name of another point
         "of-another-campaign.json": foreign,
         "a list.json": b"[" + good + b"]",
         "not-utf-8-\udcff.json": b"\xff\xfe",
         "too-large.json": b"{",
     }
     copies = {f"{point}-{seed}-{9100 + copy}.json": good for copy in range(3)}
-    unfinished = {f"{point}-{other}-9200.json.{2 ** 22 + 1}.0.tmp": good[:100]}  # its writer cannot exist
+    unfinished = {f"{point}-{other}-9200.json.{2 ** 22 + 1}.0.tmp": good[:100]}  # dead writer
     for file, content in {**bad, **copies, **unfinished}.items():
         with open(os.path.join(spool, file), "wb") as f:
             f.write(content)
-    os.truncate(os.path.join(spool, "too-large.json"), 1 << 40)  # a hole
+    os.truncate(os.path.join(spool, "too-large.json"), 1 << 40)  # sparse
     os.mkdir(os.path.join(spool, "folder.json"))
     os.symlink("/nonexistent", os.path.join(spool, "nowhere.json"))
     return len(bad)

@@ -1,8 +1,9 @@
-"""A power cut: takes back what the shim's journal (shim/journal.h) says was changed and never synchronised.
+"""A power cut: takes back changes that the shim's journal (shim/journal.h) lists as not synchronised.
 
-What is on the disk afterwards is any mixture of what was there at the last fsync and what was written since: per file,
-of sectors; per folder, of its first changes without the later ones. The strict reading of POSIX: a file's fsync does
-not save its name, only that of its folder does."""
+The disk then has any mixture of the state at the last fsync and of later writes: per file by sectors, per
+folder its first changes without the later ones. By the strict reading of POSIX, a file's fsync does not save
+its name; only that of its folder does.
+"""
 import contextlib
 import os
 import re
@@ -28,7 +29,7 @@ def read_journal(folder):
             content = f.read()
         place = 0
         while place < len(content):
-            # A process that was killed while it recorded did not make the change either.
+            # A process killed while recording a change did not make it.
             end = content.find(b"\n", place)
             if end < 0:
                 break
@@ -40,7 +41,7 @@ def read_journal(folder):
 
 
 def acknowledged_spool(records):
-    """The spool files whose names were durable at the cut: (hash's beginning, seed)."""
+    """Returns the spool files whose names were durable at the cut: (prefix of the hash, seed)."""
     waiting, safe = set(), set()
     for record in records:
         target = record.paths[-1]
@@ -54,9 +55,9 @@ def acknowledged_spool(records):
 
 
 def undo(image, record):
-    """The file's content before one change."""
+    """Restores the file's content before one change."""
     if record.kind == "truncate":
-        if len(image) < record.size:  # it grew again only if a later record says so, which has been undone
+        if len(image) < record.size:  # a later record, already undone, made it grow
             image.extend(bytes(record.size - len(image)))
         image[record.offset : record.size] = record.data
     else:
@@ -66,7 +67,7 @@ def undo(image, record):
 
 
 def mixture(old, new, chance):
-    """A file of old and new sectors; its size is either's."""
+    """Returns a file of old and new sectors, with the size of one of them."""
     size = chance.choice((len(old), len(new)))
     mixed = bytearray(size)
     for begin in range(0, size, SECTOR):
@@ -82,8 +83,8 @@ def files_below(folder):
 
 
 def cut(campaign, journal, chance):
-    """Takes back a random part of what was not synchronised. Returns the numbers of changes of contents and of names
-    that were at stake, and notes in the campaign what had been acknowledged."""
+    """Takes back a random part of the changes that were not synchronised. Returns the numbers of such changes
+    of contents and of names, and notes in the campaign what was acknowledged."""
     records = read_journal(journal)
     contents = spoil_contents(campaign, journal, records, chance)
     names = spoil_names(journal, records, chance)
@@ -131,7 +132,7 @@ def spoil_names(journal, records, chance):
     for changes in by_folder.values():
         taken_back += changes[chance.randint(0, len(changes)) :]
         count += len(changes)
-    # Newest first, over all folders: a change may rest upon one of another folder.
+    # Newest first, over all folders: a change may depend on one in another folder.
     for record in sorted(taken_back, key=lambda each: -each.sequence):
         kept = os.path.join(journal, "kept", str(record.sequence))
         with contextlib.suppress(FileNotFoundError):

@@ -1,4 +1,4 @@
-"""Campaigns that are changed while they run: the owner and the verbs that ask are killed."""
+"""Campaigns that are changed while they run; the owner and the requesting verbs are killed."""
 import collections
 import contextlib
 import os
@@ -16,12 +16,12 @@ WISHES = [
     ["cancel", "drill.json", "peclet=2", "--undo"],
     ["retry", "drill.json"],
 ]
-# As the undisturbed campaign was from the beginning.
+# The state of the undisturbed campaign from its beginning.
 LAST = [["set", "drill.json", "--tolerance", "0.08", "--maximum", "14"], ["cancel", "drill.json", "peclet=2", "--undo"]]
 
 
 def changes_and_kills(lab, tally, chance, times):
-    """Whatever was asked for, and whoever was killed over it: the end is that of what was asked for last."""
+    """Changes the campaign and kills at random; the end must be that of the last request."""
     asked = killed = 0
     while tally.tried < times:
         campaign = Campaign(lab, step_ms=20, checkpoint=0.005)
@@ -49,8 +49,7 @@ def changes_and_kills(lab, tally, chance, times):
 
 
 def edges_of_a_verb(lab, tally, chance, stride):
-    """A finished campaign is reopened, and the verb is killed before every call that changes a file; it is said
-    again."""
+    """Reopens a finished campaign with a verb, killed before each call that changes a file; repeats it."""
     struck = collections.Counter()
     tighten = [lab.peclet, "set", "drill.json", "--tolerance", str(FAKE["target"]["relative_tolerance"])]
     for number in calls_of(stride, chance):
@@ -60,7 +59,7 @@ def edges_of_a_verb(lab, tally, chance, stride):
         disturbed = board.environment(lab.shim, role="owner", number=number, path="drill.json,.peclet/")
         campaign.start(disturbed, tighten).wait()
         if not board.struck:
-            break  # the verb was through before
+            break  # the verb ended before
         struck[kind_of(board.what)] += 1
         code = campaign.start(command=tighten).wait()
         tally.expect(campaign, code == 0, f"peclet set ended with exit code {code}")

@@ -1,4 +1,4 @@
-"""Processes that are stopped and go on later, and a wall clock that jumps."""
+"""Processes that are stopped and continued, and a wall clock that jumps."""
 import contextlib
 import glob
 import os
@@ -10,7 +10,7 @@ from drill.board import Board
 from drill.campaign import Campaign, alive
 
 LEASE = 1.2
-BEYOND = 2.5  # so long is a process stopped: longer than its lease, whatever the owner waits for meanwhile
+BEYOND = 2.5  # duration of a stop [s], longer than a lease and the owner's waits
 
 
 def signal_to(process, number):
@@ -24,11 +24,11 @@ def nobody_is_blamed(tally, campaign):
 
 
 def busy_workers(campaign, owner):
-    """Waits until there are workers with seeds."""
+    """Returns the workers once some have seeds."""
     found = []
 
     def are_busy():
-        with contextlib.suppress(Exception):  # there may be no database yet
+        with contextlib.suppress(Exception):  # before the database exists
             running = [row[0] for row in campaign.query("SELECT process FROM attempt WHERE outcome = 'running'")]
             found.extend(process for process in children(owner.pid) if process in running)
         return found or owner.poll() is not None
@@ -38,7 +38,7 @@ def busy_workers(campaign, owner):
 
 
 def worker_stopped(lab, tally, chance, times):
-    """The owner must not wait for it, nor blame the seed; it must be gone before its seed runs elsewhere."""
+    """Stops a worker. The owner must end it before the seed runs again, without a wait or blame."""
     for _ in range(times):
         campaign = Campaign(lab, lease=LEASE, steps=10, step_ms=30)
         owner = campaign.start()
@@ -54,8 +54,8 @@ def worker_stopped(lab, tally, chance, times):
 
 
 def late_workers(lab, tally, chance, times):
-    """A worker hangs in one of its calls, its owner dies, another one runs the campaign, and then it goes on. (It
-    cannot be stopped for that: a stopped process whose owner dies is ended by the system with SIGHUP.)"""
+    """Lets a worker hang in a call while its owner dies and another owner runs the campaign; then continues
+    it. A stopped process would not do: it gets SIGHUP when its owner dies."""
     for _ in range(times):
         campaign = Campaign(lab, checkpoint=0.001, steps=10, step_ms=1)
         board = Board(campaign.folder)
@@ -66,7 +66,7 @@ def late_workers(lab, tally, chance, times):
         campaign.acknowledge()
         if board.struck:
             successor = campaign.start()
-            if chance.random() < 0.5:  # it wakes up while the other one works, or long afterwards
+            if chance.random() < 0.5:  # wakes it during the other run, or after it
                 time.sleep(chance.uniform(0, 0.1))
             else:
                 successor.wait()
@@ -77,7 +77,7 @@ def late_workers(lab, tally, chance, times):
 
 
 def owner_stopped(lab, tally, chance, times):
-    """The owner sleeps beyond the lease, before one of its calls or anywhere, alone or together with its workers."""
+    """Stops the owner beyond its lease, before a call or anywhere, alone or with its workers."""
     for number in range(times):
         campaign = Campaign(lab, lease=LEASE, steps=10, step_ms=40)
         board = Board(campaign.folder)
@@ -95,7 +95,7 @@ def owner_stopped(lab, tally, chance, times):
         for worker in frozen:
             signal_to(worker, signal.SIGSTOP)
         time.sleep(BEYOND)
-        # The owner first: its workers have said nothing when it looks.
+        # Continues the owner first, which then finds its workers silent.
         signal_to(owner.pid, signal.SIGCONT)
         time.sleep(0.05)
         for worker in frozen:
@@ -106,7 +106,7 @@ def owner_stopped(lab, tally, chance, times):
 
 
 def clock_jumps(lab, tally, chance, times):
-    """The wall clock of owner and workers jumps to and fro by a day; the monotonic one is left alone."""
+    """Makes the wall clock of owner and workers jump by a day both ways; the monotonic clock is unchanged."""
     days = 0.0
     libraries = glob.glob("/usr/lib/*/faketime/libfaketime.so.1")
     if not libraries:

@@ -1,4 +1,4 @@
-"""Calls that fail under SQLite, and file systems that are full until somebody makes room."""
+"""Calls that fail below SQLite, and file systems that are full for a while."""
 import collections
 import ctypes
 import itertools
@@ -10,15 +10,15 @@ from drill.board import Board
 from drill.campaign import FAKE, PATIENCE, Campaign, ends_within
 from drill.kills import calls_of
 
-# The shortest campaign there is: every one of its calls can fail in turn.
+# The shortest campaign: each of its calls can fail in turn.
 SHORT = dict(FAKE, sweep=[{"set": "/peclet", "values": [1]}], realisations={"minimum": 2, "maximum": 2})
 
 CLONE_NEWNS, CLONE_NEWUSER = 0x00020000, 0x10000000
 
 
 def failing_calls(lab, tally, chance, call, action, path, stride=1, role="owner", document=SHORT):
-    """The nth call fails, for all n: the run ends with exit code 1 and a message, or goes on. What cannot be read may
-    be called damaged (6), as SQLite does."""
+    """Makes the nth call fail, for all n: the run ends with exit code 1 and a message, or continues.
+    Unreadable data may also be called damaged (6), as by SQLite."""
     allowed, codes = {1, 6} if call == "read" else {1}, collections.Counter()
     for number in calls_of(stride, chance):
         campaign = Campaign(lab, document, workers=1)
@@ -38,8 +38,8 @@ def failing_calls(lab, tally, chance, call, action, path, stride=1, role="owner"
 
 
 def passing_failures(lab, tally, chance, calls, actions, path, stride=1):
-    """The owner's nth call on files of realisations fails once, for all n: it waits and goes on by itself, and nobody
-    is blamed. A result that could be read is not thrown away because the disk failed."""
+    """Makes the owner's nth call on files of realisations fail once, for all n. It must wait, continue by
+    itself and blame no seed. A readable result must not be dropped because the disk failed."""
     codes = collections.Counter()
     for call, action in itertools.product(calls, actions):
         for number in calls_of(stride, chance):
@@ -60,7 +60,7 @@ def passing_failures(lab, tally, chance, calls, actions, path, stride=1):
 
 
 def enter_private_mounts():
-    """What is mounted from now on is seen by this process and its children only, and goes with them."""
+    """Makes later mounts private to this process and its children."""
     library = ctypes.CDLL(None, use_errno=True)
     user, group = os.getuid(), os.getgid()
     if library.unshare(CLONE_NEWNS) != 0:
@@ -73,7 +73,7 @@ def enter_private_mounts():
 
 
 def full_disks(lab, tally, chance, times, folders):
-    """Each file system in turn is full from some moment on; then somebody makes room."""
+    """Fills each file system in turn from some moment on, then makes room."""
     enter_private_mounts()
     outcomes = collections.Counter()
     for _ in range(times):
@@ -83,7 +83,7 @@ def full_disks(lab, tally, chance, times, folders):
             os.makedirs(place)
             subprocess.run(["mount", "-t", "tmpfs", "-o", "size=8m", "none", place], check=True)
             room = chance.randint(0, 1_600_000 if not name else 9_000)
-            ballast = os.path.join(place, "ballast.tmp")  # a name that means nothing in a spool
+            ballast = os.path.join(place, "ballast.tmp")  # a name that a spool ignores
             fill(ballast, place, room)
             owner = campaign.start()
             ended = ends_within(owner, chance.uniform(0.5, 3))

@@ -1,5 +1,4 @@
-"""What is counted against the programs: results lost or counted twice, exports that differ, and anything else that
-should not have happened."""
+"""Counts of failures: results lost or counted twice, exports that differ, and other faults."""
 
 import time
 
@@ -11,7 +10,7 @@ class Tally:
         self.name = name
         self.tried = self.lost = self.double = self.different = self.other = 0
         self.seconds = 0.0
-        self.remarks = []  # measured by the way, for the table's foot
+        self.remarks = []  # measurements for the foot of the table
         self.complaints = []
 
     def complain(self, campaign, message, column="other", count=1):
@@ -23,8 +22,8 @@ class Tally:
             self.complain(campaign, message)
 
     def judge(self, campaign, tried=1, code=None):
-        """Runs the disturbed campaign to its end in peace and compares it with the undisturbed one; `code` is the exit
-        code to expect when it is not that one's."""
+        """Runs the disturbed campaign to its end and compares it with the undisturbed one. `code` is the
+        expected exit code, by default the undisturbed one."""
         self.tried += tried
         campaign.settle()
         campaign.acknowledge()
@@ -42,7 +41,7 @@ class Tally:
         wrong = campaign.misplaced_files()
         patience = time.monotonic() + 10
         while any(path.startswith("spool/") for path in wrong) and time.monotonic() < patience:
-            time.sleep(0.1)  # a dead worker whom nobody has reaped yet cannot be told from one that lives
+            time.sleep(0.1)  # a dead worker that is not reaped yet looks alive
             campaign.run()
             wrong = campaign.misplaced_files()
         self.expect(campaign, not wrong, f"files of realisations are not where they should be: {wrong[:5]}")
@@ -51,7 +50,7 @@ class Tally:
         campaign.close()
 
     def _count_losses(self, campaign):
-        """An acknowledged result that is absent, another one, or was computed once more has been lost."""
+        """Counts acknowledged results that are absent, changed or recomputed as lost."""
         stored = {
             (point, seed): state
             for point, seed, state in campaign.query(
@@ -93,7 +92,7 @@ class Tally:
             )
 
     def count(self, counts, between=""):
-        """Remarks how often each of several things happened."""
+        """Adds a remark on how often each of several things happened."""
         self.remarks.append(", ".join(f"{number} {between}{what}" for what, number in sorted(counts.items())))
 
     def row(self):

@@ -1,2 +1,3 @@
-"""The hostile-folder drill's parts: the campaign that is tried and how it is judged (trial), what can be put where
-(things), and the ways, by the folder they lie in (ways)."""
+"""Parts of the hostile-folder drill: the tried campaign and its judgement (trial), objects to put into it
+(things), and the ways by folder (ways).
+"""

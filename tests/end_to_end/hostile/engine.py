@@ -1,6 +1,7 @@
 #!/usr/bin/python3
-"""engine.py WAY TIMES: an engine that speaks the frames honestly, until it is asked for seed 2: that one's first TIMES
-tries go wrong in a WAY of lies.py. Ways with names that begin with hello or validate lie there instead."""
+"""engine.py WAY TIMES: an engine that is honest until it is asked for seed 2, whose first TIMES tries fail in
+a WAY of lies.py. Ways with names that begin with hello or validate lie there instead.
+"""
 import hashlib
 import json
 import os
@@ -26,10 +27,10 @@ class Engine:
         self.way, self.times = way, times
         self.socket = socket.socket(fileno=os.dup(0))
         self.received = b""
-        self.starts = self.count("starts")  # the first one is asked about the scenes
+        self.starts = self.count("starts")  # the first start is asked about the scenes
 
     def count(self, name):
-        """How often this was called for `name` in the campaign's folder, this time included."""
+        """Returns the number of calls for `name` in the campaign's folder, this one included."""
         with open(name, "a+") as f:
             f.write("x")
             return f.tell()
@@ -41,7 +42,7 @@ class Engine:
         self.socket.sendall(data)
 
     def receive(self, patience=None):
-        """A message; None when there is none in time. The end of the stream ends the engine."""
+        """Returns a message, or None if none arrives in time. The end of the stream ends the engine."""
         while len(self.received) < 8 or len(self.received) < 8 + struct.unpack("<I", self.received[4:8])[0]:
             if not select.select([self.socket], [], [], patience)[0]:
                 return None
@@ -158,7 +159,7 @@ class Engine:
         self.announce(job, text)
 
     def wait(self):
-        """Hears what comes and does nothing; ends when it is told to leave."""
+        """Ignores messages until it is told to leave, then exits."""
         while self.receive()["type"] not in ("drain", "stop"):
             pass
         sys.exit(0)
@@ -170,5 +171,5 @@ class Engine:
 if __name__ == "__main__":
     try:
         Engine(lies.WAYS[sys.argv[1]], int(sys.argv[2])).run()
-    except BrokenPipeError:  # the runner has had enough
+    except BrokenPipeError:  # the runner closed the connection
         sys.exit(1)

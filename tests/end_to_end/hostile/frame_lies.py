@@ -1,4 +1,4 @@
-"""What is sent while a job runs, and what is printed."""
+"""Lies sent or printed while a job runs."""
 import hashlib
 import json
 import os

@@ -1,11 +1,11 @@
-"""What an engine says of itself before it has a job, and of scenes."""
+"""Lies about the engine and about scenes, before it has a job."""
 import os
 import time
 
 from hostile.catalogue import ESCAPE, way
 
 
-# Who it is; told by workers only, from the second process on.
+# Lies about the engine, sent by workers only, from the second process on.
 
 
 def hello(name, fate="ends", codes=(1, 6), **changed):
@@ -48,7 +48,7 @@ def hello_changes(engine, honest):
         os.abort()
 
 
-# What it says about scenes.
+# Lies about scenes.
 
 
 def validate(name, codes=(1,), **changed):

@@ -1,4 +1,4 @@
-"""Where --output leads: a file is replaced; a link, a device, a FIFO and what is open already stay what they are."""
+"""Targets of --output: a file is replaced; links, devices, FIFOs and open descriptors stay."""
 import os
 import stat
 import subprocess
@@ -14,7 +14,7 @@ SCENE = """{ "particles": { "count": 20, "density": 0.1, "species": [ { "radius"
 
 
 class Writer:
-    """A command with --output, and how what it writes begins."""
+    """A command with --output, and the beginning of its output."""
 
     def __init__(self, command, begins, folder):
         self.command, self.begins, self.folder = command, begins, folder
@@ -57,7 +57,7 @@ def a_file(writer):
 def a_link(writer):
     target, path = writer.path("target"), writer.path("out")
     os.symlink("target", path)
-    for _ in range(2):  # to nothing, and to a file
+    for _ in range(2):  # to nothing, then to a file
         writer.writes("out")
         writer.expect(read(target), "the link's target")
         if not os.path.islink(path):
@@ -117,7 +117,7 @@ KINDS = [a_file, a_link, a_fifo, a_device, standard_output, a_substitution, a_fo
 
 
 def check(peclet, engine, campaign):
-    """Prints a line for each command; true when all passed."""
+    """Prints a line for each command; returns True if all passed."""
     folder = os.path.join(campaign, "outputs")
     os.makedirs(folder)
     with open(os.path.join(folder, "scene.json"), "w") as f:

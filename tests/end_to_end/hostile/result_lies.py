@@ -1,4 +1,4 @@
-"""Results that are none, and the file that should hold one."""
+"""Invalid results, and faults of the file of a result."""
 import json
 import os
 
@@ -6,7 +6,7 @@ from hostile.catalogue import ESCAPE, way
 
 
 def document(name, change, **about):
-    """A result whose text is made from the honest document; so the same can be put into the spool."""
+    """Adds a result changed from the honest document, which can also be put into the spool."""
 
     def text(result):
         changed = change(result)
@@ -20,7 +20,7 @@ def document(name, change, **about):
 
 
 def setting(*keys):
-    """A change that puts a value at a place of the document."""
+    """Returns a change that sets a value of the document."""
     *way_there, last, value = keys
 
     def change(result):
@@ -45,7 +45,7 @@ def without(*keys):
 
 
 def spelt(number):
-    """The value in a spelling that json.dumps does not know; what is long is made when it is asked for."""
+    """Returns a change to a spelling unknown to json.dumps; a callable makes long spellings on demand."""
 
     def change(result):
         text = json.dumps({**result, "mean": {"relative_viscosity": "HERE"}})
@@ -147,11 +147,11 @@ for name, change in {
     document(name, change)
 
 
-# Without the number that the campaign asks for there is nothing to wait for, and no seed to blame.
+# Without the campaign's observable no seed can be accepted or blamed, so the run ends.
 document("mean without the observable", without("mean", "relative_viscosity"), fate="ends", codes=(2,))
 
 
-# The file.
+# Lies about the file.
 
 
 @way("file absent")
@@ -226,7 +226,7 @@ def hash_long(engine, job):
     engine.announce(job, text, sha256=ESCAPE * 10_000)
 
 
-# What it has left is sound, and is taken from the spool in the end.
+# The file is sound, and is taken from the spool in the end.
 @way("hash a number", fate="either")
 def hash_number(engine, job):
     text = json.dumps(engine.result(job)).encode()

@@ -1,4 +1,4 @@
-"""What somebody can put in the place of a file."""
+"""Objects that can be put in place of a file."""
 import os
 import socket
 import stat
@@ -8,11 +8,11 @@ ROOT = os.geteuid() == 0
 
 
 class NotTried(Exception):
-    """This machine or user cannot make it."""
+    """This machine or user cannot make the object."""
 
 
 def closed(path, trial):
-    """What its owner may neither read nor write."""
+    """Puts a file that its owner may neither read nor write."""
     if not os.path.lexists(path):
         rubbish(path, trial)
     os.chmod(path, 0)
@@ -27,7 +27,7 @@ def make_way(path):
 
 
 def link(path, trial):
-    """To a file of somebody's outside of the campaign."""
+    """Puts a link to a file outside the campaign."""
     make_way(path)
     os.symlink(trial.victim, path)
 
@@ -43,7 +43,7 @@ def loop(path, trial):
 
 
 def dangling(path, trial):
-    """What does not exist yet would be made outside."""
+    """Puts a link to an absent file, which would be made outside."""
     make_way(path)
     os.symlink(os.path.join(trial.outside, "new"), path)
 
@@ -54,7 +54,7 @@ def fifo(path, trial):
 
 
 def folder(path, trial):
-    """With something in it, so that no name can be put in its place."""
+    """Puts a folder with content, which no file can replace."""
     make_way(path)
     os.makedirs(os.path.join(path, "full"))
 
@@ -62,7 +62,7 @@ def folder(path, trial):
 def unix_socket(path, trial):
     make_way(path)
     place = os.open(os.path.dirname(path), os.O_DIRECTORY)
-    try:  # by a short name: a socket's may have 107 bytes
+    try:  # a short path: a socket's may have 107 bytes
         with socket.socket(socket.AF_UNIX) as listener:
             listener.bind(f"/proc/self/fd/{place}/{os.path.basename(path)}")
     finally:
@@ -70,7 +70,7 @@ def unix_socket(path, trial):
 
 
 def device(path, trial):
-    """/dev/full's number: reads give zeros without end."""
+    """Puts a device with /dev/full's number, whose reads give zeros without end."""
     if not ROOT:
         raise NotTried("only root makes devices")
     make_way(path)
@@ -78,7 +78,7 @@ def device(path, trial):
 
 
 def sparse(path, trial):
-    """A terabyte that takes no room."""
+    """Puts a sparse terabyte."""
     make_way(path)
     with open(path, "wb") as f:
         f.truncate(TERABYTE)
@@ -101,7 +101,7 @@ def empty(path, trial):
 
 
 def regular(path, trial):
-    """A file where a folder belongs."""
+    """Puts a file in place of a folder."""
     make_way(path)
     with open(path, "w") as f:
         f.write("no folder")
@@ -117,7 +117,7 @@ def text(content):
 
 
 def foreign(path, trial):
-    """Somebody else's, who can change it while we work."""
+    """Puts another user's folder, which that user can change meanwhile."""
     if not ROOT:
         raise NotTried("only root gives folders away")
     os.makedirs(path, exist_ok=True)
@@ -125,7 +125,7 @@ def foreign(path, trial):
 
 
 def linked_folder(path, trial):
-    """The folder is elsewhere, and a link leads to it."""
+    """Puts a link to a folder elsewhere."""
     make_way(path)
     os.symlink(trial.outside, path)
 

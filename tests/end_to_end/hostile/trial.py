@@ -1,5 +1,4 @@
-"""One way that is tried: a campaign of which some seeds have ended, what somebody has put into its folder, and what the
-programs do about it."""
+"""A trial: a campaign with some ended seeds, an object in its folder, and the programs' reaction."""
 import os
 import re
 import shutil
@@ -13,8 +12,8 @@ from .things import ROOT
 from .ways import REFUSED
 
 LONGEST_LINE = 500
-MOST_MEMORY = 200  # MB, of any process
-PATIENCE = 60  # seconds; what takes longer hangs
+MOST_MEMORY = 200  # of any process [MB]
+PATIENCE = 60  # a longer run hangs [s]
 CROWD_OF_THE_SHORT_FORM = 3000
 
 
@@ -29,7 +28,7 @@ class Said:
 
 
 class Stock:
-    """A campaign after its pilot and the answer it leads to, for each engine; made once and copied."""
+    """A campaign after its pilot and its answer, for each engine; made once and copied."""
 
     def __init__(self, programs, folder):
         self.peclet, self.engine, self.fake_engine = (
@@ -53,7 +52,7 @@ NOBODY = {"user": 65534, "group": 65534, "extra_groups": []}
 
 
 def run(peclet, folder, *arguments, humble=False):
-    """One call, whose memory, time and last word are judged by whoever asked for it."""
+    """Runs a command; the caller judges its memory, time and last word."""
     with open(os.path.join(folder, "said.out"), "wb") as out, open(os.path.join(folder, "said.err"), "wb") as err:
         process = subprocess.Popen(
             [peclet, *arguments],
@@ -92,7 +91,7 @@ def export(peclet, folder):
 
 
 def picture(folder, but):
-    """Everything about the files in `folder`, but what is in `but`."""
+    """Returns the state of all files in `folder` outside `but`."""
     found = {}
     for place, folders, files in os.walk(folder):
         folders[:] = [name for name in folders if os.path.join(place, name) != but]
@@ -131,7 +130,7 @@ class Trial:
         return min(number, CROWD_OF_THE_SHORT_FORM) if self.short else number
 
     def place(self):
-        """Of what is put, with the point and seed that a run takes next."""
+        """Returns the path of the object, with the point and seed that a run takes next."""
         path = self.way.path
         if "{point}" in path:
             ((point, seed),) = query(
@@ -158,7 +157,7 @@ class Trial:
         return said
 
     def judge(self):
-        """What the run said; Wrong when it is not what it must be."""
+        """Returns the run's line about the object; raises Wrong if the run misbehaves."""
         place = self.place()
         self.way.put(place, self)
         before = picture(self.folder, self.data)
@@ -176,7 +175,7 @@ class Trial:
             self.judge_refusal(said, place)
         elif said.code not in (0, 3):
             raise Wrong(f"exit code {said.code}\n{said.err}")
-        if export(self.peclet, self.folder) != self.answer:  # by whoever may read
+        if export(self.peclet, self.folder) != self.answer:  # the export is read with full rights
             raise Wrong(f"another answer\n{said.err}")
         return about[0] if about and self.way.says else ""
 

@@ -1,22 +1,22 @@
-"""The ways, by where they lie: a name, the path, what is put there, what a run must do, and what it must say."""
+"""The ways, by folder: a name, the path, the object, the expected outcome and message."""
 import dataclasses
 import typing
 
 from . import things
 
-GOES_ON = "goes on"  # to the same bytes at once
-REFUSED = "refused"  # by one line; when what is in the way has gone, to the same bytes
+GOES_ON = "goes on"  # to equal bytes at once
+REFUSED = "refused"  # with one line; to equal bytes once the object is removed
 
 
 @dataclasses.dataclass
 class Way:
-    path: str  # in the campaign's folder; {point} and {seed} are those of a seed that is run next
+    path: str  # in the campaign's folder; {point} and {seed} are those that run next
     put: typing.Callable
     outcome: str
-    says: str  # a part of the one line; "" when there is nothing to say
+    says: str  # a part of the line; "" for no message
     quick: bool = False  # also in the short form
-    real: bool = False  # with peclet-engine: it is the engine that has to bear it
-    code: int = 2  # of a refusal
+    real: bool = False  # with peclet-engine, which meets the object
+    code: int = 2  # exit code of a refusal
     humble: bool = False  # run by an ordinary user, because root may read everything
     name: str = ""
 

@@ -9,7 +9,7 @@ from .night import workers_of
 
 
 def killed(night):
-    """A campaign whose owner was killed when it had results, and whose workers have left."""
+    """Runs a campaign, kills its owner after some results, and waits for the end of its workers."""
     night.has_begun(0.6)
     before = len(night.results())
     run = running(night, before + 3, 300)

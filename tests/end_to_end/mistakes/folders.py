@@ -6,7 +6,7 @@ from .night import workers_of
 
 
 def running(night, results=3, milliseconds=100, command="peclet run night.json --workers 2"):
-    """A campaign that runs and has its first results, and does not end before the case lets go."""
+    """Starts a campaign and waits for its first results; it does not end before the case calls lets_go()."""
     night.slow(milliseconds)
     night.holds()
     night.write()
@@ -47,7 +47,7 @@ def copied(night):
     run = running(night)
     night.lets_go()
     night.types("cp -r night.peclet copy.peclet && cp night.json copy.json && peclet run copy.json --quiet", (0, 6))
-    if "damaged" in night.said:  # what was copied while it was written may be torn: then its own backup must help
+    if "damaged" in night.said:  # a copy of files being written may be torn; its backup must help
         night.follows(r"peclet restore [^`]*")
         night.types("peclet run copy.json --quiet")
     night.waits(run)

@@ -1,4 +1,4 @@
-"""What the machine does not give: room, rights, time, an environment."""
+"""Limits of the machine: room, rights, time, an environment."""
 import glob
 import os
 import subprocess
@@ -17,7 +17,7 @@ def export_on_full_disk(night):
 
 
 def as_nobody(night, command, code, says=()):
-    """As an ordinary user. Only root can become one; an ordinary user is one already."""
+    """Runs the command as an ordinary user; root becomes one."""
     return night.types(f"{NOBODY} {command}" if os.geteuid() == 0 else command, code, says)
 
 

@@ -1,4 +1,4 @@
-"""One mistake: a folder of its own, what is typed there, what is answered, and what must be true of it."""
+"""One mistake: its folder, the commands, the answers, and the required state."""
 import contextlib
 import json
 import os
@@ -11,9 +11,9 @@ import subprocess
 from campaign_folder import comes_true, processes_with, query
 from thirty_spheres import thirty_spheres
 
-# Nothing takes this long: a command that does hangs.
+# A command that takes longer hangs [s].
 PATIENCE = 120
-# The fake engine's: two points of eight seeds and one stop test each. 20 ms a seed unless a case asks for slower ones.
+# The fake engine's campaign: two points of eight seeds with one stop test each, 20 ms a seed by default.
 CAMPAIGN = {
     "name": "night",
     "scene": {"fluid": {"viscosity": 1}, "peclet": 1},
@@ -22,7 +22,7 @@ CAMPAIGN = {
     "realisations": {"minimum": 8, "maximum": 8},
     "engine": ["fake_engine"],
 }
-# A second of real physics a seed.
+# A second of real physics per seed.
 SCENE = thirty_spheres(0.5, 1)
 REAL = dict(
     CAMPAIGN, scene=SCENE, sweep=[{"set": "/flow/shear_rate", "values": [0.05]}], engine=["peclet-engine", "serve"]
@@ -30,16 +30,16 @@ REAL = dict(
 
 
 def workers_of(night):
-    """The engines that run for the case's campaign."""
+    """Returns the engines of the case's campaign."""
     return processes_with("PECLET_CAMPAIGN", night.path("night.peclet"))
 
 
 class Wrong(Exception):
-    """What a case expected and did not see."""
+    """An expectation of a case failed."""
 
 
 class NotTried(Exception):
-    """What this machine lacks for a case."""
+    """The machine lacks something that the case needs."""
 
 
 class Night:
@@ -48,19 +48,19 @@ class Night:
         self.environment = {**os.environ, "PATH": f"{self.programs}:/usr/bin:/bin", "PECLET_FAKE_STEP_MS": "2"}
         for name in ("PECLET_FAKE_FAULTS", "PECLET_FAKE_IDENTITY", "PECLET_FAKE_HOLD"):
             self.environment.pop(name, None)
-        self.page = []  # what is typed and answered, for the transcript
+        self.page = []  # commands and answers, for the transcript
         self.said = ""  # the last answer
         self.started = []
-        self.known = {}  # results that there have been: (point, seed) -> hash of the final state
+        self.known = {}  # results seen: (point, seed) -> hash of the final state
 
-    # What a person does.
+    # Actions of a person.
 
     def write(self, document=None, name="night.json"):
         with open(self.path(name), "w") as f:
             f.write(document if isinstance(document, str) else json.dumps(document or CAMPAIGN, indent=2) + "\n")
 
     def types(self, command, code=0, says=(), hides=()):
-        """Runs a line as a shell would, and judges exit code and answer. Returns the answer."""
+        """Runs a command line in a shell, judges exit code and answer, and returns the answer."""
         done = self.shell(command, stderr=subprocess.STDOUT)
         self.said = done.stdout
         self.page += [("types", command), ("answer", self.said)]
@@ -68,7 +68,7 @@ class Night:
         return self.said
 
     def starts(self, command):
-        """The line with an & behind it, in a process group of its own as an interactive shell makes one."""
+        """Starts the command line in the background, in its own process group like an interactive shell."""
         log = self.path(f"answer-{len(self.started)}")
         with open(log, "w") as f:
             how = {"stdin": subprocess.DEVNULL, "stdout": f, "stderr": f, "start_new_session": True}
@@ -79,12 +79,12 @@ class Night:
         return process
 
     def answer_of(self, process):
-        """Returns what was started has said so far."""
+        """Returns the output of a started process until now."""
         with open(next(log for known, log in self.started if known is process)) as f:
             return f.read()
 
     def waits(self, process, code=0, says=(), hides=()):
-        """For the end of what was started."""
+        """Waits for the end of a started process and judges its exit code and answer."""
         got = process.wait(timeout=PATIENCE)
         self.said = self.answer_of(process)
         self.page.append(("answer", self.said))
@@ -92,7 +92,7 @@ class Night:
         return self.said
 
     def stops(self, process):
-        """Ctrl-C."""
+        """Sends Ctrl-C."""
         self.page.append(("remark", "Ctrl-C."))
         process.send_signal(signal.SIGINT)
 
@@ -100,31 +100,30 @@ class Night:
         self.page.append(("remark", text))
 
     def follows(self, pattern=r"peclet [^`\n]*", code=0, says=()):
-        """Does literally what the last answer names as the next command: the first thing between `` or at the end of a
-        line that the pattern fits."""
+        """Types the command named in the last answer: the first match in backquotes or at a line's end."""
         found = re.search(rf"`({pattern})`|(?:with: |: )({pattern})$", self.said, re.MULTILINE)
         if not found:
             raise Wrong(f"no command to follow in: {self.said!r}")
         return self.types(found.group(1) or found.group(2), code, says)
 
     def has_run(self):
-        """The campaign is run to its end."""
+        """Runs the campaign to its end."""
         self.write()
         self.types("peclet run night.json --quiet > table")
         self.remembers()
 
     def has_begun(self, seconds):
-        """The campaign is run for a while, with slow seeds."""
+        """Runs the campaign for a while, with slow seeds."""
         self.slow(300)
         self.write()
         self.types(f"peclet run night.json --quiet --workers 2 --time-limit {seconds} > table", 75)
 
     def ends(self):
-        """Runs the campaign to its end, which loses nothing."""
+        """Runs the campaign to its end, and requires that nothing is lost."""
         self.types("peclet run night.json --quiet", 0, ["2 converged"])
         self.lost_nothing()
 
-    # What must be true.
+    # Requirements.
 
     def judge(self, got, code, says, hides):
         codes = code if isinstance(code, tuple) else (code,)
@@ -144,7 +143,7 @@ class Night:
         return query(self.path(data, "campaign.db"), sql)
 
     def results(self, data="night.peclet"):
-        """What the database of a campaign's folder holds."""
+        """Returns the results in the database of a campaign's folder."""
         rows = self.query(
             "SELECT hash, seed, final_state_sha256 FROM realisation JOIN point USING (point_id) "
             "WHERE state IN ('done', 'failed')",
@@ -157,8 +156,7 @@ class Night:
         return len(self.known)
 
     def lost_nothing(self, data="night.peclet", but=0):
-        """Every result there has been is there, with the same content; `but` so many that the mistake itself
-        destroyed."""
+        """Requires that every earlier result exists unchanged, except `but` that the mistake destroyed."""
         now = self.results(data)
         gone = [key for key, state in self.known.items() if now.get(key) != state]
         if len(gone) > but:
@@ -166,7 +164,7 @@ class Night:
         self.page.append(("kept", len(self.known) - len(gone), len(gone)))
 
     def answers_as_undisturbed(self):
-        """The canonical export is that of the same campaign without the mistake."""
+        """Requires the canonical export of a campaign without the mistake."""
         disturbed = self.quietly("peclet export night.json --canonical")
         self.quietly(
             "mkdir undisturbed && cp night.json undisturbed/ && cd undisturbed && peclet run night.json --quiet"
@@ -175,7 +173,7 @@ class Night:
             raise Wrong("the export differs from that of an undisturbed campaign")
         self.page.append(("same",))
 
-    # The tools of the above.
+    # Tools of the methods above.
 
     def path(self, *names):
         return os.path.join(self.folder, *names)
@@ -202,8 +200,7 @@ class Night:
         self.wait_for(f"{count} results", lambda: len(self.results(data)) >= count)
 
     def holds(self):
-        """The last seed of each point stands still half-way from now on: a run goes on until lets_go(), whatever the
-        machine does besides."""
+        """Makes the last seed of each point stop half-way, so that a run lasts until lets_go()."""
         with open(self.path("hold"), "w"):
             pass
         self.environment.update(PECLET_FAKE_HOLD=self.path("hold"), PECLET_FAKE_HOLD_SEED="7")
@@ -213,7 +210,7 @@ class Night:
             os.remove(self.path("hold"))
 
     def wait_for_answer(self, process, phrase):
-        """Until what was started has said that."""
+        """Waits until the output of a started process contains `phrase`."""
         self.wait_for(f"the answer {phrase!r}", lambda: phrase in self.answer_of(process))
 
     def slow(self, milliseconds):

@@ -11,12 +11,12 @@ def interrupted_twice(night):
     """Ctrl-C, and again because it takes a second"""
     night.environment.update(
         PECLET_FAKE_FAULTS="hang:7", PECLET_FAKE_FAULT_STEP="0"
-    )  # it does not hear the first signal
+    )  # the engine ignores the first signal
     run = running(night)
     night.wait_for("a seed that hangs", lambda: night.query("SELECT 1 FROM attempt WHERE seed = 7"))
     night.remembers()
     os.killpg(run.pid, signal.SIGINT)
-    night.wait_for_answer(run, "a second signal")  # two at once may come as one
+    night.wait_for_answer(run, "a second signal")  # two signals at once may merge
     os.killpg(run.pid, signal.SIGINT)
     night.waits(run, 75, ["a second signal stops at once", "`peclet run night.json` goes on"])
     night.lost_nothing()

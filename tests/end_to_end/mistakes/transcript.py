@@ -11,16 +11,16 @@ many that the command that the answer names works as it stands. Folders are shor
 legends of tables cut, long lines of answers folded, times and process numbers replaced; `fake_engine` is the tests'
 engine without physics.
 """
-WIDEST = 120  # characters of a line
-LONGEST = 12  # lines of an answer
+WIDEST = 120  # characters per line
+LONGEST = 12  # lines per answer
 
 
-# What every table ends with.
+# The end of every table.
 LEGEND = re.compile(r"^(all seeds: mean|95 % interval at the last).*\n", re.MULTILINE)
 
 
 def folded(line, indent=""):
-    """The line as it is, or in parts that are narrow enough, the later ones indented; words stay whole."""
+    """Returns the line, or its parts of allowed width, the later ones indented; words stay whole."""
     if len(line) <= WIDEST:
         return [line]
     return textwrap.wrap(line, WIDEST, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False)

@@ -1,4 +1,4 @@
-"""Verbs, options, names and values that are not what was meant."""
+"""Mistyped verbs, options, names and values."""
 import json
 
 from .night import CAMPAIGN, REAL, SCENE

@@ -1,4 +1,4 @@
-// SQLite's memory, so that its nth allocation can fail. Nobody else's is touched.
+// Replaces SQLite's allocator, so that its nth allocation can fail; other allocations are unchanged.
 #include <dlfcn.h>
 #include <sqlite3.h>
 
@@ -19,7 +19,7 @@ void* reallocate(void* block, int size) {
   return strike(Call::allocation, "") == 0 ? original.xRealloc(block, size) : nullptr;
 }
 
-// Before main(): SQLite takes this only before its first use. An engine has no SQLite, and nothing is done.
+// Runs before main(), because SQLite accepts an allocator only before its first use. Engines have no SQLite.
 __attribute__((constructor)) void take_over() {
   if (std::getenv("PECLET_FAULT_BOARD") == nullptr) return;
   void* const symbol = dlsym(RTLD_DEFAULT, "sqlite3_config");

@@ -1,5 +1,5 @@
-// The C library's calls that change files or send to sockets, and reads of files: each asks the plan first,
-// and then makes the system call itself. Relative paths are not used by the programs, and not resolved here.
+// The C library's calls that change files or send to sockets, and reads of files. Each asks the plan first
+// and then makes the system call. The programs use no relative paths, so these are not resolved.
 #include <fcntl.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -33,7 +33,7 @@ int open_file(const char* path, int flags, mode_t mode) {
   return static_cast<int>(syscall(SYS_openat, AT_FDCWD, path, flags, mode));
 }
 
-// A write that fails leaves the first half of its bytes behind.
+// A failing write leaves the first half of its bytes.
 ssize_t write_at(int descriptor, const void* bytes, size_t count, off_t offset) {
   const bool fault = fails(Call::write, path_of(descriptor));
   const int error = errno;

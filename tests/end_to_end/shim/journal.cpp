@@ -19,7 +19,7 @@ const char* folder() {
   return path;
 }
 
-// The write-ahead log's index is memory that SQLite builds anew; the lock holds nothing.
+// SQLite rebuilds the write-ahead log's index, and the lock is empty.
 bool is_recorded(const std::string& path) {
   return folder() != nullptr && path.find(".peclet/") != std::string::npos && !path.ends_with("-shm") &&
          !path.ends_with("campaign.lock");
@@ -33,7 +33,7 @@ void append(const std::string& record) {
   const std::string path = std::string(folder()) + "/" + std::to_string(getpid());
   const long file =
       syscall(SYS_openat, AT_FDCWD, path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
-  // A record that is not there would make the drill's power cut too mild.
+  // A missing record would make the drill's power cut too mild.
   if (file < 0 || syscall(SYS_write, file, record.data(), record.size()) != static_cast<long>(record.size()))
     std::abort();
   syscall(SYS_close, file);
@@ -54,7 +54,7 @@ std::string bytes_at(const std::string& path, off_t offset, off_t end) {
   return bytes;
 }
 
-// A second name for a file that is about to lose its own.
+// Gives a file a second name before it loses its own.
 void keep(std::int64_t sequence, const std::string& path) {
   const std::string name = std::string(folder()) + "/kept/" + std::to_string(sequence);
   syscall(SYS_linkat, AT_FDCWD, path.c_str(), AT_FDCWD, name.c_str(), 0);

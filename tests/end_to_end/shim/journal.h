@@ -1,9 +1,9 @@
-// What a power cut would take back: every change of a file that has not been followed by fsync.
+// Records what a power cut would take back: every change of a file without a later fsync.
 //
-// Records go to one file per process in the folder PECLET_FAULT_JOURNAL: a line
+// Each process writes a file in the folder PECLET_FAULT_JOURNAL. A record is a line
 //     SEQUENCE KIND INODE OFFSET OLD_SIZE BYTES PATH [-> PATH]
-// and so many bytes of what was there before. A change is recorded before it is made, a synchronisation after
-// it. Files that are removed or replaced live on under a second name in `kept/SEQUENCE`.
+// and BYTES bytes of the old content. A change is recorded before it is made, a synchronisation after it.
+// Removed or replaced files keep a second name in `kept/SEQUENCE`.
 #pragma once
 
 #include <sys/types.h>
@@ -13,7 +13,7 @@
 namespace peclet::drill {
 
 void note_created(const std::string& path);
-// `count` bytes at `offset` are about to be written.
+// Records that `count` bytes at `offset` are about to be written.
 void note_write(int descriptor, off_t offset, std::size_t count);
 void note_truncation(int descriptor, off_t size);
 void note_synchronised(int descriptor);

@@ -40,7 +40,7 @@ constexpr std::array<std::pair<const char*, Action>, 8> action_names{{{"kill", A
                                                                       {"edquot", Action::edquot},
                                                                       {"fail", Action::fail}}};
 
-// A plan that makes no sense must not look like a drill that was passed.
+// Ends the program: an invalid plan must not look like a passed drill.
 [[noreturn]] void refuse(const std::string& why) {
   std::fprintf(stderr, "fault shim: %s\n", why.c_str());
   std::_Exit(99);
@@ -112,8 +112,7 @@ void kill_children_of(pid_t parent) {
   }
 }
 
-// The owner is the parent of its workers; one whose owner is gone has been given to another process, which is
-// none of ours.
+// The owner is the parent of its workers. A worker whose owner has ended has a parent outside the drill.
 void cut_power() {
   const bool owner = std::strcmp(program_invocation_short_name, "peclet") == 0;
   if (owner) {

@@ -18,7 +18,7 @@ void expect_near(const Vector3& a, const Vector3& b, double tolerance) {
   EXPECT_NEAR(a.z, b.z, tolerance);
 }
 
-// U = (rate y, 0, 0), Omega = (0, 0, -rate / 2), E_xy = rate / 2.
+// Expected: U = (rate y, 0, 0), Omega = (0, 0, -rate / 2), E_xy = rate / 2.
 TEST(BackgroundFlow, OfSimpleShearGoesAlongXAndTurnsTheOtherWay) {
   const PeriodicCell cell = cell_with(simple_shear(0.7));
   const BackgroundFlow flow(cell);
@@ -30,7 +30,7 @@ TEST(BackgroundFlow, OfSimpleShearGoesAlongXAndTurnsTheOtherWay) {
   for (const double rest : {strain.xx, strain.yy, strain.zz, strain.xz, strain.yz}) EXPECT_EQ(rest, 0);
 }
 
-// u = W x r turns as a whole: half its vorticity is W and nothing is strained.
+// u = W x r is a rotation: half its vorticity is W, and the strain rate is zero.
 TEST(BackgroundFlow, OfARotationIsThatRotation) {
   Draws draws(1);
   const Vector3 turning = draws.vector();
@@ -46,7 +46,7 @@ TEST(BackgroundFlow, OfARotationIsThatRotation) {
   }
 }
 
-// Any gradient is the rotation and the strain together: u = Omega x r + E r.
+// u = Omega x r + E r for any gradient.
 TEST(BackgroundFlow, IsItsRotationAndItsStrain) {
   Draws draws(2);
   for (int n = 0; n < 10; ++n) {
@@ -60,7 +60,7 @@ TEST(BackgroundFlow, IsItsRotationAndItsStrain) {
   }
 }
 
-// u'_x = c y^3 has the Laplacian 6 c y and its gradient 3 c y^2 the Laplacian 6 c.
+// u'_x = c y^3 has the Laplacian 6 c y; its gradient 3 c y^2 has the Laplacian 6 c.
 class Cubic final : public FlowVariation {
  public:
   Local at(const Vector3& x, const PeriodicCell& /*cell*/) const override {
@@ -74,7 +74,7 @@ class Cubic final : public FlowVariation {
   static constexpr double c = 0.3;
 };
 
-// The uniform part needs no correction; of the other, a^2/6 and a^2/10 of the Laplacians.
+// Corrections: zero for the uniform part, a^2/6 and a^2/10 times the Laplacians for the rest.
 TEST(BackgroundFlow, IsFeltByASphereAsFaxenSays) {
   const PeriodicCell cell = cell_with(simple_shear(0.7));
   const Cubic cubic;
@@ -88,7 +88,7 @@ TEST(BackgroundFlow, IsFeltByASphereAsFaxenSays) {
   EXPECT_EQ(flow.varying_strain(x, a).xx, 0);
 }
 
-// 2 eta E of planar extension: eta_E = (xx - yy) / (4 rate) is eta.
+// 2 eta E of planar extension: eta_E = (xx - yy) / (4 rate) = eta.
 TEST(BackgroundFlow, OfExtensionHasTheSolventsNormalStresses) {
   const double rate = 0.3, viscosity = 1.7;
   const SymmetricTensor stress =
@@ -98,7 +98,7 @@ TEST(BackgroundFlow, OfExtensionHasTheSolventsNormalStresses) {
   EXPECT_EQ(stress.xy, 0);
 }
 
-// F = zeta (U - u), T = zeta_r (Omega - w), and the speeds relative to U, by the compiled loops.
+// The compiled loops give F = zeta (U - u), T = zeta_r (Omega - w), and the speeds relative to U.
 TEST(BackgroundFlow, OfAnyGradientDragsTheParticles) {
   Draws draws(3);
   for (const bool sheared : {false, true}) {

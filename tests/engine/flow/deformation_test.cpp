@@ -48,7 +48,7 @@ TEST(OscillatoryShear, GoesToAndFro) {
   }
 }
 
-// A quarter, a half and a whole cycle have 1, 2 and 4 amplitudes; within them sin(w t) = 1/2 at a twelfth.
+// Quarter, half and whole cycles have strains of 1, 2 and 4 amplitudes; sin(w t) = 1/2 at a twelfth.
 TEST(OscillatoryShear, CountsItsStrainInBothDirections) {
   const OscillatoryShear shear(0.2, 3);
   const double period = 2 * std::numbers::pi / 3;
@@ -103,7 +103,7 @@ TEST(ImposedFlow, HasTheRateOfItsSteadyPart) {
   EXPECT_EQ(ImposedFlow().shear_part({.xy = 5}), 5);
 }
 
-// Both shears are along y, so that their displacements add up.
+// Both shear gradients are along y, so the displacements add.
 TEST(CrossShear, SwingsAcrossASteadyShear) {
   const CrossShear shear(0.5, 0.2, 3);
   const double time = 0.7, h = 1e-6;
@@ -116,7 +116,7 @@ TEST(CrossShear, SwingsAcrossASteadyShear) {
   EXPECT_EQ(shear.time_of(2, 0), 4);
 }
 
-// Its lattice meets itself again after ln((3 + sqrt 5) / 2): exp(L t) H0 = H0 M with whole numbers M.
+// The lattice recurs after a strain of ln((3 + sqrt 5) / 2): exp(L t) H0 = H0 M with an integer matrix M.
 TEST(PlanarExtension, BringsItsLatticeBack) {
   const double rate = 0.5, period = std::log((3 + std::sqrt(5.0)) / 2) / rate;
   const PlanarExtension extension(rate);
@@ -130,7 +130,7 @@ TEST(PlanarExtension, BringsItsLatticeBack) {
   EXPECT_NEAR(determinant(whole), 1, 1e-12);
 }
 
-// A cell that follows it by changes of its basis keeps its volume and stays wide, for the widest strain too.
+// A cell that follows by basis changes keeps its volume and its width up to the largest strain.
 TEST(PlanarExtension, KeepsItsCellWide) {
   const PlanarExtension extension(1);
   PeriodicCell cell = PeriodicCell::with_edges(extension.edges_at_start({1, 1, 1}), {});
@@ -143,7 +143,7 @@ TEST(PlanarExtension, KeepsItsCellWide) {
   }
 }
 
-// Of a unit cube: |x y z| >= 1/7 for every point of the lattice but the origin, reached by the edges.
+// The lattice of the unit cube has |x y z| >= 1/7 at every point but the origin, with equality at the edges.
 TEST(UniaxialExtension, BeginsWithACubeWhoseLatticeNoDiagonalFlowMakesThin) {
   const Matrix3 edges = UniaxialExtension(1).edges_at_start({1, 1, 1});
   for (std::size_t i = 0; i < 3; ++i) {
@@ -163,7 +163,7 @@ TEST(UniaxialExtension, BeginsWithACubeWhoseLatticeNoDiagonalFlowMakesThin) {
   EXPECT_NEAR(least, 1.0 / 7, 1e-12);
 }
 
-// Along exp(t), across exp(-t/2): the volume stays; rates either way.
+// exp(t) along and exp(-t/2) across conserve volume, for rates of either sign.
 TEST(UniaxialExtension, KeepsItsCellWideAndItsImagesApart) {
   for (const double rate : {1.0, -1.0}) {
     const UniaxialExtension extension(rate);
@@ -181,7 +181,7 @@ TEST(UniaxialExtension, KeepsItsCellWideAndItsImagesApart) {
   }
 }
 
-// The shortest vector of a lattice is among sums of few edges of a compact cell.
+// The shortest lattice vector is among sums of few edges of a compact cell.
 TEST(Deformation, BringsImagesOfTurnedCubesNoNearerThanItSays) {
   const PlanarExtension planar(1);
   const UniaxialExtension uniaxial(1), biaxial(-1);
@@ -205,7 +205,7 @@ TEST(Deformation, BringsImagesOfTurnedCubesNoNearerThanItSays) {
   }
 }
 
-// At 2 for a strain of 1, down to -1 in a time of 3, at rest for 1, then at -0.5.
+// Rate 2 for a strain of 1, a ramp down to -1 over a time of 3, rest for a time of 1, then rate -0.5.
 class Programme : public testing::Test {
  protected:
   Segments segments{{{2, 2, time_of_segment(2, 2, 1)}, {2, -1, 3}, {0, 0, 1}}, -0.5};
@@ -230,7 +230,7 @@ TEST_F(Programme, CountsStrainInBothDirectionsFromAnyTime) {
   EXPECT_NEAR(segments.time_of(2.5, 0), 1.5, 1e-12);
   EXPECT_NEAR(segments.time_of(1.5, 0.5), 1, 1e-12);
   EXPECT_NEAR(segments.time_of(3.5, 0), 3.5, 1e-12);
-  EXPECT_NEAR(segments.time_of(4, 0), 5.5, 1e-12);  // the rest has passed
+  EXPECT_NEAR(segments.time_of(4, 0), 5.5, 1e-12);  // includes the rest
   EXPECT_NEAR(segments.time_of(1, 4), 2.5, 1e-12);
   EXPECT_NEAR(segments.strain_between(0.5, 0, 13), 4.5, 1e-12);
   EXPECT_NEAR(segments.strain_between(0.5, 5, 13), 1.5, 1e-12);
@@ -240,14 +240,14 @@ TEST_F(Programme, CountsStrainInBothDirectionsFromAnyTime) {
 TEST_F(Programme, IsSteadyFromItsLastSegmentOnAndJumpsBetweenOthers) {
   EXPECT_EQ(segments.steady_gradient(4.4), Matrix3{});
   EXPECT_EQ(segments.steady_gradient(4.5), simple_shear(-0.5));
-  EXPECT_FALSE(segments.jumps_between(0, 3.5));  // the ramp begins where it is
+  EXPECT_FALSE(segments.jumps_between(0, 3.5));  // the ramp starts without a jump
   EXPECT_TRUE(segments.jumps_between(3.5, 3.6));
   EXPECT_FALSE(segments.jumps_between(3.4, 3.5));
   EXPECT_TRUE(segments.jumps_between(4.4, 4.6));
 }
 
 TEST(TimeOfSegment, TurnsWhereItsRateDoes) {
-  // From 2 to -1 in a time of 3: 2 forth and 0.5 back.
+  // From 2 to -1 over a time of 3: strain 2 forward and 0.5 back.
   EXPECT_DOUBLE_EQ(time_of_segment(2, -1, 2.5), 3);
   EXPECT_DOUBLE_EQ(time_of_segment(0, 1, 2), 4);
 }

@@ -1,5 +1,4 @@
-// Spheres that the fluid carries along: both methods take them where the flow leads, in the cell that the
-// flow deforms, whatever their mass.
+// Spheres of any mass, carried by the fluid through the deforming cell, by explicit and implicit steps.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,7 +25,7 @@ System carried(const Flow& deformation, bool implicit, int steps, double step, d
   System system;
   system.particles = make_particles({1, 1}, density);
   system.box = PeriodicCell({40, 40, 40}, deformation->velocity_gradient(0));
-  physics.contact = ContactParameters{.normal_stiffness = 1};  // so that there is a range to look in
+  physics.contact = ContactParameters{.normal_stiffness = 1};  // gives the list a range
   system.list = NeighbourList(range_table(make_pair_kinds(physics, {1}), 1), 0.1);
   for (const std::size_t i : {0U, 1U}) {
     const Vector3 place = i == 0 ? Vector3{3, 5, 7} : Vector3{12, 15, 18};
@@ -69,7 +68,7 @@ TEST(Deformation, OfAnyKindIsFollowedByBothMethods) {
     const Matrix3 made = each.deformation->displacement_gradient(time);
     EXPECT_NEAR(norm(system.box.displacement_gradient() - made), 0, 1e-12);
     EXPECT_NEAR(norm(system.box.velocity_gradient() - each.deformation->velocity_gradient(time)), 0, 1e-12);
-    // By far less than the way, up to 8, that it has gone: the methods are of second order.
+    // The tolerance is far smaller than the displacement of up to 8: the methods are of second order.
     const double tolerance = each.implicit ? 2e-3 : 1e-6;
     for (std::size_t i = 0; i < 2; ++i) {
       const Vector3 start = i == 0 ? Vector3{3, 5, 7} : Vector3{12, 15, 18};
@@ -79,8 +78,8 @@ TEST(Deformation, OfAnyKindIsFollowedByBothMethods) {
   }
 }
 
-// m / zeta = 2/9 of a density of 1: by drag alone they would lag behind by that time and miss their way by
-// some 0.1, more the farther they are from the origin. Explicit steps follow to the first order.
+// m / zeta = 2/9 at density 1: with drag alone spheres would lag by that time and miss their path by about
+// 0.1, more with distance from the origin. Explicit steps follow to first order.
 TEST(Deformation, IsFollowedByHeavySpheresWhereverTheyAre) {
   const Flow flows[] = {oscillation(), extension(), std::make_shared<UniaxialExtension>(-0.5),
                         std::make_shared<CrossShear>(0.4, 0.3, 2),
@@ -103,7 +102,7 @@ TEST(Deformation, IsFollowedByHeavySpheresWhereverTheyAre) {
   }
 }
 
-// The state knows how far the cell has come: what goes on from it goes on as if nothing had been.
+// The state stores the deformation of the cell: a restored state continues identically.
 TEST(Deformation, IsPartOfTheSavedState) {
   const System system = carried(oscillation(), true, 10, 0.005);
   ArchiveWriter writer;

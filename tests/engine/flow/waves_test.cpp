@@ -36,7 +36,7 @@ TEST(Waves, MakeUpTheCubeOfASine) {
   }
 }
 
-// A point and its images, also in a tilted cell, find the same wave.
+// A point and its images have equal wave velocities, also in a tilted cell.
 TEST(Waves, HaveThePeriodsOfTheCell) {
   PeriodicCell cell({edge, edge, edge}, simple_shear(0.3));
   cell.deform(simple_shear(0.37));
@@ -53,9 +53,9 @@ struct Case {
   bool implicit, faxen;
 };
 
-// A sphere without a force moves with the flow as Faxen corrects it, U = (1 - a^2 k^2 / 6) u, and turns with
-// half the vorticity at its centre, which needs no correction. From rest it comes there exponentially, in
-// implicit steps by the factor 1 / (1 + dt zeta / m) a step; its height does not change.
+// A force-free sphere moves with U = (1 - a^2 k^2 / 6) u, Faxen's correction, and turns with half the
+// vorticity at its centre. From rest it relaxes there exponentially, in implicit steps by
+// 1 / (1 + dt zeta / m) a step. Its height is constant.
 TEST(Waves, CarryAFreeSphereAsFaxenSays) {
   constexpr double density = 1, viscosity = 1, sine = 0.4, cosine = -0.3;
   for (const Case& each : {Case{0, false, true},
@@ -71,7 +71,7 @@ TEST(Waves, CarryAFreeSphereAsFaxenSays) {
     System system;
     system.particles = make_particles({1, 3}, density);
     system.box = PeriodicCell({edge, edge, edge}, physics.flow.deformation().velocity_gradient(0));
-    physics.contact = ContactParameters{.normal_stiffness = 1};  // so that there is a range to look in
+    physics.contact = ContactParameters{.normal_stiffness = 1};  // gives the list a range
     system.list = NeighbourList(range_table(make_pair_kinds(physics, {1, 3}), 2), 0.1);
     const Vector3 places[] = {{4, 3, 5}, {12, 14.5, 15}};
     for (std::size_t i = 0; i < 2; ++i) system.particles.position.set(i, places[i]);
@@ -93,8 +93,8 @@ TEST(Waves, CarryAFreeSphereAsFaxenSays) {
       const double factor = each.faxen ? 1 - a * a * k * k / 6 : 1;
       const double u = each.rate * y + factor * (sine * std::sin(k * y) + cosine * std::cos(k * y));
       const double slope = each.rate + k * (sine * std::cos(k * y) - cosine * std::sin(k * y));
-      // zeta / m = 9 eta / (2 rho a^2), zeta_r / I = 15 eta / (rho a^2). Explicit steps multiply the rest by
-      // 1 - dt zeta / m at each of their half-step velocities, and by half as much at both ends.
+      // zeta / m = 9 eta / (2 rho a^2), zeta_r / I = 15 eta / (rho a^2). Explicit steps multiply the
+      // deviation by 1 - dt zeta / m at each half-step velocity, and by 1 - dt zeta / (2 m) at both ends.
       const auto reached = [&](double decay) {
         const double x = step * decay;
         return each.implicit ? 1 - std::pow(1 + x, -steps)
@@ -111,8 +111,7 @@ TEST(Waves, CarryAFreeSphereAsFaxenSays) {
   }
 }
 
-// Spheres held fast at all heights are pushed as much forward as back, and the flow works on them with the
-// mean square of its velocity.
+// The forces on fixed spheres at all heights cancel; the power is zeta times the mean square velocity.
 TEST(Waves, DragAsMuchForwardAsBack) {
   Physics physics;
   physics.viscosity = 1;
@@ -134,7 +133,7 @@ TEST(Waves, DragAsMuchForwardAsBack) {
     forces += force[i].x;
     power += force[i].x * u / count;
   }
-  // The power of spheres held fast, by Parseval: zeta sum of (1 - a^2 k^2 / 6) (S^2 + C^2) / 2.
+  // Power on fixed spheres by Parseval's theorem: zeta times the sum of (1 - a^2 k^2 / 6) (S^2 + C^2) / 2.
   for (const auto& [periods, squares] : {std::pair{1, 0.17}, std::pair{3, 0.13}}) {
     const double k = 2 * pi * periods / edge;
     expected += 6 * pi * (1 - k * k / 6) * squares / 2;

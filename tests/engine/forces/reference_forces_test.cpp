@@ -1,5 +1,4 @@
-// Every term of single configurations against numbers from another program
-// (tests/reference/forces/README.md).
+// Every term of single configurations equals the numbers of an independent program (tests/reference/forces).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -44,7 +43,7 @@ double largest_difference(const Json& a, const Json& b) {
   return largest;
 }
 
-// Terms that are zero but for rounding are measured by the largest term of their block.
+// Terms that are zero up to rounding are compared on the scale of the largest term of their block.
 void expect_equal_terms(const Json& expected, const Json& answer, const std::string& where) {
   double scale = 0;
   for (const Json& value : expected) scale = std::max(scale, largest_component(value));
@@ -92,7 +91,7 @@ TEST(ReferenceForces, AdvancedSpringsEqualTheIndependentEvaluation) {
   }
 }
 
-// The comparison above means something only where the terms act.
+// The comparison above is meaningful only where the terms act.
 TEST(ReferenceForces, ConfigurationsExerciseEveryTermAndTheShearedBoundary) {
   for (const Json& document : reference_documents()) {
     const Json& force = document.at("expected").at("force");

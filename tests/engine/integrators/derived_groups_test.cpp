@@ -1,4 +1,4 @@
-// Time scales and groups against the figures that were published with Table 4.1 of Li (2023).
+// Time scales and groups compared with those published with Table 4.1 of Li (2023).
 #include "engine/integrators/derived_groups.h"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ TEST(DerivedGroups, ReproduceThePublishedTable) {
               {2200, 9e-3, 7.9e-6}, {1e4, 9e-3, 1.7e-6}};
   for (const auto& row : rows) {
     const DerivedGroups groups = derived_groups(scene_of(row.shear_rate, row.thermal_energy));
-    EXPECT_NEAR(*groups.peclet / row.peclet, 1, 0.045) << row.peclet;  // the table has two digits
+    EXPECT_NEAR(*groups.peclet / row.peclet, 1, 0.045) << row.peclet;  // two published digits
     EXPECT_NEAR(*groups.contact_time, 0.0032, 0.00005);
     EXPECT_NEAR(*groups.inertial_time, 1, 1e-12);
     EXPECT_NEAR(*groups.brownian_time * row.thermal_energy, 0.1, 1e-12);
@@ -75,8 +75,8 @@ TEST(DerivedGroups, WhatHasNoMeaningIsNull) {
                                                   {"largest_inertia_over_brownian", nullptr}}));
 }
 
-// Of the published system at Pe = 0.01: (600 pi)^2 phi / (300 v eta_r (eta_r - 1 - 2.5 phi)), v = 4 pi / 3
-// over (0.5 + 0.5 / 1.4^3) = 6.1400, eta_r = 17.526 at phi = 0.5 and 2.9251 at 0.3. As 1 / Pe^2.
+// Published system at Pe = 0.01: (600 pi)^2 phi / (300 v eta_r (eta_r - 1 - 2.5 phi)),
+// v = (4 pi / 3) / (0.5 + 0.5 / 1.4^3) = 6.1400, eta_r = 17.526 at phi = 0.5, 2.9251 at 0.3; as 1 / Pe^2.
 TEST(DerivedGroups, NearRestTheFlowIsComparedWithRest) {
   Scene scene = scene_of(1, 1);
   scene.particles.species = {{1, 0.5}, {1.4, 0.5}};
@@ -100,7 +100,7 @@ TEST(DerivedGroups, NearRestTheFlowIsComparedWithRest) {
   EXPECT_FALSE(compared(0.01, 0.5));
 }
 
-// rho a^2 w / eta = 0.3, whatever the amplitude.
+// rho a^2 w / eta = 0.3 for any amplitude.
 TEST(SceneWarnings, InertiaBesideAnOscillationGoesByItsFrequency) {
   const auto codes = [](double density) {
     Json document = small_scene();
@@ -129,8 +129,8 @@ TEST(SceneWarnings, InertiaIsReportedFromTheBoundOn) {
   EXPECT_EQ(warning_codes(scene_of(0, 0)), Codes{});
 }
 
-// By Desmond & Weeks (2014) 0.634 + 0.0658 d + 0.0857 S d^2, of radii 1 : 1.4 in equal volumes, 1000 : 364 in
-// number: d = 0.160 and S = 1.05, 0.634 + 0.0105 + 0.0023.
+// Desmond & Weeks (2014): 0.634 + 0.0658 d + 0.0857 S d^2. Radii 1 : 1.4 in equal volumes are 1000 : 364 in
+// number, so d = 0.160 and S = 1.05: 0.634 + 0.0105 + 0.0023.
 TEST(WarningsBeforeRun, DenserThanARandomPackingIsSaid) {
   const auto text = [](double fraction) {
     const std::vector<Warning> found =
@@ -145,7 +145,7 @@ TEST(WarningsBeforeRun, DenserThanARandomPackingIsSaid) {
 }
 
 TEST(WarningsBeforeRun, SoftSpheresAreSaid) {
-  const auto codes = [](double stiffness) {  // viscosity times radius times rate is 0.2
+  const auto codes = [](double stiffness) {  // viscosity times radius times rate: 0.2
     std::vector<std::string> found;
     const Json scene = small_scene({{"contact", {{"normal_stiffness", stiffness}}}});
     for (const Warning& warning : warnings_before_run(read_scene(scene, "scene.json")))

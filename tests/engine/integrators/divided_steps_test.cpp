@@ -1,4 +1,4 @@
-// Implicit steps that divide themselves where spheres would leap.
+// Implicit steps that are divided where spheres would move too far.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -19,7 +19,7 @@ using std::numbers::pi;
 
 constexpr double solved_to = 1e-5;
 
-// Spheres of radius 1 in a fluid that hardly holds them up, with contacts of this stiffness.
+// Two spheres of radius 1 in a nearly inviscid fluid, with contacts of the given stiffness.
 struct Flight {
   explicit Flight(double stiffness) {
     physics.viscosity = 1e-9;
@@ -44,7 +44,7 @@ struct Flight {
   System system;
 };
 
-// Spheres that fly beyond any list are reported, not looked for.
+// Spheres that move beyond every list are reported.
 TEST(Implicit, ReportsALeapOverTheNeighbours) {
   Flight flight(1e4);
   flight.system.particles.velocity.set(1, {50, 0, 0});
@@ -55,7 +55,7 @@ TEST(Implicit, ReportsALeapOverTheNeighbours) {
   EXPECT_FALSE(std::isfinite(integrator.advance(flight.system).largest_displacement));
 }
 
-// A sphere that flies on makes the way v dt, in as many halvings as bring the way of a part below the bound.
+// A free sphere moves v dt; the step is halved until the displacement of a part is below the bound.
 TEST(DividedSteps, AreHalvedUntilNoSphereMovesTooFar) {
   constexpr double way = 0.1;
   for (const auto& [bound, division] :
@@ -76,14 +76,14 @@ TEST(DividedSteps, AreHalvedUntilNoSphereMovesTooFar) {
   }
 }
 
-// No list holds half of this way ahead.
+// Half of this displacement exceeds any list.
 TEST(DividedSteps, AreHalvedUntilAListHolds) {
   Flight flight(1e4);
   flight.system.particles.velocity.set(1, {0, 0, 4});
   Midpoint integrator = flight.steps_of(1);
   integrator.divide_steps(10);
   const StepReport report = integrator.advance(flight.system);
-  // Within 2 spheres of radius 1 find each other; the skin is a tenth of that, for both.
+  // Spheres of radius 1 interact within 2; the skin is a tenth of that for both.
   EXPECT_EQ(report.division, 5);
   EXPECT_NEAR(flight.place(1).z, 9, 1e-6);
 }
@@ -94,7 +94,6 @@ TEST(DividedSteps, AreDividedOnlyWhereThatIsAllowed) {
   EXPECT_EQ(flight.steps_of(1).advance(flight.system).division, 0);
 }
 
-// Sizes recover with the step that follows.
 TEST(DividedSteps, StartWholeAgain) {
   Flight flight(1e4);
   flight.system.particles.velocity.set(1, {0, 0, 0.1});
@@ -105,8 +104,8 @@ TEST(DividedSteps, StartWholeAgain) {
   EXPECT_EQ(integrator.advance(flight.system).division, 0);
 }
 
-// Two spheres of reduced mass m/2 that meet head on, each at speed v, get no deeper into each other than
-// k delta^2 / 2 = (m / 2) (2 v)^2 / 2 allows. In one step they would be on the other side of each other.
+// Two spheres of reduced mass m/2 that meet at speed v each overlap by at most k delta^2 / 2 = (m / 2)
+// (2 v)^2 / 2. In an undivided step they would pass through each other.
 TEST(DividedSteps, LetNoSphereLeapThroughAnother) {
   constexpr double speed = 30, stiffness = 1e5, step = 0.2;
   Flight flight(stiffness);
@@ -133,8 +132,7 @@ std::vector<std::uint64_t> bits_of(const VectorField& field) {
   return bits;
 }
 
-// Of two halves: the same places and velocities as two steps of half the size, and the mean of their
-// stresses.
+// Expects of two halves: the positions and velocities of two half steps, and the mean of their stresses.
 void expect_steps_of_half_the_size(const Physics& physics) {
   constexpr double step = 2e-3;
   const System start = dense_suspension(physics, 203, 7);
@@ -176,8 +174,8 @@ TEST(DividedSteps, AreStepsOfHalfTheSize) {
   }
 }
 
-// A sphere without inertia moves by the integral of the noise, sqrt(2 kT dt / zeta) z, however its steps are
-// divided; a part of 1/8 moves it by about sqrt(1/8) of that.
+// A sphere without inertia moves by the integral of the noise, sqrt(2 kT dt / zeta) z, for any division of
+// its steps. A part of 1/8 moves it by about sqrt(1/8) of that.
 TEST(DividedSteps, FollowThePathOfTheNoise) {
   Physics physics;
   physics.viscosity = 0.1;
@@ -201,8 +199,7 @@ TEST(DividedSteps, FollowThePathOfTheNoise) {
   EXPECT_NEAR(norm(found - expected), 0, 1e-4 * norm(expected));
 }
 
-// What leaps in the smallest part of a step has no smaller one to be made in: the cause is the displacement,
-// and the text says in which part.
+// The smallest part of a step moves a sphere too far. The cause is the displacement; the text names the part.
 TEST(DividedSteps, BreakOffWhereTheSmallestPartLeaps) {
   Flight flight(1e4);
   flight.system.particles.velocity.set(1, {5e4, 0, 0});

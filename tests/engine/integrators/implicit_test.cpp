@@ -28,8 +28,7 @@ System system_of(const Physics& physics, const std::vector<double>& radius, doub
   return system;
 }
 
-// m (V - V_n) = dt zeta (U - V): velocities approach the streaming flow's by a factor 1 / (1 + dt zeta / m) a
-// step, whatever the step.
+// m (V - V_n) = dt zeta (U - V): velocities relax to the flow's by 1 / (1 + dt zeta / m) a step.
 TEST(Implicit, SpheresRelaxToTheStreamingFlow) {
   Physics physics;
   physics.viscosity = 0.1;
@@ -56,8 +55,7 @@ TEST(Implicit, SpheresRelaxToTheStreamingFlow) {
   }
 }
 
-// Of two spheres without much inertia that start at these places with the flow, rate 1: where the second one
-// is seen from the first one after that time.
+// Returns the separation, after `time`, of two spheres of little inertia that start with the flow at rate 1.
 Vector3 end_of_pair(Physics physics, const Vector3& first_place, const Vector3& second_place, double time,
                     int steps, double tolerance) {
   physics.viscosity = 0.1;
@@ -77,8 +75,8 @@ Vector3 end_of_pair(Physics physics, const Vector3& first_place, const Vector3& 
   return p.position[1 - first] - p.position[first];
 }
 
-// Two spheres pass each other, between the inner and the outer gap all the time. Where they end depends on
-// the square of the step.
+// Returns the separation after two spheres pass each other, between inner and outer gap throughout. The error
+// is of second order in the step.
 Vector3 end_of_encounter(const Physics& physics, int steps) {
   return end_of_pair(physics, {10, 3, 15}, {8.2, 4.9, 15.9}, 1.2, steps, 1e-6);
 }
@@ -94,7 +92,7 @@ void expect_second_order(const Physics& physics) {
   }
 }
 
-// Rates of strain that differ from place to place count where the forces do.
+// The second case has strain rates that vary in space.
 TEST(Implicit, IsOfSecondOrderForAnEncounter) {
   Physics physics;
   physics.lubrication = LubricationParameters{1e-3, 0.9};
@@ -106,7 +104,7 @@ TEST(Implicit, IsOfSecondOrderForAnEncounter) {
   expect_second_order(physics);
 }
 
-// Two spheres that touch and stick are turned and pressed together by the flow.
+// Returns the separation of two spheres that stick while the flow turns and presses them.
 Vector3 end_of_contact(int steps) {
   Physics physics;
   physics.contact = ContactParameters{.normal_stiffness = 1e3, .friction = 1, .tangential_stiffness = 300};
@@ -115,7 +113,7 @@ Vector3 end_of_contact(int steps) {
   return end_of_pair(physics, place, place + (2.38 / norm(along)) * along, 0.3, steps, 1e-7);
 }
 
-// Springs push after 0.6 of their advance: what is of first order shows only in smaller steps.
+// Springs act at 0.6 of their advance; the first-order error of that shows only at smaller steps.
 TEST(Implicit, IsNearlyOfSecondOrderForSpheresThatStick) {
   const Vector3 exact = end_of_contact(5120);
   ASSERT_LT(norm(exact), 2.4);  // still in contact
@@ -127,11 +125,10 @@ TEST(Implicit, IsNearlyOfSecondOrderForSpheresThatStick) {
   }
 }
 
-// A sheared packing with friction, from the same places: the stress that explicit steps of a five hundredth
-// give.
+// A sheared packing with friction: implicit steps give the stress of explicit steps of a five hundredth.
 struct Rough {
   double friction;
-  bool strained;  // lubrication by rates of strain
+  bool strained;  // lubrication by strain rates
 };
 class AgainstExplicit : public testing::TestWithParam<Rough> {
  protected:
@@ -177,7 +174,7 @@ TEST_P(AgainstExplicit, TheStressIsTheSame) {
   EXPECT_NEAR(stress("implicit") / stress("explicit"), 1, 0.01);
 }
 
-// Sum over terms of sigma_xy, the mean of all steps up to that time.
+// Returns the mean over all steps of sigma_xy, summed over terms.
 double mean_stress(Integrator& integrator, System& system, double time) {
   const auto steps = std::lround(time / integrator.timestep());
   double sum = 0;
@@ -189,8 +186,8 @@ double mean_stress(Integrator& integrator, System& system, double time) {
   return sum / static_cast<double>(steps);
 }
 
-// The flow turns round at once: contacts that it had closed open, and the stress changes its sign and most of
-// its size. What contacts still press relaxes within the first step, of which large steps see less.
+// The flow reverses at once: closed contacts open, and the stress changes sign and loses most of its size.
+// The contact forces left relax within the first step, which large steps do not resolve.
 TEST_P(AgainstExplicit, TheStressAfterAReversalIsTheSame) {
   const Scene scene = read_scene(document(), "scene.json");
   Simulation simulation(scene, {automatic_timestep(scene), 0, 1000}, 4, 1, "scene.json");
@@ -252,7 +249,7 @@ TEST(Implicit, StrainAfterNStepsIsNTimesRateAndStep) {
   }
 }
 
-// Iterations end when the residual is below the tolerance, and smooth packings never need more than they may.
+// Iterations end below the tolerance; smooth packings never reach the limit of iterations.
 TEST(Implicit, LeavesNoLargerResidualThanItsTolerance) {
   const Json document = small_scene(
       {{"particles", {{"count", 100}}},
@@ -273,7 +270,7 @@ TEST(Implicit, LeavesNoLargerResidualThanItsTolerance) {
   }
 }
 
-// The comparison beside the system: steps as the system will take them, and steps of half the size.
+// Steps on copies of the system: the steps that it will take, and steps of half the size.
 TEST(Implicit, ComparesStepsWithHalfSteps) {
   Json document = small_scene(
       {{"fluid", {{"thermal_energy", 0}}}, {"integrator", {{"method", "implicit"}, {"timestep", "auto"}}}});
@@ -317,9 +314,9 @@ TEST(Implicit, ReportsTheLargestDisplacementRelativeToTheFlow) {
   }
 }
 
-// Heavy spheres that touch pass each other at a constant velocity, far below Coulomb's limit: their spring
-// grows by dt v_t a step, however often a step evaluates the forces. Without noise it pushes after 0.6 of
-// that, and the stress r_x F_z / 2 is that of the push.
+// Heavy spheres in contact pass each other at constant velocity, far below Coulomb's limit. Their spring
+// grows by dt v_t a step, for any number of force evaluations per step. Without noise it acts at 0.6 of its
+// advance; the stress is r_x F_z / 2.
 TEST(Implicit, StretchesSpringsOnceAStep) {
   Physics physics;
   physics.viscosity = 0.1;

@@ -1,4 +1,4 @@
-// Implicit steps on several threads, and on more of them than there are processors or blocks of particles.
+// Implicit steps on several threads, also on more threads than processors or blocks of particles.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -12,7 +12,7 @@
 namespace peclet::engine {
 namespace {
 
-// The last of some steps, which leave the first list behind.
+// The last of several steps that rebuild the list.
 struct Outcome {
   System system;
   StepReport report;
@@ -47,7 +47,7 @@ struct Kind {
   const char* name;
   Terms terms;
   double thermal_energy;
-  bool strained = false;  // lubrication by rates of strain, in waves
+  bool strained = false;  // lubrication by strain rates, in waves
 };
 constexpr Kind kinds[] = {
     {"quiet", {.lubrication = true, .contact = true, .friction = true, .rolling = true}, 0},

@@ -1,4 +1,4 @@
-// The automatic implicit step: which of its bounds a scene meets.
+// The automatic implicit step and the bounds that set it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,9 +23,10 @@ Scene scene_with(const Json& patch) {
   return read_scene(document, "scene.json");
 }
 
-// 0.01 / rate (1 + 2 St), half of that with friction, repulsion or noise at large Peclet numbers, a quarter
-// where friction asks for more; 0.0045 eta a^3 / kT, 0.0017 without lubrication; and the contact, whose rates
-// are those of the explicit step's bound.
+// Bounds of the step:
+//   - 0.01 / rate (1 + 2 St), half with friction, repulsion or noise at large Pe, a quarter at more friction
+//   - 0.0045 eta a^3 / kT, 0.0017 without lubrication
+//   - the contact time, with the rates of the explicit step's bound
 TEST(ImplicitTimestep, IsTheLeastOfStrainBrownianAndContactTimes) {
   const Json soft = {{"contact", {{"normal_stiffness", 1e-3}, {"friction", 0.5}}}, {"repulsion", nullptr}};
   const double stokes = 0.1 * 1.4 * 1.4 * 2 / 0.1;
@@ -90,7 +91,7 @@ TEST(ImplicitTimestep, IsTheLeastOfStrainBrownianAndContactTimes) {
               4 * with_friction.damping / with_friction.frequency_squared, 1e-15);
 }
 
-// The step resolves the time in which a contact gives way along n, whatever damps it across n.
+// The step resolves the relaxation time of a contact along n, for any tangential damping.
 TEST(ImplicitTimestep, IsNotLengthenedByATangentialDashpot) {
   const auto step = [](double stiffness, double damping) {
     return automatic_timestep(scene_with(
@@ -102,23 +103,23 @@ TEST(ImplicitTimestep, IsNotLengthenedByATangentialDashpot) {
   EXPECT_EQ(step(1e6, 1e5), step(1e6, 0));
 }
 
-// Springs of strength / kappa^2 exp(-h / kappa) with kappa = 1 at h = outer gap (a_i + a_j) / 2 = 0.1,
-// between two of the small spheres, whose drags 6 pi eta a are in series.
+// The stiffness is strength / kappa^2 exp(-h / kappa), kappa = 1, at h = outer gap (a_i + a_j) / 2 = 0.1. The
+// drags 6 pi eta a of two small spheres are in series.
 TEST(ImplicitTimestep, IsBoundByARepulsionBeyondLubrication) {
   const Scene scene = scene_with(Json::parse(R"({
     "contact": {"friction": null, "rolling_stiffness": null, "rolling_friction": null},
     "repulsion": {"strength": 1e5, "relative_length": 0.5}})"));
   const double drag = 0.5 * 6 * pi * 0.1, stiffness = 1e5 * std::exp(-0.1);
   EXPECT_NEAR(automatic_timestep(scene) / (20 * drag / stiffness), 1, 1e-12);
-  // One that ends within the range of lubrication is no such bound.
+  // A repulsion that ends within the range of lubrication sets no bound.
   const Scene short_scene = scene_with(Json::parse(R"({
     "contact": {"friction": null, "rolling_stiffness": null, "rolling_friction": null},
     "repulsion": {"strength": 1e5, "relative_length": 0.5, "cutoff_lengths": 0.09}})"));
   EXPECT_GT(automatic_timestep(short_scene), 1.2 * automatic_timestep(scene));
 }
 
-// Where attraction alone moves spheres it grows by -V'' / drag, at most by 9 c / (8 sqrt(3) eps^3) / drag
-// with c = A_H a / 12: the step is that time, within the one percent of a twelfth of a decade of distances.
+// Attraction alone grows separations at the rate -V'' / drag, at most 9 c / (8 sqrt(3) eps^3) / drag with
+// c = A_H a / 12. The step is the inverse, within 1 % for distances spaced by a twelfth of a decade.
 TEST(ImplicitTimestep, IsBoundByTheGrowthOfAttraction) {
   const Scene scene = scene_with(Json::parse(R"({
     "particles": {"species": [{"radius": 1}]}, "contact": null, "lubrication": null, "repulsion": null,
@@ -128,7 +129,7 @@ TEST(ImplicitTimestep, IsBoundByTheGrowthOfAttraction) {
   EXPECT_LE(automatic_timestep(scene), drag / steepest * 1.01);
 }
 
-// Steepest at 0.6e-5 radii, with -V'' = 9/(8 sqrt 3) c / eps^3.
+// The potential is steepest at 0.6e-5 radii, with -V'' = 9/(8 sqrt 3) c / eps^3.
 TEST(ImplicitTimestep, IsBoundByTheGrowthOfNarrowAttraction) {
   const Scene scene = scene_with(Json::parse(R"({
     "particles": {"species": [{"radius": 1}]}, "contact": null, "lubrication": null, "repulsion": null,
@@ -138,7 +139,8 @@ TEST(ImplicitTimestep, IsBoundByTheGrowthOfNarrowAttraction) {
   EXPECT_LE(automatic_timestep(scene), drag / steepest * 1.02);
 }
 
-// Spheres with hardly any inertia, Pe = 1; of one radius, X_A = 6 pi eta a (1 / (4 xi) + 9/40 ln(1 / xi)).
+// Returns a scene of nearly inertialess spheres, Pe = 1; at one radius X_A = 6 pi eta a
+// (1 / (4 xi) + 9/40 ln(1 / xi)).
 Json light_spheres(double density, double outer_gap, const Json& species) {
   return {{"particles", {{"count", 150}, {"density", density}, {"species", species}}},
           {"fluid", {{"thermal_energy", 0.017}}},
@@ -156,8 +158,8 @@ Json light_spheres(double density, double outer_gap, const Json& species) {
            {{"equilibration", {{"time", 0}}}, {"production", {{"time", nullptr}, {"brownian_times", 2}}}}}};
 }
 
-// Standard deviation of the way by which a sphere whose pair leaves the range, and a third one, approach:
-// (m + dt zeta) dV = dt F with F^2 = 2 kT X_A / dt, and dt V with V^2 = kT / (m + dt zeta / 2) of both.
+// Standard deviation of the approach of a third sphere to one whose pair leaves the range: (m + dt zeta)
+// dV = dt F with F^2 = 2 kT X_A / dt, and dt V with V^2 = kT / (m + dt zeta / 2) for both spheres.
 TEST(ImplicitTimestep, IsBoundByLeapsOutOfTheRangeOfLubrication) {
   const Json one = Json::parse(R"([{"radius": 1}])");
   for (const double outer_gap : {0.02, 0.05}) {
@@ -172,12 +174,12 @@ TEST(ImplicitTimestep, IsBoundByLeapsOutOfTheRangeOfLubrication) {
           << outer_gap << ' ' << density;
     }
   }
-  // A wide range is not bound by it: 0.0017 eta a^3 / kT.
+  // A wide range sets no bound: 0.0017 eta a^3 / kT.
   EXPECT_NEAR(automatic_timestep(scene_with(light_spheres(1e-4, 0.5, one))), 0.01, 1e-12);
 }
 
-// Five standard deviations sqrt(2 kT / m) dt of the way between two free spheres are twice the outer gap;
-// the velocity decays with 4 at most; heavy spheres have 0.0045 eta a^3 / kT.
+// Bounds: five standard deviations sqrt(2 kT / m) dt of the distance between two free spheres are twice the
+// outer gap. The step is at most 4 velocity decay times; for heavy spheres 0.0045 eta a^3 / kT.
 TEST(ImplicitTimestep, OfSpheresThatInertiaCarriesIsBoundByTheirFlight) {
   const Json one = Json::parse(R"([{"radius": 1}])");
   const auto step = [&](double density, double outer_gap) {
@@ -193,8 +195,8 @@ TEST(ImplicitTimestep, OfSpheresThatInertiaCarriesIsBoundByTheirFlight) {
   EXPECT_NEAR(step(0.02, 0.05), 0.45 / 17, 1e-12);
 }
 
-// The form mari has X_A = 6 pi eta a / 4 (xi + eps), and its range as a distance of the surfaces: of spheres
-// of radius 2 that is xi_o. Contacts press against X_A at eps.
+// The form mari has X_A = 6 pi eta a / 4 (xi + eps). Its range is a surface distance, which equals xi_o at
+// radius 2. Contacts act against X_A at eps.
 TEST(ImplicitTimestep, KnowsTheRangeOfLubricationRelativeToTheFlow) {
   const auto light = [](double density, double outer_distance) {
     Json patch = light_spheres(density, 0.05, Json::parse(R"([{"radius": 2}])"));
@@ -219,11 +221,11 @@ TEST(ImplicitTimestep, KnowsTheRangeOfLubricationRelativeToTheFlow) {
   stiff["fluid"] = {{"thermal_energy", nullptr}};
   stiff["contact"]["normal_stiffness"] = 1e9;
   stiff["duration"]["production"] = {{"time", 1}};
-  // X_A with the drag of each, over k.
+  // X_A plus the drag of each sphere, over k.
   EXPECT_NEAR(automatic_timestep(scene_with(stiff)) / (20 * (zeta * 250 + zeta / 2) / 1e9), 1, 1e-9);
 }
 
-// At the step of the Brownian time alone the largest overlap is 0.0088 here; thermal ones are about 0.005.
+// With the Brownian bound alone the largest overlap is 0.0088 here; thermal overlaps are about 0.005.
 TEST(ImplicitTimestep, LetsNoLightSphereLeapIntoAnother) {
   const Json two = Json::parse(R"([{"radius": 1, "volume_share": 1}, {"radius": 1.4, "volume_share": 1}])");
   const Scene scene = scene_with(light_spheres(2e-4, 0.05, two));
@@ -243,8 +245,7 @@ TEST(ImplicitTimestep, IsRefusedBeyondFourTimesTheAutomaticOne) {
   EXPECT_THROW(resolved(4.01), InputError);
 }
 
-// Of smooth motion in uniform shear half steps tell the error; in waves, with noise and with friction nothing
-// does.
+// Half steps measure the error of smooth motion in uniform shear; not in waves, with noise or friction.
 TEST(ImplicitTimestep, IsWarnedOfBeyondTheAutomaticOneWhereNothingElseTellsItsError) {
   const Json smooth = {
       {"contact", {{"friction", nullptr}, {"rolling_stiffness", nullptr}, {"rolling_friction", nullptr}}},

@@ -1,4 +1,4 @@
-// Friction that is less while contacts slide, in steps of every kind.
+// Kinetic friction below static friction, in explicit and implicit steps.
 #include <gtest/gtest.h>
 
 #include "engine/integrators/implicit.h"
@@ -32,8 +32,8 @@ INSTANTIATE_TEST_SUITE_P(EveryKind, KineticFrictionOf,
                                                                   : "noisy";
                          });
 
-// Heavy spheres that touch pass each other at a constant velocity, and then the other way: the spring grows
-// by dt v_t a step, breaks away and slides. The load stays what it was, but for one per cent.
+// Heavy spheres in contact pass each other at constant velocity, then in reverse. The spring grows by dt v_t
+// a step, breaks away and slides. The load is constant within one per cent.
 TEST_P(KineticFrictionOf, BreaksAwaySlidesAndSticksAgain) {
   Physics physics;
   physics.viscosity = 0.1;
@@ -63,11 +63,11 @@ TEST_P(KineticFrictionOf, BreaksAwaySlidesAndSticksAgain) {
     EXPECT_EQ(found.slides, slides ? 1 : 0);
   };
   const double stretch = slip * step, sliding = kinetic * load / stiffness;
-  expect_springs(move(slip, 24), 24 * stretch, false);  // 0.0132 of 0.4 * 10 / 300
+  expect_springs(move(slip, 24), 24 * stretch, false);  // 0.0132 < 0.4 * 10 / 300
   expect_springs(move(slip, 1), sliding, true);
   expect_springs(move(slip, 20), sliding, true);
   expect_springs(move(-slip, 1), sliding - stretch, false);
-  expect_springs(move(-slip, 36), sliding - 37 * stretch, false);  // 0.0120 the other way
+  expect_springs(move(-slip, 36), sliding - 37 * stretch, false);  // 0.0120 in reverse
   expect_springs(move(-slip, 10), -sliding, true);
 }
 

@@ -1,10 +1,10 @@
-// The flux of momentum that steps report, beside the momentum that particles have gained.
+// The momentum flux that steps report, compared with the momentum that particles gain.
 //
-// Of spheres that stand together, away from the faces of the cell, sum m x V changes in a step of time dt by
+// For spheres away from the faces of the cell, sum m x V changes in a step dt by
 //   dt [sum x F_body + sum m V V'] + (sum over pairs of forces at distances), so that
-//   V J = sum sym(x F_body) - (change of sum m sym(x V)) / dt:
-// no force of a pair is in it, and so no account of which forces acted. x is where F_body has no mean of its
-// own: x_n for the noise, the middle of its way for the drag on a velocity.
+//   V J = sum sym(x F_body) - (change of sum m sym(x V)) / dt.
+// Pair forces do not appear on the right. x is x_n for the noise, and the midpoint of the displacement for
+// the drag on a velocity: there x F_body has no mean from correlations within the step.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -34,7 +34,7 @@ Physics cluster_physics() {
   return physics;
 }
 
-// On a grid that is a little disturbed: contacts and gaps.
+// Returns spheres on a slightly disturbed grid, with contacts and gaps.
 System cluster(const Physics& physics, double density) {
   System system;
   std::vector<double> radius(sphere_count);
@@ -54,7 +54,7 @@ System cluster(const Physics& physics, double density) {
   return system;
 }
 
-// By the number that a particle has for life.
+// Positions and velocities by particle id.
 struct Motion {
   std::vector<Vector3> position, velocity;
 };
@@ -74,10 +74,10 @@ double drag_of(std::size_t id) { return 6 * std::numbers::pi * fluid_viscosity *
 
 struct Step {
   double dt, density;
-  bool inertial;  // short: the drag acts on (V_n + V)/2, otherwise on V
+  bool inertial;  // the drag acts on (V_n + V)/2; otherwise on V
 };
 
-// The right-hand side above.
+// Returns the right-hand side above.
 SymmetricTensor gained(const Motion& before, const Motion& after, std::uint64_t name, const Step& step) {
   const double dt = step.dt;
   const KeyedRandom noise(noise_seed, Purpose::one_body_noise);
@@ -103,7 +103,7 @@ double largest_difference(const SymmetricTensor& a, const SymmetricTensor& b) {
 
 SymmetricTensor acted(const StepReport& report) { return total_stress(report.sums) + report.motion; }
 
-// Of the rows that the solver works on, and what it leaves of the equations.
+// Tolerance of the solver's single-precision rows and residual.
 constexpr double of_single_precision = 2e-4;
 
 struct NamedPhysics {
@@ -130,7 +130,7 @@ std::vector<NamedPhysics> kinds_of_pairs() {
           {"dry", dry}};
 }
 
-// Returns the contacts of all steps.
+// Returns the number of contacts, summed over all steps.
 double expect_what_particles_gain(const NamedPhysics& kind, const Step& how, InstructionSet set) {
   const double dt = how.dt;
   const Physics& physics = kind.physics;
@@ -152,8 +152,8 @@ double expect_what_particles_gain(const NamedPhysics& kind, const Step& how, Ins
   return contacts;
 }
 
-// Two steps in which inertia carries pairs across the outer gap, and one that is longer than four times a
-// small sphere's m / drag, which is 0.22 or 0.011.
+// Two steps in which inertia carries pairs across the outer gap, and one longer than four times m / drag of a
+// small sphere, which is 0.22 or 0.011.
 TEST(MomentumFlux, OfImplicitStepsIsWhatParticlesGain) {
   for (const InstructionSet set : available_sets()) {
     for (const NamedPhysics& kind : kinds_of_pairs()) {
@@ -170,8 +170,8 @@ TEST(MomentumFlux, OfImplicitStepsIsWhatParticlesGain) {
   }
 }
 
-// What moves at u' from x_n to x_n+1 carries m u' u' less half a step of the drag on u', whose place is the
-// middle of the way; pairs act at the places that they have.
+// A sphere moving at u' from x_n to x_n+1 carries m u' u' minus half a step of the drag on u', taken at the
+// midpoint. Pair forces act at the current positions.
 TEST(MomentumFlux, OfVelocityVerletIsTheStressAndTheMotion) {
   const Physics physics = cluster_physics();
   System system = cluster(physics, usual_density);
@@ -192,7 +192,7 @@ TEST(MomentumFlux, OfVelocityVerletIsTheStressAndTheMotion) {
   }
 }
 
-// Even and odd parts are those of the velocities: of a step at rest nothing is odd.
+// Conservative parts are even and dissipative parts odd in the velocities.
 TEST(MomentumFlux, HasConservativeAndDissipativeParts) {
   const Physics physics = cluster_physics();
   System system = cluster(physics, usual_density);
@@ -211,7 +211,7 @@ TEST(MomentumFlux, HasConservativeAndDissipativeParts) {
               1e-12);
 }
 
-// The sums of what a watcher is shown.
+// The sums of the pairs shown to a watcher.
 class Shown final : public PairWatcher {
  public:
   void begin(const System& /*system*/, double /*weight*/) override {}
@@ -228,7 +228,7 @@ class Shown final : public PairWatcher {
   SymmetricTensor motion;
 };
 
-// A profile or a trajectory of single pairs has the stress of the result, term by term.
+// The stresses shown pair by pair add up to the reported stress, term by term.
 TEST(MomentumFlux, IsThatOfThePairsThatAreShown) {
   Physics physics = cluster_physics();
   physics.contact->friction = 0.5;

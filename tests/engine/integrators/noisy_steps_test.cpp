@@ -1,5 +1,5 @@
-// The implicit step with noise, beside its equations written down again for two spheres on a line, and where
-// it should go as the temperature vanishes.
+// The implicit step with noise, compared with its equations written out for two spheres on a line, and with
+// the limit of vanishing temperature.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -13,7 +13,7 @@ namespace {
 
 using std::numbers::pi;
 
-// Small enough to move nothing; the step is that with noise all the same.
+// A temperature too small to move anything, which selects the step with noise.
 constexpr double cold = 1e-30;
 constexpr double very_tight = 1e-6;
 constexpr double viscosity = 0.1;
@@ -27,24 +27,24 @@ System system_of(const Physics& physics, const std::vector<double>& radius, doub
   return system;
 }
 
-// Two spheres of radii 1 and 1.4 on a line, the smaller one to the left.
+// Two spheres of radii 1 and 1.4 on a line, the smaller one on the left.
 struct OnALine {
   double mass[2], drag[2];
   double inner_gap = 0, outer_gap = 0, stiffness = 0, strength = 0, length = 0;
-  bool inertial = false;  // whether inertia carries the pair across the outer gap
+  bool inertial = false;  // inertia carries the pair across the outer gap
 
   static constexpr double sum = 2.4;
 
-  // X_A at this gap: Li, Royer & Ness (2023) eq. 9 with beta = 1.4.
+  // X_A at this gap: Li, Royer & Ness (2023), eq. 9 with beta = 1.4.
   static double squeeze(double gap) {
     const double b = 1.4, cube = std::pow(1 + b, 3);
     return 6 * pi * viscosity *
            (2 * b * b / cube / gap + b * (1 + 7 * b + b * b) / (5 * cube) * std::log(1 / gap));
   }
   bool lubricated(double h) const { return inner_gap > 0 && 2 * h / sum <= outer_gap; }
-  // At the surface distance h.
+  // Returns X_A at surface distance h.
   double resistance(double h) const { return lubricated(h) ? squeeze(std::max(2 * h / sum, inner_gap)) : 0; }
-  // The part that jumps to zero at the outer gap, and the other one on a predicted way from h.
+  // Returns the part of X_A that jumps to zero at the outer gap; below, the rest on a predicted move from h.
   double jump(double h) const { return lubricated(h) ? squeeze(outer_gap) : 0; }
   double rest_on_the_way(double h, double way) const {
     const double begin = std::max(2 * h / sum, inner_gap);
@@ -61,7 +61,7 @@ struct OnALine {
     for (int k = 0; k < parts; ++k) average += continuous(2 * (h + made * (k + 0.5) / parts) / sum) / parts;
     return 0.5 * (average + continuous(root(made)));
   }
-  // What pushes the spheres apart, and its stiffness.
+  // Returns the repulsive force between the spheres; below, its stiffness.
   double push(double h) const {
     return stiffness * std::max(-h, 0.0) + (strength > 0 ? strength / length * std::exp(-h / length) : 0);
   }
@@ -73,12 +73,12 @@ struct OnALine {
 
 using Two = std::array<double, 2>;
 
-// One iteration of Newton's method for M (V - V_n) = dt F(x, V): from the velocities V, with a resistance to
-// V and another one to the mean of V and V_n, as all of the drag is where the latter exists; what pushes is
-// at the distance `pushed`, and its stiffness counts for dt/2.
+// One Newton iteration for M (V - V_n) = dt F(x, V), starting from the velocities V. `resistance` acts on V
+// and `resistance_to_mean` on the mean of V and V_n, as does the drag of an inertial pair. The push is taken
+// at distance `pushed`, and its stiffness counts for dt/2.
 Two corrected(const OnALine& pair, const Two& before, const Two& velocity, double resistance,
               double resistance_to_mean, double pushed, double dt) {
-  const double part = pair.inertial ? 0.5 : 1;  // of V in what feels the drag
+  const double part = pair.inertial ? 0.5 : 1;  // share of V in the velocity that the drag acts on
   const auto dragged = [&](std::size_t i) {
     return pair.drag[i] * (part * velocity[i] + (1 - part) * before[i]);
   };
@@ -99,10 +99,11 @@ struct StepOfTwo {
   Two velocity;
 };
 
-// V' from x_n with what pushes half a step ahead, V from x' = x_n + dt/2 V'. The stress is that of what made
-// V, brought to x_n + dt/2 V: half of the jump of the resistance at V_n, from x_n; and from x' the resistance
-// to V and what pushes there, by its stiffness for dt/2 of V - V'. What bringing adds belongs to the
-// resistance, or without one to the contact.
+// Predictor: V' from x_n, with the push half a step ahead. Corrector: V from x' = x_n + dt/2 V'. The stress
+// comes from the forces that made V, moved to x_n + dt/2 V:
+//   - from x_n: half of the jump of the resistance, at V_n
+//   - from x': the resistance at V, and the push extrapolated by its stiffness over dt/2 (V - V')
+// The correction for the move belongs to lubrication, or to the contact without lubrication.
 StepOfTwo step_by_hand(const OnALine& pair, const Two& before, double h, double dt) {
   const double jump = pair.inertial ? pair.jump(h) : 0;
   const Two predicted = corrected(pair, before, before, pair.resistance(h) - jump, jump,
@@ -128,7 +129,7 @@ struct NamedPair {
   bool inertial;
 };
 
-// Steps in which resistance, stiffness and inertia each decide.
+// Returns cases in which resistance, stiffness or inertia dominates.
 std::vector<NamedPair> pairs_on_a_line() {
   Physics still;
   still.viscosity = viscosity;
@@ -177,7 +178,7 @@ TEST(NoisyStep, OfTwoSpheresOnALineIsThatOfItsEquations) {
     system.particles.velocity.set(1, {given.closing, 0, 0});
     const OnALine pair = line_of(given, system.particles);
     const StepOfTwo expected = step_by_hand(pair, {0, given.closing}, given.h, given.timestep);
-    // What is to be seen is there: the two iterations differ, and so do the two distances.
+    // The case is sensitive: the two iterations differ, and so do the two distances.
     const double changed = expected.velocity[1] - expected.velocity[0] - given.closing;
     ASSERT_GT(std::abs(changed), 0.05 * std::abs(given.closing)) << given.name;
     const double lightest = std::min(pair.mass[0] / pair.drag[0], pair.mass[1] / pair.drag[1]);
@@ -200,17 +201,16 @@ TEST(NoisyStep, OfTwoSpheresOnALineIsThatOfItsEquations) {
   }
 }
 
-// The control variate: the noise force belongs to the resistance at x_n, and so must the separation that its
-// stress is made of, or its mean would not be zero. F = sqrt(2 kT / dt) (sqrt(X_A) n n + sqrt(Y_A) (1 - n n))
-// theta, eqs. 10 and 22, with the numbers of this pair and step; spheres that fly past each other have the
-// stress r F elsewhere by the middle of the step.
+// The noise force belongs to the resistance at x_n, so the separation in its stress must, too; otherwise the
+// mean of the control variate is not zero. F = sqrt(2 kT / dt) (sqrt(X_A) n n + sqrt(Y_A) (1 - n n)) theta,
+// eqs. 10 and 22. These spheres pass each other fast, so r F differs by the middle of the step.
 TEST(NoisyStep, HasTheStressOfItsNoiseWhereItWasDrawn) {
   Physics physics;
   physics.viscosity = viscosity;
   physics.thermal_energy = 0.02;
   physics.lubrication = LubricationParameters{1e-3, 0.9};
   System system = system_of(physics, {1, 1.4}, 10);
-  const Vector3 r = {1.5, -1.6, 1.4};  // 2.6
+  const Vector3 r = {1.5, -1.6, 1.4};  // |r| = 2.6
   system.particles.position.set(0, {10, 15, 15});
   system.particles.position.set(1, Vector3{10, 15, 15} + r);
   system.particles.velocity.set(1, {0.5, 3, -1});
@@ -247,7 +247,7 @@ Vector3 difference(const VectorField& rows, const ParticleState& particles) {
   return rows[1 - first] - rows[first];
 }
 
-// The mean of sigma_xy times the volume over so many steps.
+// Returns the mean of sigma_xy times the volume over `steps` steps.
 double mean_stress(Integrator& integrator, System& system, int steps) {
   integrator.start(system);
   double stress = 0;
@@ -257,8 +257,8 @@ double mean_stress(Integrator& integrator, System& system, int steps) {
   return stress;
 }
 
-// Two spheres pass each other in shear flow while something between them pushes: within the range of
-// lubrication and out of the clamped gap all the time, or in contact without lubrication all the time.
+// Two interacting spheres that pass each other in shear: within the range of lubrication and above the
+// clamped gap, or in contact without lubrication, throughout.
 struct Encounter {
   const char* name;
   Physics physics;
@@ -279,16 +279,16 @@ std::vector<Encounter> encounters() {
           {"contact", contact, {10, 3, 15}, {8.6, 4.5, 15.9}, 2e-5, 0.4, 5}};
 }
 
-// Explicit steps of the pair over some time; returns the mean stress.
+// Follows the pair by explicit steps for some time; returns the mean stress.
 double followed(const Physics& physics, System& system, double time) {
-  // A hundredth of the time in which drag stops the smaller one, and not much of m / X_A.
+  // The step is a hundredth of the drag's decay time of the smaller sphere, and a small part of m / X_A.
   const int steps = static_cast<int>(std::lround(time * viscosity * 240 / system.particles.mass[0]));
   VelocityVerlet integrator(ForceField(physics, system.particles, time / steps, 1, 1), system.particles,
                             time / steps);
   return mean_stress(integrator, system, steps);
 }
 
-// With the velocities that the forces give it: a beginning from others is an error of first order.
+// Returns the pair with the velocities of its forces; other initial velocities are a first-order error.
 System placed(const Encounter& encounter) {
   System system = system_of(encounter.physics, {1, 1.4}, encounter.density);
   system.particles.position.set(0, encounter.first);
@@ -300,8 +300,8 @@ System placed(const Encounter& encounter) {
   return system;
 }
 
-// As the temperature vanishes the step with noise is of second order, as the one without is: in the places,
-// in the stress, and in the velocities, which are those of the middle of a step.
+// At vanishing temperature the step with noise is of second order in positions, in the stress, and in the
+// velocities, which are those of the middle of a step.
 TEST(NoisyStep, IsOfSecondOrderWithoutTemperature) {
   for (const Encounter& encounter : encounters()) {
     const System begin = placed(encounter);

@@ -1,4 +1,4 @@
-// The packing's matrix against forces and slips, its largest eigenvalue against all eigenvalues.
+// The packing's matrix compared with forces and slips, its largest eigenvalue with all eigenvalues.
 #include "engine/integrators/spectral_bound.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ namespace {
 using std::numbers::pi;
 
 constexpr std::size_t count = 12;
-constexpr Eigen::Index rows = 6 * count;  // particle by particle, velocity and spin
+constexpr Eigen::Index rows = 6 * count;  // by particle, velocity then spin
 using Dense = Eigen::Matrix<double, rows, rows>;
 using Rows = Eigen::Vector<double, rows>;
 
@@ -35,7 +35,7 @@ std::vector<PairKind> kinds_of(const System& system, const Physics& physics) {
   return make_pair_kinds(physics, distinct_radii(system.particles.radius));
 }
 
-// Columns by unit vectors.
+// Returns the matrix, column by column, from unit vectors.
 Dense dense(const PackingMatrix& matrix) {
   Dense all;
   for (Eigen::Index k = 0; k < rows; ++k) all.col(k) = matrix * Rows::Unit(k);
@@ -69,8 +69,8 @@ Rows loads(ForceField& field, System& system) {
 
 Vector3 unit_vector(std::size_t k) { return {k == 0 ? 1.0 : 0, k == 1 ? 1.0 : 0, k == 2 ? 1.0 : 0}; }
 
-// What the forces and torques lose when one velocity or spin grows by 1, springs at rest: linear, so that
-// unit steps are exact.
+// Returns the decrease of forces and torques by a unit change of one velocity or spin, springs unchanged. The
+// forces are linear, so unit changes are exact.
 Dense resistance_by_forces(System system, const Physics& physics) {
   ForceField field(physics, system.particles, /*timestep=*/0, /*seed=*/1, /*threads=*/1);
   const Rows before = loads(field, system), roots = inverse_roots(system.particles);
@@ -84,7 +84,7 @@ Dense resistance_by_forces(System system, const Physics& physics) {
   return roots.asDiagonal() * matrix * roots.asDiagonal();
 }
 
-// K as the sum of k g g^T, g how fast a spring of stiffness k grows with each velocity and spin.
+// K as the sum of k g g^T, with g the extension rate of a spring of stiffness k per unit velocity and spin.
 class StiffnessByExtensions {
  public:
   explicit StiffnessByExtensions(const ParticleState& particles) : roots_(inverse_roots(particles)) {}
@@ -105,7 +105,7 @@ class StiffnessByExtensions {
   Dense matrix_ = Dense::Zero();
 };
 
-// Springs of every contact, and the repulsion's potential curving with the distance.
+// Returns K of the springs of every contact and of the curvature of the repulsion.
 Dense stiffness_by_extensions(const System& system, const Physics& physics) {
   const ParticleState& particles = system.particles;
   StiffnessByExtensions sum(particles);
@@ -154,7 +154,7 @@ Dense stiffness_by_extensions(const System& system, const Physics& physics) {
 
 TEST(PackingMatrix, ResistanceIsWhatForcesLoseToUnitMotions) {
   Physics physics = physics_with(every_term);
-  physics.contact->friction = 1e6;  // dashpots are linear in contacts that stick
+  physics.contact->friction = 1e6;  // dashpots of sticking contacts are linear
   const System system = dense_suspension(physics, count, 3);
   const PackingMatrix matrix(system, kinds_of(system, physics), physics, {1, 0});
   expect_equal(dense(matrix), resistance_by_forces(system, physics));
@@ -175,8 +175,7 @@ TEST(PackingMatrix, StiffnessOfAttractionIsThatOfTurningPairs) {
   expect_equal(dense(matrix), stiffness_by_extensions(system, physics));
 }
 
-// Iterations may come to rest on an eigenvalue close below the largest one: then the upper estimate is up to
-// 1 % too low.
+// Iterations may converge to an eigenvalue just below the largest: an upper estimate up to 1 % too low.
 TEST(SpectralBound, IsTheLargestOfAllEigenvalues) {
   const Physics physics = physics_with(every_term);
   for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
@@ -193,8 +192,8 @@ TEST(SpectralBound, IsTheLargestOfAllEigenvalues) {
   }
 }
 
-// Two equal spheres in touch: 2 X_A / m and the drag along the line of centres, 2 k_n / m, and with stiff
-// tangential springs, which turn spheres of inertia 2/5 m a^2 by levers l, (2 + 5 l^2 / a^2) k_t / m.
+// Rates of two equal spheres in contact: 2 X_A / m plus the drag along the line of centres, and 2 k_n / m.
+// With stiff tangential springs at levers l and inertia 2/5 m a^2: (2 + 5 l^2 / a^2) k_t / m.
 TEST(SpectralBound, OfOnePairIsItsAnalyticRate) {
   constexpr double overlap = 1e-3;
   System system;
@@ -223,8 +222,8 @@ TEST(SpectralBound, OfOnePairIsItsAnalyticRate) {
   EXPECT_NEAR(largest({0, 1}), sticking, 1e-9 * sticking);
 }
 
-// How safe the upper estimate is: iterations that stop early may not have met a mode that sits on few
-// spheres. Of these sixty (three kinds of physics, fixed seeds) four are too low, by 0.7 % at most.
+// Iterations that stop early may miss a mode on few spheres. Of these sixty cases (three kinds of physics,
+// fixed seeds) four upper estimates are too low, by at most 0.7 %.
 TEST(SpectralBound, UpperEstimateIsHardlyEverBelowTheLargestEigenvalue) {
   int below = 0;
   double lowest = 2;
@@ -243,7 +242,7 @@ TEST(SpectralBound, UpperEstimateIsHardlyEverBelowTheLargestEigenvalue) {
   EXPECT_GT(lowest, 0.99);
 }
 
-// Units are the scene's own: rates may be of any size.
+// Rates may have any magnitude, since units are those of the scene.
 TEST(SpectralBound, ScalesWithTheMatrix) {
   const Physics physics = physics_with(every_term);
   const System system = dense_suspension(physics, count, 1);
@@ -273,7 +272,7 @@ TEST(SpectralBound, OfSpheresWithoutNeighboursIsTheirDrag) {
   system.particles.position.set(1, {9, 9, 9});
   Physics physics;
   physics.viscosity = 0.1;
-  const double spin = 8 * pi * 0.1 / (0.4 * 4 * pi / 3 * 0.1);  // of the smaller one
+  const double spin = 8 * pi * 0.1 / (0.4 * 4 * pi / 3 * 0.1);  // of the smaller sphere
   EXPECT_NEAR(largest_eigenvalue(PackingMatrix(system, {}, physics, {1, 0})).value, spin, 1e-12 * spin);
   EXPECT_EQ(largest_eigenvalue(PackingMatrix(system, {}, physics, {0, 1})).upper(), 0);
 }

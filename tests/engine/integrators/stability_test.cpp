@@ -37,7 +37,7 @@ Scene scene_with(const Json& patch) {
   return read_scene(document, "scene.json");
 }
 
-// Root of w^2 dt^2 + 2 l dt = 4 by halving: no formula shared with the engine.
+// Returns the root of w^2 dt^2 + 2 l dt = 4 by bisection; shares no formula with the engine.
 double root(double w2, double l) {
   double low = 0, high = 2 / l;
   for (int k = 0; k < 200; ++k) {
@@ -47,8 +47,8 @@ double root(double w2, double l) {
   return low;
 }
 
-// Two of the smallest spheres decide: X_A = 251.55 * 6 pi eta a at the inner gap (published), both masses
-// 0.4189; 2.8 is the densest packings' factor.
+// Two of the smallest spheres set the step: X_A = 251.55 * 6 pi eta a at the inner gap (published), both
+// masses 0.4189. The factor for the densest packings is 2.8.
 TEST(Stability, StepOfThePublishedSceneIsTheRootOfItsStiffestPair) {
   const Scene scene = scene_with(Json::object());
   const double mass = 4 * pi / 3 * 0.1, drag = 6 * pi * 0.1;
@@ -61,8 +61,8 @@ TEST(Stability, StepOfThePublishedSceneIsTheRootOfItsStiffestPair) {
   EXPECT_EQ(resolved_timestep(scene, "scene.json"), automatic_timestep(scene));
 }
 
-// Small spheres of four times the density are no longer the stiffest: two large ones are, of the mass 4 pi /
-// 3 0.1 1.4^3 and X_A = 251.55 * 6 pi eta 1.4.
+// Small spheres of four times the density are no longer the stiffest pair. Two large ones are, of mass 4
+// pi / 3 0.1 1.4^3 and X_A = 251.55 * 6 pi eta 1.4.
 TEST(Stability, StepIsOfTheLightestPairForItsResistance) {
   const Scene scene = scene_with(Json::parse(R"({"particles": {"species": [
       {"radius": 1, "volume_share": 1, "density": 0.4}, {"radius": 1.4, "volume_share": 1}]}})"));
@@ -71,7 +71,7 @@ TEST(Stability, StepIsOfTheLightestPairForItsResistance) {
   EXPECT_NEAR(largest_timestep(scene) / root(2.8 * frequency_squared, 2.8 * damping), 1, 1e-4);
 }
 
-// 0.01 strain over 1 + 2 St, St = rho_i a_i^2 rate / eta: of the densest species here, not of the largest.
+// A strain of 0.01 over 1 + 2 St, St = rho_i a_i^2 rate / eta of the densest species here, not the largest.
 TEST(Stability, ImplicitStepKnowsTheInertiaOfEachSpecies) {
   const auto step = [](double density) {
     Json patch = {{"volume_fraction", 0.4},
@@ -86,7 +86,7 @@ TEST(Stability, ImplicitStepKnowsTheInertiaOfEachSpecies) {
   EXPECT_NEAR(step(0.3), 0.01 / (1 + 2 * 3), 1e-12);
 }
 
-// The form mari: X_A = 6 pi eta a / (4 eps) between touching spheres.
+// The form mari has X_A = 6 pi eta a / (4 eps) at contact.
 TEST(Stability, StepOfLubricationRelativeToTheFlowIsThatOfItsRegularisation) {
   const Scene scene =
       scene_with({{"lubrication", {{"form", "mari"}, {"regularisation", 2e-3}, {"outer_distance", 0.2}}}});
@@ -117,7 +117,7 @@ TEST(Stability, AStepBeyondIsRefusedWithTheBound) {
   }
 }
 
-// Rates of a pair whose parts are stated one by one: springs by k (1/m + 1/m), tangential ones 7/2 as stiff.
+// Rates of a pair, part by part: springs by k (1/m + 1/m), tangential springs 7/2 of that.
 TEST(Stability, EveryPartOfTheSceneCounts) {
   const double mobility = 2 / (4 * pi / 3 * 0.1);
   const PairRates plain = stiffest_pair(scene_with(Json::object()));
@@ -132,14 +132,14 @@ TEST(Stability, EveryPartOfTheSceneCounts) {
   const Json repulsion = {
       {"repulsion", {{"form", "exponential"}, {"strength", 1.7}, {"relative_length", 0.01}}}};
   EXPECT_NEAR(rates(repulsion).frequency_squared - plain.frequency_squared, 1.7 / 4e-4 * mobility, 1e-4);
-  // Where it is steepest, at a distance of eps / sqrt(3).
+  // Attraction at its steepest distance, eps / sqrt(3).
   const Json attraction = {{"attraction", {{"hamaker", 0.6}, {"regularisation", 0.01}, {"cutoff", 1}}}};
   const double steepest = 9 / (8 * std::sqrt(3.0)) * 0.05 / 1e-6;
   EXPECT_NEAR(rates(attraction).frequency_squared - plain.frequency_squared, steepest * mobility, 1e-3);
 }
 
-// A packing that is pressed together by 0.5 %, so that most near pairs overlap or touch, and has almost
-// come to rest: a step that is too long lets a disturbance grow without bound.
+// A packing compressed by 0.5 %, so that most near pairs overlap or touch, and nearly at rest. Too long a
+// step makes a disturbance grow without bound.
 class PressedPacking {
  public:
   explicit PressedPacking(const Scene& scene) : scene_(scene) {
@@ -158,7 +158,7 @@ class PressedPacking {
     run(system_, 0.2 * largest_timestep(scene), 1000);
   }
 
-  // By how much random disturbances of velocities and spins grow in so many steps.
+  // Returns the growth factor of random disturbances of velocities and spins over `steps` steps.
   double growth(double timestep, int steps) const {
     System plain = system_, disturbed = system_;
     Draws draws(1);
@@ -203,7 +203,7 @@ Scene at_rest(Json patch) {
   return scene_with(patch);
 }
 
-// What the bound is for. At three times the largest step the published packing explodes.
+// At three times the largest step the published packing explodes.
 TEST(Stability, ThePublishedPackingIsStableAtTheLargestStepAndExplodesNotFarBeyond) {
   const Scene scene = at_rest(Json::object());
   const PressedPacking packing(scene);
@@ -211,7 +211,7 @@ TEST(Stability, ThePublishedPackingIsStableAtTheLargestStepAndExplodesNotFarBeyo
   EXPECT_GT(packing.growth(3 * largest_timestep(scene), 300), 1e3);
 }
 
-// Spins are damped faster than velocities, 20 pi eta a / m against 6 pi eta a / m: they decide without
+// Spins are damped faster than velocities, 20 pi eta a / m against 6 pi eta a / m. They set the step without
 // contact and with weak lubrication.
 TEST(Stability, SpinsAreStableAtTheLargestStep) {
   for (const Json& lubrication : {Json(), Json::parse(R"({"inner_gap": 0.5, "outer_gap": 0.6})")}) {
@@ -220,8 +220,7 @@ TEST(Stability, SpinsAreStableAtTheLargestStep) {
   }
 }
 
-// The more viscous fluid keeps frictionless spheres from colliding chaotically; contacts still limit the
-// step.
+// The more viscous fluid keeps frictionless spheres from chaotic collisions; contacts still limit the step.
 TEST(Stability, TheAutomaticStepIsStableWhateverLimitsIt) {
   const Json thick = {{"viscosity", 1}};
   const struct {

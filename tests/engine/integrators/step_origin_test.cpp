@@ -1,4 +1,4 @@
-// The way back to the beginning of a step, across steps that rebuild the list of neighbours.
+// Restoring the beginning of a step, across steps that rebuild the neighbour list.
 #include <gtest/gtest.h>
 
 #include "engine/integrators/implicit.h"
@@ -29,7 +29,7 @@ class Marked : public testing::TestWithParam<Case> {
 INSTANTIATE_TEST_SUITE_P(OfEachMethod, Marked, testing::ValuesIn(cases),
                          [](const auto& each) { return std::string(each.param.name); });
 
-// Two marks in a row: the second one finds the list of the first in its place, or another one.
+// Two marks in a row: the second finds the list of the first, or another list.
 TEST_P(Marked, StateIsTheSameAfterTheWayBackAndSoAreStepsFromThere) {
   const auto [name, is_implicit, thermal_energy] = GetParam();
   const bool noise = thermal_energy > 0;

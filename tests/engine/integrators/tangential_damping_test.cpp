@@ -1,4 +1,4 @@
-// A contact with a tangential dashpot, in steps of every kind.
+// A contact with a tangential dashpot, in explicit and implicit steps.
 #include <gtest/gtest.h>
 
 #include "engine/integrators/implicit.h"
@@ -7,9 +7,10 @@
 namespace peclet::engine {
 namespace {
 
-// Two spheres that touch and turn alike: with s' = -(l_i Omega_i + l_j Omega_j) x n = -2 l Omega across n and
-// I Omega' = l F, F = k_t s + gamma_t s', the slip v = 2 l Omega obeys v' = -2 l^2 / I (k_t s + gamma_t v):
-// an oscillator of w^2 = 2 l^2 k_t / I, damped at the rate b = l^2 gamma_t / I.
+// Returns the slip of two touching spheres that spin alike, relative to its initial value. With s' = -(l_i
+// Omega_i + l_j Omega_j) x n = -2 l Omega across n, I Omega' = l F and F = k_t s + gamma_t s', the slip v = 2
+// l Omega obeys v' = -2 l^2 / I (k_t s + gamma_t v): an oscillator of w^2 = 2 l^2 k_t / I, damped at the rate
+// b = l^2 gamma_t / I.
 double slip_after(double time, double rate, double squared_frequency) {
   const double w = std::sqrt(squared_frequency - rate * rate);
   return std::exp(-rate * time) * (std::cos(w * time) - rate / w * std::sin(w * time));
@@ -39,7 +40,7 @@ TEST_P(DampedContactOf, OscillatesAsSpheresThatTurnAlikeDo) {
   system.particles = make_particles({1, 1}, 1);
   system.box = PeriodicCell({20, 20, 20}, Matrix3{});
   system.list = NeighbourList(range_table(make_pair_kinds(physics, {1}), 1), 0.1);
-  // So heavy that they neither part nor turn round each other; the inertia is that of spheres of density 1.
+  // Masses so large that the spheres neither part nor orbit; the inertia is that of density 1.
   for (const std::size_t i : {0UL, 1UL}) system.particles.mass[i] = 1e9;
   system.particles.position.set(0, {9, 10, 10});
   system.particles.position.set(1, {9 + 2 * lever, 10, 10});

@@ -1,5 +1,5 @@
-// Spheres with a density of each size: velocities and spins relax at the rates of their own masses, zeta / m
-// = 4.5 eta / (rho a^2) and zeta_r / I = 15 eta / (rho a^2).
+// A density for each size: velocities and spins relax at the rates zeta / m = 4.5 eta / (rho a^2) and
+// zeta_r / I = 15 eta / (rho a^2) of each sphere.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ const std::vector<double> radius = {1, 1.4}, density = {0.4, 0.05};
 double rate_of(std::size_t i) { return 4.5 * eta / (density[i] * radius[i] * radius[i]); }
 double spin_rate_of(std::size_t i) { return 15 * eta / (density[i] * radius[i] * radius[i]); }
 
-// Too far apart to feel each other.
+// Returns two spheres out of range of each other.
 System two_spheres() {
   System system;
   system.particles = make_particles(radius, density);
@@ -54,8 +54,8 @@ TEST(UnequalDensities, ExplicitStepsRelaxAtTheRateOfEachSphere) {
   integrator.start(system);
   for (int k = 0; k < steps; ++k) integrator.advance(system);
   for (std::size_t i = 0; i < 2; ++i) {
-    // Drag acts on velocities of half a step before: to first order in the step, lambda^2 dt t / 2 of the
-    // rest and lambda dt of the first step.
+    // Drag acts on the velocities of half a step before. The first-order errors are lambda^2 dt t / 2
+    // relative, and lambda dt of the first step.
     const auto expect_decay = [&](double left, double rate) {
       const double time = step * steps, exact = std::exp(-rate * time);
       EXPECT_NEAR(left, exact, (0.5 * rate * time + 1) * rate * step * exact) << i;
@@ -65,7 +65,7 @@ TEST(UnequalDensities, ExplicitStepsRelaxAtTheRateOfEachSphere) {
   }
 }
 
-// Of m (V - V_n) = -dt zeta V.
+// Implicit steps solve m (V - V_n) = -dt zeta V.
 TEST(UnequalDensities, ImplicitStepsRelaxAtTheRateOfEachSphere) {
   const Physics physics = drag_alone();
   System system = two_spheres();

@@ -1,5 +1,4 @@
-// Explicit steps that must not differ: left open or complete, on one thread or several, of any instruction
-// set.
+// Explicit steps agree bit by bit: left open or completed, on any threads, with any instruction set.
 #include <gtest/gtest.h>
 
 #include <iostream>
@@ -12,7 +11,8 @@
 namespace peclet::engine {
 namespace {
 
-// A dense system of many blocks after some steps; `look` says before which of them the velocities are read.
+// Returns a dense system of many blocks after some steps; `look` selects steps before which velocities are
+// read.
 template <class Look>
 System after_steps(InstructionSet set, int threads, Look&& look) {
   const Physics physics =
@@ -41,8 +41,8 @@ TEST(VelocityVerlet, StepsThatAreLeftOpenHaveTheSameBits) {
   }
 }
 
-// One thread moves particles and computes pairs in one walk through the blocks, several do it in two; where
-// the list no longer holds, the walk comes too early.
+// One thread moves particles and computes pairs in one loop over the blocks, several threads in two loops. A
+// single loop must be repeated when the list is no longer valid.
 void expect_the_same_bits_of_one_walk_or_two(const Physics& physics) {
   const auto after = [&](int threads) {
     System system = dense_suspension(physics, 9000, 12);
@@ -68,7 +68,7 @@ TEST(VelocityVerlet, OneWalkOrTwoHaveTheSameBits) {
       physics_with({.lubrication = true, .noise = true, .contact = true}));
 }
 
-// In one walk a block moves, and finds the flow where it now is, before the pairs of the next one do.
+// In one loop a block moves and gets the flow of its new positions before the next block's pairs.
 TEST(VelocityVerlet, OneWalkOrTwoHaveTheSameBitsInWavesThatLubricationFeels) {
   Physics physics = physics_with({.lubrication = true, .noise = true, .contact = true});
   physics.lubrication = LubricationParameters{
@@ -78,7 +78,7 @@ TEST(VelocityVerlet, OneWalkOrTwoHaveTheSameBitsInWavesThatLubricationFeels) {
   expect_the_same_bits_of_one_walk_or_two(physics);
 }
 
-// The loops over particles of each instruction set beside those of the baseline.
+// The loops over particles of each instruction set, compared with the baseline.
 TEST(VelocityVerlet, MovesParticlesAlikeOnEveryInstructionSet) {
   const auto never = [](int) { return false; };
   const System expected = after_steps(InstructionSet::baseline, 1, never);

@@ -15,7 +15,7 @@ namespace {
 
 using std::numbers::pi;
 
-// Spheres and their box, at rest; the list comes with start().
+// Returns spheres at rest in their box; start() builds the list.
 System system_of(const Physics& physics, const std::vector<double>& radius, const Vector3& lengths) {
   System system;
   system.particles = make_particles(radius, 0.1);
@@ -29,7 +29,7 @@ VelocityVerlet integrator_of(const Physics& physics, const System& system, doubl
   return {ForceField(physics, system.particles, timestep, 1, 1), system.particles, timestep};
 }
 
-// Two unequal spheres released from an overlap of 0.01: overlap 0.01 cos(w t), w^2 = k_n (1/m_i + 1/m_j).
+// Two unequal spheres released at an overlap of 0.01: overlap 0.01 cos(w t), w^2 = k_n (1/m_i + 1/m_j).
 struct Release {
   double position, velocity;  // errors at 0.7 / w
 };
@@ -62,8 +62,7 @@ TEST(VelocityVerlet, IsOfSecondOrderForAContact) {
   }
 }
 
-// Velocities relax to the streaming flow's as exp(-zeta t / m), spins to half the vorticity as
-// exp(-zeta_r t / I).
+// Velocities relax to the flow as exp(-zeta t / m), spins to half the vorticity as exp(-zeta_r t / I).
 TEST(VelocityVerlet, SpheresRelaxToTheStreamingFlow) {
   Physics physics;
   physics.viscosity = 0.1;
@@ -85,10 +84,9 @@ TEST(VelocityVerlet, SpheresRelaxToTheStreamingFlow) {
   EXPECT_NEAR(p.angular_velocity[0].z, -0.35, 1e-12);
 }
 
-// Two unit spheres with a gap of 0.01 that move slowly along the line of their centres, apart from each other
-// or, without lubrication, each for itself: their velocity falls as exp(-l t), l = (zeta + 2 X_A) / m. X_A =
-// 6 pi eta (1 / (4 xi) + 9/40 ln(1 / xi)), Jeffrey & Onishi (1984) as Li, Royer & Ness (2023) have it. Its
-// error at t = 1 / l, relative.
+// Returns the relative error of the velocity at t = 1 / l of two unit spheres at a gap of 0.01. They move
+// slowly apart along their line of centres, or independently without lubrication: V ~ exp(-l t),
+// l = (zeta + 2 X_A) / m. X_A = 6 pi eta (1 / (4 xi) + 9/40 ln(1 / xi)), see Li, Royer & Ness (2023).
 double error_of_slowing(bool lubrication, int steps) {
   Physics physics;
   physics.viscosity = 0.1;
@@ -107,7 +105,7 @@ double error_of_slowing(bool lubrication, int steps) {
   return std::abs(system.particles.velocity[1].x / speed * std::exp(1.0) - 1);
 }
 
-// Resistances act on velocities of half a step before: U(n + 1/2) = (1 - l dt) U(n - 1/2).
+// Resistances act on the velocities of half a step before: U(n + 1/2) = (1 - l dt) U(n - 1/2).
 TEST(VelocityVerlet, IsOfFirstOrderForDragAndLubrication) {
   for (const bool lubrication : {false, true}) {
     double coarse = error_of_slowing(lubrication, 40);
@@ -120,9 +118,8 @@ TEST(VelocityVerlet, IsOfFirstOrderForDragAndLubrication) {
   }
 }
 
-// Two equal spheres in a box that is a little shorter than four radii touch each other on both sides: a
-// harmonic oscillator w^2 = 2 k_n (1/m + 1/m), damped by drag alone at zeta / m. Largest amplitude after many
-// steps, in units of the first.
+// Returns the largest amplitude after many steps, relative to the first. Two equal spheres in a box just
+// shorter than four radii touch on both sides: an oscillator of w^2 = 2 k_n (1/m + 1/m), damped at zeta / m.
 double amplitude_after(double stiffness, double viscosity, double timestep) {
   Physics physics;
   physics.viscosity = viscosity;
@@ -149,7 +146,7 @@ TEST(VelocityVerlet, IsStableExactlyUpToItsLimit) {
   for (const double stiffness : {1e4, 1e2}) {
     for (const double viscosity : {1e-3, 0.1, 3.0}) {
       const double w2 = 2 * stiffness * 2 / m, l = 6 * pi * viscosity / m;
-      const double limit = 4 / (l + std::sqrt(l * l + 4 * w2));  // w^2 dt^2 + 2 l dt = 4
+      const double limit = 4 / (l + std::sqrt(l * l + 4 * w2));  // from w^2 dt^2 + 2 l dt = 4
       ASSERT_NEAR(w2 * limit * limit + 2 * l * limit, 4, 1e-12);
       EXPECT_LT(amplitude_after(stiffness, viscosity, 0.99 * limit), 50) << stiffness << ' ' << viscosity;
       EXPECT_GT(amplitude_after(stiffness, viscosity, 1.01 * limit), 1e3) << stiffness << ' ' << viscosity;
@@ -157,8 +154,8 @@ TEST(VelocityVerlet, IsStableExactlyUpToItsLimit) {
   }
 }
 
-// One contact without lubrication: relative motion has w^2 = k_n (1/m + 1/m) and the drag's rate l, and is at
-// the end of its range where w^2 dt^2 + 2 l dt = 4.
+// One contact without lubrication: relative motion has w^2 = k_n (1/m + 1/m) and the drag's rate l. Its
+// stability limit is w^2 dt^2 + 2 l dt = 4.
 TEST(VelocityVerlet, SharesOfStabilityWeighTheStiffnessOfAContact) {
   Physics physics;
   physics.viscosity = 0.1;
@@ -206,14 +203,13 @@ TEST(VelocityVerlet, ReportsTheLargestDisplacementRelativeToTheFlow) {
   EXPECT_NEAR(integrator.advance(system).largest_displacement, 0.013, 1e-9);
 }
 
-// Spheres in contact that fly apart beyond the list in a single step: a blow-up is reported, not stumbled
-// over.
+// Spheres in contact fly apart beyond the list in one step, which reports this and drops the contact.
 TEST(VelocityVerlet, AContactThatIsTornOpenInOneStepIsForgotten) {
   const Physics physics = physics_with({.contact = true, .friction = true});
   System system = system_of(physics, {1, 1}, {20, 20, 20});
   system.particles.position.set(0, {5, 5, 5});
   system.particles.position.set(1, {6.99, 5, 5});
-  system.particles.angular_velocity.set(0, {0, 0, 1});  // slip: a spring
+  system.particles.angular_velocity.set(0, {0, 0, 1});  // slip, so there is a spring
   VelocityVerlet integrator = integrator_of(physics, system, 1e-3);
   integrator.start(system);
   ASSERT_EQ(held_contacts(system.list, system.particles, system.springs).size(), 1u);
@@ -257,7 +253,7 @@ TEST_F(FlowingSuspension, EveryInteractingPairIsInTheListThroughRebuildsAndFlips
   EXPECT_NE(system_.box.basis(), BasisChange{});
 }
 
-// Wherever the list was rebuilt, the old one did not hold any more at the places before wrapping.
+// At each rebuild the old list was no longer valid at the positions before wrapping.
 TEST_F(FlowingSuspension, TheListIsNotRebuiltTooSoon) {
   int rebuilds = 0;
   for (int step = 0; step < 2000; ++step) {

@@ -1,4 +1,4 @@
-// Springs of sliding and of rolling: kinematics, loads, and the rules of their memory.
+// Springs of sliding and of rolling: kinematics, loads and memory.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 constexpr Vector3 n = {0, 0, 1};
 constexpr double boundless = std::numeric_limits<double>::infinity();
 
-// A contact of radii 1 and `ratio` with k_t = 3000 and k_r = 700.
+// Returns a contact of radii 1 and `ratio` with k_t = 3000 and k_r = 700.
 ContactOf<double> contact_at(const PairGeometry& pair, double ratio) {
   static constexpr ContactParameters parameters = {.tangential_stiffness = 3e3, .rolling_stiffness = 700};
   return {parameters, pair, contact_levers(1, ratio, pair), 2 * ratio / (1 + ratio)};
@@ -38,7 +38,7 @@ TEST(Slip, IsZeroForARigidMotionOfThePair) {
 TEST(Slip, OfSpinningSpheresIsThatOfTheirSurfaces) {
   const PairGeometry pair = pair_at(1, 2, -1e-9, {1, 0, 0});
   const ContactOf<double> contact = contact_at(pair, 2);
-  // j's surface at its near end moves by Omega_j x (-l_j n), i's by Omega_i x l_i n.
+  // At the contact j's surface moves by Omega_j x (-l_j n), i's by Omega_i x l_i n.
   const Vector3 both = SlidingFriction::stretch_rate(contact, {{}, {0, 0, 1}, {0, 0, 1}});
   EXPECT_NEAR(both.y, -3, 1e-8);
   const Vector3 gears = SlidingFriction::stretch_rate(contact, {{}, {0, 0, 2}, {0, 0, -1}});
@@ -66,7 +66,7 @@ TEST(Friction, DragsTheFirstSphereAlongWithTheSecond) {
   const ContactOf<double> contact = contact_at(pair, 1);
   const Vector3 slip = SlidingFriction::stretch_rate(contact, motion);
   const PairLoad load = SlidingFriction::load(contact, advanced_spring({}, n, 1e-3 * slip, boundless));
-  EXPECT_NEAR(load.force.x, 3, 1e-12);  // k_t times the way slipped, on i along the motion of j
+  EXPECT_NEAR(load.force.x, 3, 1e-12);  // k_t times the slip, on i along the motion of j
   EXPECT_GT(dissipated(load, motion), 0);
 }
 
@@ -78,14 +78,14 @@ TEST(Rolling, GivesACoupleThatOpposesTheDifferenceOfSpins) {
   const PairLoad load = RollingFriction::load(contact, 1e-3 * RollingFriction::stretch_rate(contact, motion));
   EXPECT_EQ(norm(load.force), 0);
   EXPECT_EQ(norm(load.torque_first + load.torque_second), 0);
-  // -a^2 k_r times the tangential angle rolled, on i.
+  // The torque on i is -a^2 k_r times the tangential angle rolled.
   const Vector3 rolled = 1e-3 * across(motion.spin_first - motion.spin_second, n);
   EXPECT_NEAR(norm(load.torque_first + reduced * reduced * 700 * rolled), 0, 1e-12);
   EXPECT_GT(dissipated(load, motion), 0);
 }
 
-// In a matrix springs act as a resistance: with k_t and k_r for one second it has the loads of springs that
-// have been stretched from nothing for one second.
+// Springs enter the matrix as a resistance. With k_t and k_r over one second it gives the loads of springs
+// stretched from zero for one second.
 TEST(TangentialCoupling, HasTheLoadsOfSpringsThatHaveBeenStretched) {
   Draws draws(63);
   for (const double ratio : size_ratios) {
@@ -112,7 +112,7 @@ TEST(Spring, TurnsWithTheContactAndKeepsItsLength) {
     const Vector3 turned = advanced_spring(spring, after, {}, boundless);
     EXPECT_NEAR(norm(turned), norm(spring), 1e-14);
     EXPECT_NEAR(dot(turned, after), 0, 1e-14);
-    // Into the direction of its projection on the new plane.
+    // The spring lies along its projection on the new plane.
     EXPECT_NEAR(norm(cross(turned, across(spring, after))), 0, 1e-14);
     EXPECT_GT(dot(turned, spring), 0);
   }
@@ -120,7 +120,7 @@ TEST(Spring, TurnsWithTheContactAndKeepsItsLength) {
 
 TEST(Spring, IsStretchedAfterItWasTurned) {
   const Vector3 spring = advanced_spring({0, 0, 2}, {0, 0.6, 0.8}, {5, 0, 0}, boundless);
-  // (0, 0, 2) in the plane across (0, 0.6, 0.8) is along (0, -0.8, 0.6).
+  // (0, 0, 2), turned into the plane across (0, 0.6, 0.8), lies along (0, -0.8, 0.6).
   EXPECT_NEAR(norm(spring - Vector3{5, -1.6, 1.2}), 0, 1e-14);
 }
 
@@ -130,7 +130,7 @@ TEST(Spring, IsCutToTheLongestThatFrictionBearsAndNeverWindsUp) {
     spring = advanced_spring(spring, n, {0.01, 0, 0}, 0.05);
     EXPECT_LE(norm(spring), 0.05 * (1 + 1e-15));
   }
-  spring = advanced_spring(spring, n, {-0.01, 0, 0}, 0.05);  // the first step back unloads at once
+  spring = advanced_spring(spring, n, {-0.01, 0, 0}, 0.05);  // unloads at the first step back
   EXPECT_NEAR(spring.x, 0.04, 1e-15);
 }
 
@@ -139,7 +139,7 @@ TEST(Spring, VanishesAlongTheNormal) {
   EXPECT_EQ(norm(advanced_spring({}, n, {}, boundless)), 0);
 }
 
-// One pair under all rules at once: k_n = 1e4, k_t = 2857, mu = 0.5, k_r = 700, mu_r = 0.2.
+// One pair with all laws: k_n = 1e4, k_t = 2857, mu = 0.5, k_r = 700, mu_r = 0.2.
 class ContactOfTwo : public testing::Test {
  protected:
   static constexpr Terms terms = {.contact = true, .friction = true, .rolling = true};
@@ -174,7 +174,7 @@ TEST_F(ContactOfTwo, SlidesAtTheCoulombForce) {
   EXPECT_NEAR(norm(loads.springs.tangential.force), 0.5 * norm(loads.contact_normal), 1e-12);
 }
 
-// F_n = 100 and 20, F_CL = 30: friction goes by 70 and by nothing.
+// F_n = 100 and 20, F_CL = 30: the load of friction is 70, then zero.
 TEST_F(ContactOfTwo, HasNoFrictionBelowTheCriticalLoad) {
   physics_.contact->critical_load = 30;
   TermLoadsOf<double> loads;

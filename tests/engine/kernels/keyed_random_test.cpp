@@ -1,5 +1,5 @@
-// Seeds are fixed, so each claim holds or fails for good. A statistic is allowed five standard errors of an
-// ideal generator: the hundred comparisons would all pass but for 6e-5 of the seeds.
+// Seeds are fixed, so each claim is reproducible. A statistic may deviate by five standard errors of an ideal
+// generator: one of the hundred comparisons would fail for a fraction of 6e-5 of the seeds.
 #include "engine/terms/keyed_random.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ struct Moments {
   void add(double x) { ++count, first += x, second += x * x, third += x * x * x, fourth += x * x * x * x; }
 };
 
-// E x = 0, E x^2 = 1, E x^3 = 0, E x^4 = 3 with variances 1, 2, 15, 96 of one draw.
+// Expected: E x = 0, E x^2 = 1, E x^3 = 0, E x^4 = 3, with variances 1, 2, 15, 96 per draw.
 void expect_normal(const Moments& m, const std::string& what) {
   EXPECT_NEAR(m.first / m.count, 0, allowed * std::sqrt(1 / m.count)) << what;
   EXPECT_NEAR(m.second / m.count, 1, allowed * std::sqrt(2 / m.count)) << what;
@@ -66,7 +66,7 @@ TEST(KeyedRandom, TailsAreThoseOfTheNormalDistribution) {
   }
 }
 
-// All six of one key, and each with the same one of the neighbouring key.
+// Compares all six numbers of a key with each other, and each with its counterpart of the neighbouring key.
 TEST(KeyedRandom, NeighbouringKeysAreIndependent) {
   const KeyedRandom here(3, Purpose::pair_noise), next_seed(4, Purpose::pair_noise),
       other_purpose(3, Purpose::one_body_noise);
@@ -112,7 +112,7 @@ TEST(KeyedRandom, NeighbouringKeysAreIndependent) {
   }
 }
 
-// In a small box a sphere meets another one through several images, each of which must have its own noise.
+// In a small box a sphere meets several images of another, each of which needs independent noise.
 TEST(KeyedRandom, EveryImageOfAPairHasItsOwnNoise) {
   const KeyedRandom random(3, Purpose::pair_noise);
   std::map<double, LatticeShift> seen;
@@ -151,7 +151,7 @@ TEST(KeyedRandom, EveryPartOfTheKeyCounts) {
   for (const double other : others) EXPECT_NE(reference, other);
 }
 
-// Mean 1/2, variance 1/12; the fourth central moment 1/80 makes the variance of the square 1/180.
+// Mean 1/2, variance 1/12; the fourth central moment 1/80 gives the square a variance of 1/180.
 TEST(KeyedRandom, UniformsFillTheUnitCubeEvenly) {
   const KeyedRandom random(5, Purpose::packing);
   constexpr std::uint32_t count = 200000;
@@ -170,8 +170,8 @@ TEST(KeyedRandom, UniformsFillTheUnitCubeEvenly) {
   EXPECT_NEAR(square / all, 1.0 / 12, allowed * std::sqrt(1 / (180 * all)));
 }
 
-// No sampling: the two factors of the variance, E r^2 = 2 and E cos^2 = 1/2, over all uniforms there are. The
-// midpoint rule itself is off by ln 2 times their spacing for E r^2, 3.3e-7.
+// The two factors of the variance, E r^2 = 2 and E cos^2 = 1/2, as sums over all representable uniforms. The
+// midpoint rule is off by ln 2 times their spacing for E r^2, 3.3e-7.
 TEST(BoxMuller, VarianceIsExactToAMillionth) {
   constexpr std::uint32_t points = 1U << 21;
   double radius_squared = 0, cosine_squared = 0, sine_squared = 0, product = 0, mean = 0;
@@ -191,7 +191,7 @@ TEST(BoxMuller, VarianceIsExactToAMillionth) {
   EXPECT_NEAR(mean / points, 0, 1e-6);
 }
 
-// Against the standard library in double precision, for all uniforms there are.
+// Compared with the standard library in double precision, for all representable uniforms.
 TEST(BoxMuller, LogarithmAndCircleAreThoseOfSinglePrecision) {
   for (std::uint32_t k = 0; k < 1U << 21; ++k) {
     const double u = (k + 0.5) / (1U << 21), angle = 2 * std::numbers::pi * k / (1U << 21);
@@ -208,8 +208,8 @@ TEST(BoxMuller, IsFiniteAtBothEnds) {
   EXPECT_LT(logarithm_of_uniform((1U << 21) - 1), 0);
 }
 
-// Known answers of Threefry-2x64-20 for key and counter of zero and of ones, as its authors publish them,
-// reach the normals through fields of 21 bits.
+// Published known answers of Threefry-2x64-20 for key and counter of zeros and of ones. They enter the
+// normals as fields of 21 bits.
 TEST(NormalBlock, IsMadeOfTheWordsOfThreefry) {
   std::uint64_t identity[identities_per_block] = {}, low[identities_per_block], high[identities_per_block];
   draw_words({}, identity, identity, low, high);
@@ -222,7 +222,7 @@ TEST(NormalBlock, IsMadeOfTheWordsOfThreefry) {
   EXPECT_EQ(high[0], 0xd06633d0893b8b68U);
 }
 
-// Of eight particles at a step.
+// Returns the normals of eight particles for a part of a step.
 NormalBlock normals_of_part(std::uint64_t step, std::uint64_t part) {
   const std::uint64_t identity[identities_per_block] = {0, 1, 2, 3, 4, 5, 6, 7};
   NormalBlock block;
@@ -230,8 +230,8 @@ NormalBlock normals_of_part(std::uint64_t step, std::uint64_t part) {
   return block;
 }
 
-// sqrt(dt/2) (z_2p + z_2p+1) = sqrt(dt) z_p, down to the smallest parts; and halves are standard normal and
-// independent, of each other and of other parts.
+// sqrt(dt/2) (z_2p + z_2p+1) = sqrt(dt) z_p, down to the smallest parts. Halves are standard normal, and
+// independent of each other and of other parts.
 TEST(NormalBlock, HalvesOfAPartRefineItsPath) {
   std::map<std::uint64_t, Moments> moments;
   std::map<std::pair<std::uint64_t, std::uint64_t>, double> products;
@@ -261,7 +261,6 @@ TEST(NormalBlock, HalvesOfAPartRefineItsPath) {
   }
 }
 
-// Every instruction set that this processor has gives the same bits.
 TEST(NormalBlock, HasTheSameBitsOnEveryInstructionSet) {
   for (const InstructionSet set : {InstructionSet::avx2, InstructionSet::avx512}) {
     if (!is_available(set)) {

@@ -1,4 +1,4 @@
-// Friction that is less while a contact slides: when it breaks away, holds again and forgets.
+// Kinetic friction below static friction: breaking away, sticking again and forgetting.
 #include <gtest/gtest.h>
 
 #include "engine/kernels/pair_pass.h"
@@ -12,10 +12,10 @@ class KineticFrictionOfTwo : public testing::Test {
  protected:
   static constexpr double stiffness = 2857, still = 0.5, kinetic = 0.3;
   static constexpr double load = 100;       // k_n delta
-  static constexpr double advance = 2.857;  // of the force in a step at unit slip
+  static constexpr double advance = 2.857;  // force per step at unit slip
   static constexpr Terms terms = {.contact = true, .friction = true, .rolling = true, .kinetic = true};
 
-  // The force along x on the first sphere after a step.
+  // Returns the force along x on the first sphere after a step.
   double after_step(double slip, double gap = -0.01) {
     const auto no_noise = [] { return PairNormalsOf<double>{}; };
     const auto no_law = [](StressTerm /*part*/, const Vector3& /*force*/) {};
@@ -64,14 +64,14 @@ TEST_F(KineticFrictionOfTwo, SticksAgainWhereItReverses) {
   ASSERT_TRUE(slides());
   EXPECT_NEAR(after_step(-1), kinetic * load - advance, 1e-12);
   EXPECT_FALSE(slides());
-  // Up to the static force of the other direction: (30 + 50) / 2.857 = 28.001.
+  // Holds up to the static force in the other direction: (30 + 50) / 2.857 = 28.001.
   EXPECT_NEAR(after_steps(27, -1), kinetic * load - 28 * advance, 1e-11);
   EXPECT_FALSE(slides());
   EXPECT_NEAR(after_step(-1), -kinetic * load, 1e-12);
   EXPECT_TRUE(slides());
 }
 
-// Slips that fall, or a load that rises, so far that the kinetic friction holds them.
+// The slip falls, or the load rises, until kinetic friction holds the contact.
 TEST_F(KineticFrictionOfTwo, SticksAgainWhereLessHoldsIt) {
   after_steps(30, 1);
   EXPECT_NEAR(after_step(0.01), kinetic * load, 1e-12);
@@ -84,7 +84,7 @@ TEST_F(KineticFrictionOfTwo, SticksAgainWhereLessHoldsIt) {
   EXPECT_FALSE(slides());
 }
 
-// F_CL = 30: friction goes by 70, and by nothing at F_n = 20, where a contact forgets that it slid.
+// F_CL = 30: the load of friction is 70, and zero at F_n = 20, where a contact forgets that it slid.
 TEST_F(KineticFrictionOfTwo, OfBothKindsGoesByWhatExceedsTheCriticalLoad) {
   contact_.critical_load = 30;
   EXPECT_NEAR(after_steps(12, 1), 12 * advance, 1e-12);  // below 35
@@ -114,20 +114,20 @@ TEST_F(KineticFrictionOfTwo, ForgetsThatItSlidWhereItOpens) {
   EXPECT_NEAR(after_steps(17, 1), 17 * advance, 1e-12);
 }
 
-// What pushes on the way is cut by what the contact did before the step.
+// The force within a step is limited by the state of the contact before the step.
 TEST_F(KineticFrictionOfTwo, PushesOnTheWayByWhatTheStepBegan) {
   parameters_.felt_share = 0.6;
   EXPECT_NEAR(after_steps(17, 1), 16.6 * advance, 1e-12);
-  EXPECT_NEAR(after_step(0.6), 17.36 * advance, 1e-12);  // 17.6 advances would be more than 50
+  EXPECT_NEAR(after_step(0.6), 17.36 * advance, 1e-12);  // 17.6 advances exceed 50
   EXPECT_TRUE(slides());
   EXPECT_NEAR(stiffness * springs_.tangential.x, kinetic * load, 1e-12);
   EXPECT_NEAR(after_step(1), kinetic * load, 1e-12);
-  // The other way again, which holds at once, on the way as at its end.
+  // In reverse the contact holds at once, within the step and at its end.
   EXPECT_NEAR(after_step(-1), kinetic * load - 0.6 * advance, 1e-12);
   EXPECT_FALSE(slides());
 }
 
-// Of a spring that breaks away, and of one that is held by what it may have while it sticks.
+// Shares of a spring that breaks away, and of one held by static friction.
 TEST_F(KineticFrictionOfTwo, LeavesItsShareOfTheStiffness) {
   const PairGeometry pair = pair_at(1, 1, -0.01, {0, 0, 1});
   const ContactOf<double> contact = contact_of(contact_, kind_, pair);

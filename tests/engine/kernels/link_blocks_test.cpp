@@ -1,4 +1,4 @@
-// Systems of more than one block: the links between blocks, and rows that several blocks work on.
+// Systems of more than one block: links between blocks, and rows that several blocks work on.
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -22,15 +22,14 @@ Links linked(InstructionSet set) {
   return links;
 }
 
-// A times a vector of rows.
+// Returns A times a vector of rows.
 std::vector<MotionRow> product(const Links& links, const std::vector<MotionRow>& vector) {
   std::vector<MotionRow> result(vector.size());
   links.kernels().multiply(links.view(), vector.data(), result.data());
   return result;
 }
 
-// Of each row, its own block of A: what a motion of the rows of one level does to them, who do not feel each
-// other.
+// Returns the diagonal block of A for each row, from motions of all rows of a level, which are not linked.
 std::vector<Block> own_blocks(const Links& links) {
   std::vector<Block> blocks(links.system().particles.count());
   for (const LinkLevel& level : links.order().levels()) {
@@ -78,7 +77,7 @@ TEST_P(LinkBlocksOf, KeepRowsOfALevelApart) {
       level[i] = l;
   }
   EXPECT_EQ(rows, system.particles);
-  // The boundary's levels go through all blocks.
+  // The boundary's levels span all blocks.
   const auto rank = [&](std::uint32_t row) {
     const LinkBlock& block = system.blocks[row < system.blocks[0].rows_end ? 0 : 1];
     const bool interior = level[row] < block.boundary_begin;
@@ -94,12 +93,12 @@ TEST_P(LinkBlocksOf, InvertThePivots) {
   const Pivots pivots = pivots_of(links);
   for (std::size_t i = 0; i < pivots.whole.size(); ++i) {
     const Block error = inverse_of(links.view().pivots[i]) * pivots.whole[i] - Block::Identity();
-    // The ratio of a block's extreme eigenvalues is some hundreds.
+    // The condition number of a block is some hundreds.
     ASSERT_LE(largest_entry(error), 1e-3) << i;
   }
 }
 
-// (P + L) r = right, of which z = P r.
+// begin() solves (P + L) r = right; z = P r.
 TEST_P(LinkBlocksOf, BeginWithEveryLink) {
   const Links links = linked(GetParam());
   const std::size_t count = links.system().particles.count();
@@ -146,7 +145,7 @@ TEST_P(LinkBlocksOf, SolveTheSystem) {
       links.kernels().solve(links.view(), rows.view(), begun, smaller * smaller * begun, 1000, alone);
   EXPECT_LE(report.squared_residual, smaller * smaller * begun);
   EXPECT_LT(report.iterations, 200);
-  // r.C^-1 r of what is left, by another begin().
+  // The remaining r.C^-1 r, from another begin().
   SolverStorage rest(count);
   const std::vector<MotionRow> solved = product(links, rows.of[0]);
   for (std::size_t i = 0; i < count; ++i) rest.of[0][i].v = right[i].v - solved[i].v;

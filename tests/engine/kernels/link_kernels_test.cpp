@@ -1,4 +1,4 @@
-// The system of an implicit step is the derivative of the forces that the step is to bring into balance.
+// The matrix of an implicit step is the derivative of the forces that the step balances.
 #include <gtest/gtest.h>
 
 #include "tests/engine/kernels/linked_suspension.h"
@@ -6,7 +6,7 @@
 namespace peclet::engine {
 namespace {
 
-// Springs that never slide: their secant stiffness is then the tangent one.
+// Returns springs that never slide, whose secant stiffness is the tangent stiffness.
 Physics sticking(Physics physics) {
   if (physics.contact && physics.contact->friction > 0) {
     physics.contact->friction = 1e6;
@@ -32,13 +32,13 @@ INSTANTIATE_TEST_SUITE_P(EverySet, LinkKernelsOf, testing::ValuesIn(available_se
 TEST_P(LinkKernelsOf, MultiplyByTheDerivativeOfTheLoads) {
   for (const Terms& terms : tried) {
     const Physics physics = sticking(physics_with(terms));
-    // Ahead of the present distance the levers of friction change as well, which the system leaves out.
+    // A normal_time > 0 would change the levers of friction as well, which the system leaves out.
     LinkWeights of_links = weights;
     of_links.normal_time = terms.friction ? 0 : weights.normal_time;
     Links links(physics, dense_suspension(physics, 203, 7), GetParam(), of_links);
     const std::size_t count = links.system().particles.count();
     const auto change = random_rows(count, 11);
-    // Small enough that no contact opens or closes ahead and the repulsion stays linear.
+    // Small enough that no contact opens or closes and the repulsion is linear.
     constexpr double small = 1e-6;
     const std::vector<double> before = links.loads(change, -small), after = links.loads(change, small);
     std::vector<double> expected = numbers(change);
@@ -51,8 +51,8 @@ TEST_P(LinkKernelsOf, MultiplyByTheDerivativeOfTheLoads) {
   }
 }
 
-// A pair along x in the middle of a step, whose resistance is averaged over the gaps of the step: how the
-// force along n grows with the closing velocity is X_A where the step ends, without lubrication nothing.
+// A pair along x in the middle of a step, with the resistance averaged over the gaps of the step. The normal
+// force grows with the closing velocity by X_A at the end of the step, or by zero beyond lubrication.
 TEST_P(LinkKernelsOf, HaveTheSqueezingResistanceOfTheEndOfTheStep) {
   Physics physics = physics_with({.lubrication = true});
   physics.flow = steady_shear(0);
@@ -77,7 +77,7 @@ TEST_P(LinkKernelsOf, HaveTheSqueezingResistanceOfTheEndOfTheStep) {
     along[second].v[0] = 1;
     const double found = static_cast<double>(links.times(along)[second].v[0]) - system.particles.mass[0];
     const double end = std::max(gap + 0.5 * step * closing, inner);
-    // Of equal spheres of radius 1.
+    // X_A of equal spheres of radius 1.
     const double there =
         6 * std::numbers::pi * physics.viscosity * (0.25 / end + 9.0 / 40 * std::log(1 / end));
     const double expected = end <= outer ? step * there : 0;
@@ -85,8 +85,8 @@ TEST_P(LinkKernelsOf, HaveTheSqueezingResistanceOfTheEndOfTheStep) {
   }
 }
 
-// A pair along x whose spring is longer than kinetic friction leaves and shorter than static friction allows:
-// where it slides, the stiffness is the part that leaves it at kinetic friction.
+// A pair along x with a spring longer than kinetic and shorter than static friction allows. If it slides, the
+// stiffness is the share that leaves it at kinetic friction.
 TEST_P(LinkKernelsOf, HaveTheSecantStiffnessOfContactsThatSlide) {
   Physics physics = physics_with({.contact = true, .friction = true, .kinetic = true});
   const ContactParameters& contact = *physics.contact;
@@ -115,7 +115,7 @@ TEST_P(LinkKernelsOf, HaveTheSecantStiffnessOfContactsThatSlide) {
   }
 }
 
-// Motions that leave all distances as they are cost nothing but what inertia and drag say.
+// Motions that preserve all distances meet inertia and drag alone.
 TEST_P(LinkKernelsOf, RigidTranslationFeelsNoLink) {
   const Physics physics = physics_with({.lubrication = true, .contact = true, .friction = true});
   const Links links(physics, dense_suspension(physics, 100, 7), GetParam());

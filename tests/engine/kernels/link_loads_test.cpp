@@ -1,5 +1,4 @@
-// The loads that are left beside the links are those of an evaluation, which tests hold against an
-// independent one.
+// The assembly of links leaves the loads of an evaluation, which reference_forces_test.cpp tests.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -33,8 +32,8 @@ void expect_those_of_an_evaluation(const Terms& terms, std::size_t count, Instru
   for (std::size_t block = 0; block < order.blocks().size(); ++block) assemble(block);
   field.add_incoming(system, force, torque);
   field.evaluate(system, expected_force, expected_torque);
-  // A mean over the shortest way, 1e-5 of the inner gap, is a difference of logarithms of gaps, 7 at most,
-  // over the way: rounding is multiplied by 7e5 in each of two evaluations, for a dozen near spheres.
+  // A mean over the shortest move, 1e-5 of the inner gap, is a difference of logarithms of gaps, at most 7,
+  // over the move. It multiplies rounding by 7e5 in each of two evaluations, for a dozen near spheres.
   constexpr double rounding = 2 * 12 * 7e5 * std::numeric_limits<double>::epsilon();
   double largest_force = 0, largest_torque = 0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -56,7 +55,7 @@ TEST_P(LinkLoadsOf, AreThoseOfAnEvaluation) {
   }
 }
 
-// Pairs from both sides of a border between blocks.
+// Includes pairs on both sides of a border between blocks.
 TEST_P(LinkLoadsOf, AreThoseOfAnEvaluationInSeveralBlocks) {
   expect_those_of_an_evaluation({.lubrication = true, .contact = true}, 4500, GetParam(), Part::ahead);
 }
@@ -69,7 +68,7 @@ TEST_P(LinkLoadsOf, AreNotLeftWhereAnEvaluationDoesMore) {
     const System system = dense_suspension(physics, 30, 7);
     EXPECT_FALSE(field_of(physics, system, GetParam(), Part::whole).leaves_loads_with_links()) << text(terms);
   }
-  // The system's matrix has the derivative of a mean resistance, the forces have the mean.
+  // The matrix has the derivative of a mean resistance; the forces have the mean.
   const Physics physics = physics_with({.lubrication = true});
   const System system = dense_suspension(physics, 30, 7);
   EXPECT_FALSE(field_of(physics, system, GetParam(), Part::on_the_way).leaves_loads_with_links());

@@ -1,4 +1,4 @@
-// The factorised system of an implicit step, and what conjugate gradients make of it.
+// The factorised system of an implicit step, and its solution by conjugate gradients.
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -16,7 +16,7 @@ INSTANTIATE_TEST_SUITE_P(EverySet, LinkSolverOf, testing::ValuesIn(available_set
 
 using Matrix = Eigen::MatrixXd;
 
-// A in the order of rows, six numbers each.
+// Returns A in the order of rows, six numbers each.
 Matrix matrix_of(const Links& links) {
   const std::size_t count = links.system().particles.count();
   Matrix matrix(6 * count, 6 * count);
@@ -33,7 +33,7 @@ Matrix matrix_of(const Links& links) {
   return matrix;
 }
 
-// P of the formulas in link_kernels.h, as one matrix with a block for each row.
+// Returns P of the formulas in link_kernels.h, as one matrix with a block for each row.
 Matrix pivots_of(const Links& links, const Matrix& matrix) {
   const LinkSystem system = links.view();
   const auto count = static_cast<Eigen::Index>(system.particles);
@@ -60,14 +60,14 @@ Eigen::VectorXd vector_of(const std::vector<MotionRow>& rows) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
-// Of every level, a row's links lead to rows of other levels.
+// The links of a row lead to rows of other levels.
 TEST_P(LinkSolverOf, CoupleNoTwoRowsOfALevel) {
   const Physics physics = physics_with({.lubrication = true, .contact = true, .friction = true});
   const Links links(physics, dense_suspension(physics, 203, 7), GetParam());
   const Matrix matrix = matrix_of(links);
   EXPECT_EQ(links.order().levels().front().rows_begin, 0);
   EXPECT_EQ(links.order().levels().back().rows_end, 203);
-  EXPECT_GE(links.order().levels().size(), 4);  // four spheres that touch each other
+  EXPECT_GE(links.order().levels().size(), 4);  // four spheres in mutual contact
   EXPECT_LE(links.order().levels().size(), 12);
   for (const LinkLevel& level : links.order().levels()) {
     for (Eigen::Index i = level.rows_begin; i < level.rows_end; ++i) {
@@ -87,7 +87,7 @@ TEST_P(LinkSolverOf, InvertThePivots) {
     const Eigen::Matrix<double, 6, 6> error =
         inverse_of(links.view().pivots[i]) * pivots.block<6, 6>(at, at) -
         Eigen::Matrix<double, 6, 6>::Identity();
-    // The ratio of a block's extreme eigenvalues is some hundreds.
+    // The condition number of a block is some hundreds.
     EXPECT_LE(largest_entry(error), 1e-3) << i;
   }
 }
@@ -114,8 +114,8 @@ TEST_P(LinkSolverOf, SolveTheSystem) {
     return reduced.dot(pivots * reduced);
   };
   EXPECT_NEAR(begun / squared_norm(vector_of(right)), 1, 1e-4);
-  // The preconditioner bounds the number of iterations: for eigenvalues of C^-1 A between a and b conjugate
-  // gradients take at most ln(2 / e) sqrt(b / a) / 2 of them to an error e in the norm of A.
+  // For eigenvalues of C^-1 A between a and b, conjugate gradients need at most ln(2 / e) sqrt(b / a) / 2
+  // iterations to an error e in the norm of A.
   const Matrix whole = lower * pivots.inverse() * lower.transpose();
   const Eigen::VectorXd spectrum =
       Eigen::GeneralizedSelfAdjointEigenSolver<Matrix>(matrix, whole, Eigen::EigenvaluesOnly).eigenvalues();
@@ -125,7 +125,7 @@ TEST_P(LinkSolverOf, SolveTheSystem) {
   EXPECT_LE(report.squared_residual, smaller * smaller * begun);
   EXPECT_GT(report.iterations, 5);
   EXPECT_LT(report.iterations, 1 + 0.5 * std::sqrt(ratio) * std::log(2 * std::sqrt(ratio) / smaller));
-  // What it says of the residual is true: in the same norm, to the precision of the numbers.
+  // The reported residual is the true one, in that norm and within single precision.
   const Eigen::VectorXd rest = vector_of(right) - matrix * vector_of(storage.of[0]);
   EXPECT_LT(squared_norm(rest), 4 * smaller * smaller * begun);
 }

@@ -1,4 +1,4 @@
-// A suspension whose links are assembled and factorised, for the tests of the kernels that do so.
+// A suspension with assembled and factorised links, for tests of the kernels.
 #pragma once
 
 #include <numbers>
@@ -13,13 +13,13 @@
 
 namespace peclet::engine {
 
-// Single precision, sums of some ten numbers.
+// Single precision, for sums of about ten numbers.
 constexpr double single_precision = 2e-6;
 
 constexpr double step = 0.02;
 constexpr LinkWeights weights = {.timestep = step, .normal_time = 0.5 * step};
 
-// Kernels need not start from every particle: rows of all of them, and what belongs to them.
+// The links of a suspension, with what belongs to them.
 class Links {
  public:
   Links(const Physics& physics, System system, InstructionSet set, const LinkWeights& of_links = weights,
@@ -66,7 +66,7 @@ class Links {
   const LinkKernels& kernels() const { return kernels_; }
   const System& system() const { return system_; }
 
-  // Both in the order of particles.
+  // Returns A times `vector`, both in the order of particles.
   std::vector<MotionRow> times(const std::vector<MotionRow>& vector) const {
     std::vector<MotionRow> rows(vector.size()), product(vector.size()), result(vector.size());
     for (std::size_t i = 0; i < vector.size(); ++i) rows[order_.row()[i]] = vector[i];
@@ -75,7 +75,7 @@ class Links {
     return result;
   }
 
-  // Loads at the present velocities plus `change`, drag excepted.
+  // Returns the loads at the current velocities plus `scale` times `change`, without drag.
   std::vector<double> loads(const std::vector<MotionRow>& change, double scale) {
     System moved = system_;
     for (std::size_t i = 0; i < change.size(); ++i) {
@@ -123,7 +123,7 @@ inline std::vector<MotionRow> random_rows(std::size_t count, std::uint64_t from)
   return rows;
 }
 
-// Where a row has numbers: the fourth and the eighth are always zero.
+// The used places of a row: the fourth and the eighth are always zero.
 constexpr std::array<int, 6> of_a_motion = {0, 1, 2, 4, 5, 6};
 
 inline Eigen::Vector<double, 8> entries(const MotionRow& row) {
@@ -138,7 +138,7 @@ inline std::vector<double> numbers(const std::vector<MotionRow>& rows) {
   return result;
 }
 
-// From earlier rows to later ones: the interior of every block, then the boundary, level by level.
+// Returns the groups in the order of rows: the interior of every block, then the boundary, by level.
 inline std::vector<LinkGroup> groups_in_order(const LinkSystem& system) {
   std::vector<LinkGroup> groups;
   const auto add = [&](std::uint32_t level) {
@@ -159,7 +159,7 @@ inline std::vector<LinkGroup> groups_in_order(const LinkSystem& system) {
   return groups;
 }
 
-// What a pivot holds, see link_kernels.h.
+// Returns the inverse of the pivot, see link_kernels.h.
 inline Eigen::Matrix<double, 6, 6> inverse_of(const Pivot& pivot) {
   const auto at = [&](int row, int place) { return static_cast<double>(pivot.rows[row].v[place]); };
   Eigen::Matrix<double, 6, 6> inverse;
@@ -182,7 +182,7 @@ inline Eigen::Vector3d normal_of(const LinkGroup& group, int k) {
   return {at(0), at(1), at(2)};
 }
 
-// What is in the rows before means nothing: it may be left from a step that went wrong.
+// Rows filled with NaN: their initial content must have no effect.
 struct SolverStorage {
   explicit SolverStorage(std::size_t count)
       : of(7, std::vector<MotionRow>(count, MotionRow{Floats{} / 0.0F})) {}

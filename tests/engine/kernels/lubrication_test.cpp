@@ -36,7 +36,7 @@ TEST(Lubrication, RigidMotionOfThePairFeelsNothing) {
   });
 }
 
-// T_i + T_j = r x F_i: no net torque on the two.
+// T_i + T_j = r x F_i: there is no net torque on the pair.
 TEST(Lubrication, TorquesOfThePairBalance) {
   for_every_pair([](const PairGeometry& pair, const PairResistance& R, Draws& draws) {
     const PairLoad load = lubrication_load(R, pair, random_motion(draws));
@@ -54,7 +54,7 @@ TEST(Lubrication, DissipatesEveryMotion) {
   });
 }
 
-// Seen from the other sphere, the normal and the relative velocity change sign and so does the force.
+// Seen from the other sphere, the normal, the relative velocity and the force change sign.
 TEST(Lubrication, ForcesAreEqualAndOppositeForUnequalRadii) {
   Draws draws(32);
   for (const double ratio : size_ratios) {
@@ -73,7 +73,7 @@ TEST(Lubrication, ForcesAreEqualAndOppositeForUnequalRadii) {
   }
 }
 
-// x -> z, y -> x, z -> y.
+// Maps x to z, y to x and z to y.
 Vector3 turned(const Vector3& v) { return {v.y, v.z, v.x}; }
 
 TEST(Lubrication, TurnsWithTheFrame) {
@@ -93,11 +93,11 @@ TEST(Lubrication, TurnsWithTheFrame) {
 TEST(Lubrication, ResistsApproachAndSeparationAlike) {
   const PairGeometry pair = pair_at(1, 1, 0.01, {0, 1, 0});
   const PairResistance R = resistance_of(viscosity, 1, 1, pair);
-  EXPECT_LT(lubrication_load(R, pair, {{0, -1, 0}, {}, {}}).force.y, 0);  // j comes: i is pushed away
-  EXPECT_GT(lubrication_load(R, pair, {{0, 1, 0}, {}, {}}).force.y, 0);   // j goes: i is drawn along
+  EXPECT_LT(lubrication_load(R, pair, {{0, -1, 0}, {}, {}}).force.y, 0);  // j approaches: i is pushed away
+  EXPECT_GT(lubrication_load(R, pair, {{0, 1, 0}, {}, {}}).force.y, 0);   // j recedes: i is drawn along
 }
 
-// Two spheres that shear carries towards each other, in the quadrant n_x n_y < 0.
+// Shear carries two spheres towards each other in the quadrant n_x n_y < 0.
 TEST(Lubrication, ApproachInTheCompressiveQuadrantGivesPositiveShearStress) {
   constexpr double rate = 0.7;
   const Vector3 n = {std::sqrt(0.5), -std::sqrt(0.5), 0};
@@ -108,8 +108,8 @@ TEST(Lubrication, ApproachInTheCompressiveQuadrantGivesPositiveShearStress) {
   EXPECT_GT(symmetric_dyad(pair.separation, load.force).xy, 0);
 }
 
-// The published model cuts lubrication off without an offset: 5.67 and 0.50 (outer gap 0.05), 0.66 and 0.12
-// (0.5) in units of 6 pi eta a fall to nothing.
+// The published model cuts lubrication off without an offset. From 5.67 and 0.50 (outer gap 0.05), or 0.66
+// and 0.12 (0.5), it drops to zero; units of 6 pi eta a.
 TEST(Lubrication, EndsWithTheKnownJumpsAtTheOuterGap) {
   const struct { double outer_gap, squeeze, shear; } published[] = {{0.05, 5.67, 0.50}, {0.5, 0.66, 0.12}};
   for (const auto& each : published) {

@@ -1,4 +1,4 @@
-// The hot loop against the same terms one by one, for every compiled combination.
+// The pair loop compared with its terms one by one, for every compiled combination.
 #include <gtest/gtest.h>
 
 #include "tests/engine/dense_suspension.h"
@@ -8,7 +8,7 @@
 namespace peclet::engine {
 namespace {
 
-// The normal vectors that a force field of this seed uses at the system's step.
+// Returns the normal vectors that a force field of this seed uses at the system's step.
 GivenNoise noise_of(const System& system) {
   const KeyedRandom one_body(seed, Purpose::one_body_noise), pairwise(seed, Purpose::pair_noise);
   const std::size_t count = system.particles.count();
@@ -28,7 +28,7 @@ GivenNoise noise_of(const System& system) {
 
 Vector3 vector_from(const Json& v) { return {v[0], v[1], v[2]}; }
 
-// Sum of all terms of a block, as one list of components.
+// Returns the sum of all terms of a block, as one list of components.
 std::vector<double> summed(const Json& block, std::size_t count) {
   std::vector<double> sum(3 * count);
   for (const Json& term : block) {
@@ -39,7 +39,7 @@ std::vector<double> summed(const Json& block, std::size_t count) {
   return sum;
 }
 
-// The answer of single evaluations: springs advanced by one step, and the loads of these springs.
+// Results of single evaluations: springs advanced by one step, and the loads of these springs.
 struct OneByOne {
   Json loads;
   std::vector<HeldContact> springs;

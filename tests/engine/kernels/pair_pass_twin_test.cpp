@@ -1,5 +1,4 @@
-// The hot loop against itself: other instruction sets, threads, orders of the particles; and against a plain
-// loop.
+// The pair loop compared with itself on other instruction sets, threads and orders, and with a plain loop.
 #include <gtest/gtest.h>
 
 #include <iostream>
@@ -50,7 +49,7 @@ TEST(PairPass, EqualsItsSingleTwinOnEveryInstructionSetForEveryRecipe) {
   }
 }
 
-// Laws that few or all of eight pairs feel.
+// Laws that act on few or on all of eight pairs.
 TEST(PairPass, EqualsItsSingleTwinForEveryConservativeLaw) {
   Physics both = physics_with({.lubrication = true, .contact = true, .conservative = true});
   both.attraction = AttractionParameters{.hamaker = 0.6, .regularisation = 0.01, .cutoff = 0.3};
@@ -72,7 +71,7 @@ TEST(PairPass, EqualsItsSingleTwinForEveryConservativeLaw) {
   }
 }
 
-// All terms at once over every pair in every image, one by one, with no list and no kernel.
+// All terms at once over every pair in every image, one by one, without list or kernel.
 TEST(PairPass, EqualsThePlainLoopOverAllPairs) {
   constexpr Terms terms = {.lubrication = true,
                            .noise = true,
@@ -145,14 +144,14 @@ TEST(PairPass, EqualsThePlainLoopOverAllPairs) {
   expect_near(components(advanced), components(found.springs), "springs");
 }
 
-// Many blocks, of which most pairs cross the boundaries, and one: another order of particles in memory.
+// Many blocks, with most pairs across their boundaries, compared with another order of particles in memory.
 TEST(PairPass, DependsOnNoOrderOfTheParticlesInMemory) {
   const Physics physics =
       physics_with({.lubrication = true, .noise = true, .contact = true, .friction = true});
   System shuffled = dense_suspension(physics, 5000, 11), arranged = shuffled;
-  rebuild_neighbours(shuffled);  // along the curve
+  rebuild_neighbours(shuffled);  // sorts along the curve
   rebuild_neighbours(arranged);
-  // Back in the order of their ids, each block is all over the box.
+  // Sorted by id again, each block extends over the whole box.
   const std::vector<HeldContact> held = held_contacts(shuffled.list, shuffled.particles, shuffled.springs);
   std::vector<std::uint32_t> place(5000);
   for (std::uint32_t k = 0; k < 5000; ++k) place[arranged.particles.id[k]] = k;
@@ -184,7 +183,7 @@ TEST(PairPass, DependsOnNoOrderOfTheParticlesInMemory) {
   EXPECT_EQ(a.sums.contacts, b.sums.contacts);
 }
 
-// What crosses between blocks waits in memory that is used again: pairs that have parted leave nothing there.
+// Loads across blocks are buffered in reused memory; separated pairs must leave nothing there.
 TEST(PairPass, RemembersNoForceOfPairsThatHaveParted) {
   const Physics physics =
       physics_with({.lubrication = true, .contact = true, .friction = true, .conservative = true});
@@ -196,7 +195,7 @@ TEST(PairPass, RemembersNoForceOfPairsThatHaveParted) {
     System before = system;
     VectorField force(8500), torque(8500);
     used.evaluate(before, force, torque);
-    // Drawn out along x, some pairs leave their range and some do not; twice as long, all do.
+    // Stretched along x some pairs leave their range; at twice the size all do.
     for (const double factor : {1.02, 2.0}) {
       System drawn = system;
       for (std::size_t i = 0; i < 8500; ++i) {
@@ -212,7 +211,7 @@ TEST(PairPass, RemembersNoForceOfPairsThatHaveParted) {
   }
 }
 
-// Without noise, which knows particles by their number.
+// The test leaves out noise, which depends on particle ids.
 TEST(PairPass, NumberingTheParticlesOtherwiseOnlyRenamesTheForces) {
   const Physics physics =
       physics_with({.lubrication = true, .contact = true, .damping = true, .conservative = true});

@@ -1,5 +1,5 @@
-// The form mari of lubrication: pairs by themselves. What a whole packing feels stands beside the independent
-// evaluator in reference_forces_test.cpp.
+// Lubrication of the form mari, for single pairs. reference_forces_test.cpp compares whole packings with the
+// independent evaluator.
 #include "engine/terms/strained_lubrication.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ PairResistance mari_resistance(double first, double second, const PairGeometry& 
                          pair);
 }
 
-// Any velocity gradient without a trace.
+// Returns any velocity gradient without trace.
 Matrix3 any_gradient(Draws& draws) {
   Matrix3 gradient = {draws.vector(), draws.vector(), draws.vector()};
   gradient.column[2].z = -gradient.column[0].x - gradient.column[1].y;
@@ -59,7 +59,7 @@ void for_every_near_pair(Claim&& claim) {
   }
 }
 
-// Monti et al. (2021) A.6 and A.7 for two equal spheres, at d = max(xi, 0) + eps.
+// Expected: Monti et al. (2021) A.6 and A.7 for two equal spheres, at d = max(xi, 0) + eps.
 TEST(StrainedLubrication, EqualSpheresHaveThePublishedCoefficients) {
   constexpr double a = 1.3;
   for (const double gap : {-0.02, 0.0, 0.02}) {
@@ -75,7 +75,7 @@ TEST(StrainedLubrication, EqualSpheresHaveThePublishedCoefficients) {
   }
 }
 
-// Their X_G, Y_G and Y_H over the resistances that they go with: A.7, b = a_j / a_i, S = a_i + a_j.
+// Published X_G, Y_G and Y_H over their resistances: A.7, b = a_j / a_i, S = a_i + a_j.
 TEST(StrainedLubrication, LengthsAreThePublishedRatios) {
   for (const double b : size_ratios) {
     const double a = 0.8, S = a * (1 + b), q = 1 / b;
@@ -116,7 +116,7 @@ TEST(StrainedLubrication, ResistanceIsSymmetricPositiveSemidefiniteAndOfRankFive
   });
 }
 
-// The noise of a pair as theta and chi make it, column by column: B B' = R.
+// The pair noise from theta and chi, column by column, satisfies B B' = R.
 TEST(StrainedLubrication, NoiseIsARootOfTheResistance) {
   for_every_near_pair([](const PairGeometry& pair, double ratio, const PairResistance& resistance, Draws&) {
     const ResistanceConstants k = resistance_constants(fluid_eta, 1, ratio, mari);
@@ -133,7 +133,7 @@ TEST(StrainedLubrication, NoiseIsARootOfTheResistance) {
   });
 }
 
-// In a frame that turns, the flow and both spheres turn with it.
+// In a rotating frame the flow and both spheres rotate with it.
 TEST(StrainedLubrication, IsTheSameInEveryTurningFrame) {
   for_every_near_pair([](const PairGeometry& pair, double ratio, const PairResistance& R, Draws& draws) {
     const StrainLengths length = strain_lengths(1, ratio);
@@ -150,7 +150,7 @@ TEST(StrainedLubrication, IsTheSameInEveryTurningFrame) {
   });
 }
 
-// What varies is taken as it is found at both spheres: where it is a uniform gradient, it is one.
+// A varying part of the flow with a uniform gradient acts as a uniform flow.
 TEST(StrainedLubrication, OfAUniformGradientDoesNotAskHowItIsGiven) {
   for_every_near_pair([](const PairGeometry& pair, double ratio, const PairResistance& R, Draws& draws) {
     const StrainLengths length = strain_lengths(1, ratio);
@@ -192,7 +192,7 @@ TEST(StrainedLubrication, ForcesAreEqualAndOppositeWhereStrainsDiffer) {
   }
 }
 
-// A pair that the flow carries and turns resists its strain: where it parts them they draw each other near.
+// A pair carried by the flow resists its strain: where the flow separates the spheres, they attract.
 TEST(StrainedLubrication, SpheresThatMoveWithTheFlowResistItsStrain) {
   const Matrix3 shear = simple_shear(0.7);
   for (const double side : {-1.0, 1.0}) {
@@ -205,7 +205,7 @@ TEST(StrainedLubrication, SpheresThatMoveWithTheFlowResistItsStrain) {
   }
 }
 
-// Its range is a distance of the surfaces, the same for all sizes.
+// The range is a surface distance, equal for all sizes.
 TEST(StrainedLubrication, EndsAtTheOuterDistanceOfAllSizes) {
   Physics physics;
   physics.viscosity = fluid_eta;

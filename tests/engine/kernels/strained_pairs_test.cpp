@@ -1,5 +1,4 @@
-// Lubrication relative to the flow in the loop over pairs: other instruction sets and threads, and flows that
-// are the same but for how they are given.
+// Lubrication relative to the flow in the pair loop: instruction sets, threads, and one flow given twice.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -21,7 +20,7 @@ Physics wavy(Physics physics) {
   return physics;
 }
 
-// In waves; recipes in uniform flow stand beside their twins with all others.
+// Flow with waves; other tests cover uniform flow.
 TEST(StrainedPairs, EqualTheirSingleTwinOnEveryInstructionSetForEveryRecipe) {
   for (const InstructionSet set : available_sets()) {
     for (const Terms& terms : every_recipe()) {
@@ -47,7 +46,7 @@ TEST(StrainedPairs, HaveTheSameBitsOnAnyNumberOfThreads) {
   }
 }
 
-// u' = G x, which no periodic flow is: spheres lie away from the faces of the cell.
+// u' = G x is not periodic, so spheres lie away from the faces of the cell.
 class LinearVariation final : public FlowVariation {
  public:
   explicit LinearVariation(const Matrix3& gradient) : gradient_(gradient) {}
@@ -60,7 +59,7 @@ class LinearVariation final : public FlowVariation {
   Matrix3 gradient_;
 };
 
-// Spheres at random in the middle of a cell that is much larger.
+// Returns spheres at random places in the middle of a much larger cell.
 System cluster(const Physics& physics) {
   Draws draws(5);
   std::vector<double> radius(90, 1.0);
@@ -87,7 +86,7 @@ TEST(StrainedPairs, FeelAShearThatVariesNotAtAllAsAUniformOne) {
                              std::make_shared<LinearVariation>(simple_shear(uniform.flow.rate())));
   System system = cluster(uniform);
   const Evaluation one = evaluated(uniform, system, 1);
-  // Shear without images: the cell at rest.
+  // The cell is at rest, so the shear moves no images.
   system.box = PeriodicCell(system.box.lengths(), Matrix3{});
   const Evaluation other = evaluated(varying, system, 1);
   EXPECT_GT(norm(one.force[0]) + norm(one.force[1]), 0);

@@ -1,5 +1,4 @@
-// A dashpot beside the tangential spring of a contact: what it adds, and that Coulomb's law limits both
-// together.
+// A dashpot beside the tangential spring of a contact: its force, and Coulomb's limit on the sum of both.
 #include <gtest/gtest.h>
 
 #include "engine/kernels/pair_pass.h"
@@ -20,7 +19,7 @@ class TangentialDampingOfTwo : public testing::Test {
     return remembers_sliding(contact_) ? load_after_step<sliding>(pair, motion, ratio)
                                        : load_after_step<sticking>(pair, motion, ratio);
   }
-  // The force along x on the first sphere after a step in which the surfaces slip along x.
+  // Returns the force along x on the first sphere after a step with slip along x.
   double after_step(double slip, double gap = -0.01) {
     return after_step(pair_at(1, 1, gap, {0, 0, 1}), {{slip, 0, 0}, {}, {}}).force.x;
   }
@@ -56,7 +55,7 @@ TEST_F(TangentialDampingOfTwo, AddsItsForceToThatOfTheSpring) {
   EXPECT_NEAR(after_step(0), 5 * stiffness * step, 1e-12);
 }
 
-// 2.857 k + 20 <= 50 holds up to k = 10. The spring goes on to its own limit.
+// 2.857 k + 20 <= 50 holds up to k = 10. The spring grows up to its own limit.
 TEST_F(TangentialDampingOfTwo, IsLimitedTogetherWithTheSpring) {
   for (int k = 1; k <= 17; ++k) {
     EXPECT_NEAR(after_step(1), std::min(k * stiffness * step + damping, limit), 1e-12);
@@ -67,7 +66,7 @@ TEST_F(TangentialDampingOfTwo, IsLimitedTogetherWithTheSpring) {
   EXPECT_NEAR(after_step(-1), limit - stiffness * step - damping, 1e-12);
 }
 
-// A contact that begins has no load, so it slides; the dashpot pushes whole as soon as the load bears that.
+// A new contact has no load, so it slides; the dashpot acts fully as soon as the load allows it.
 TEST_F(TangentialDampingOfTwo, PushesWholeAfterAContactHasBegunInMotion) {
   const double small_limit = friction * 1e4 * 1e-5;
   for (int k = 1; k <= 5; ++k) EXPECT_NEAR(after_step(1, -1e-5), small_limit, 1e-12);
@@ -75,7 +74,7 @@ TEST_F(TangentialDampingOfTwo, PushesWholeAfterAContactHasBegunInMotion) {
   EXPECT_NEAR(after_step(0), small_limit + stiffness * step, 1e-12);
 }
 
-// 2.857 k + 20 > 50 at k = 11. Both stick again where both together are at most 30.
+// 2.857 k + 20 > 50 at k = 11. The contact sticks again when the sum is at most 30.
 TEST_F(TangentialDampingOfTwo, SlidesAndSticksByBothTogether) {
   contact_.kinetic_friction = 0.3;
   for (int k = 1; k <= 10; ++k) {
@@ -90,7 +89,7 @@ TEST_F(TangentialDampingOfTwo, SlidesAndSticksByBothTogether) {
   EXPECT_NEAR(after_step(-1), 0.3 * load - stiffness * step - damping, 1e-12);
   EXPECT_EQ(springs_.slides, 0);
   springs_ = {};
-  EXPECT_NEAR(after_step(10), 0.3 * load, 1e-12);  // 28.57 + 200, of which the spring is shorter than 30
+  EXPECT_NEAR(after_step(10), 0.3 * load, 1e-12);  // 28.57 + 200; the spring is shorter than 30
   EXPECT_EQ(springs_.slides, 1);
   EXPECT_NEAR(stiffness * springs_.tangential.x, 10 * stiffness * step, 1e-12);
 }
@@ -101,7 +100,7 @@ TEST_F(TangentialDampingOfTwo, PushesWholeWhereTheSpringPushesInPart) {
   EXPECT_NEAR(after_step(1), 1.6 * stiffness * step + damping, 1e-12);
 }
 
-// F = gamma_t v_t and T = l n x F without a spring, and the torques balance.
+// Without a spring F = gamma_t v_t and T = l n x F, and the torques balance.
 TEST_F(TangentialDampingOfTwo, HasBalancedTorquesAndDissipates) {
   contact_.friction = 1e6;
   step_ = 0;
@@ -132,7 +131,7 @@ TEST_F(TangentialDampingOfTwo, FeelsNoRigidRotation) {
   }
 }
 
-// Slips that jump at random, of 1e-3 to 1e3 times mu N / gamma_t: no step stores more than is put in.
+// Random slips of 1e-3 to 1e3 times mu N / gamma_t: a step never stores more energy than is put in.
 TEST_F(TangentialDampingOfTwo, DissipatesWhateverTheMotion) {
   Draws draws(66);
   const PairGeometry pair = pair_at(1, 1, -0.01, {0, 0, 1});
@@ -150,7 +149,7 @@ TEST_F(TangentialDampingOfTwo, DissipatesWhateverTheMotion) {
   }
 }
 
-// In a matrix a spring that holds has k_t dt + gamma_t, and one that slides the share that is not cut.
+// A sticking contact has the stiffness k_t dt + gamma_t, a sliding one the share that is not cut.
 TEST_F(TangentialDampingOfTwo, CouplesAsTheChangeOfItsForce) {
   const PairGeometry pair = pair_at(1, 1, -0.01, {0, 0, 1});
   const ContactOf<double> contact = {contact_, pair, contact_levers(1, 1, pair), 1};

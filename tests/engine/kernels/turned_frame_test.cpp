@@ -1,4 +1,4 @@
-// Shear along another axis: everything turned by one rotation has forces and stresses that are turned.
+// Shear along another axis: forces and stresses rotate with the configuration.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ Matrix3 transposed(const Matrix3& a) {
   return {Vector3{x.x, y.x, z.x}, Vector3{x.y, y.y, z.y}, Vector3{x.z, y.z, z.z}};
 }
 
-// About an axis that lies along none of the box.
+// Returns a rotation about an axis that is not one of the box.
 Matrix3 rotation() {
   const double c = std::cos(0.7), s = std::sin(0.7), d = std::cos(1.9), t = std::sin(1.9);
   const Matrix3 about_z = {Vector3{c, s, 0}, Vector3{-s, c, 0}, Vector3{0, 0, 1}};
@@ -51,7 +51,7 @@ Physics turned(Physics physics) {
   return physics;
 }
 
-// With its springs, which keep their names.
+// Returns the rotated system with rotated springs, which keep their names.
 System turned(const System& system) {
   const Matrix3 q = rotation();
   System other;
@@ -93,7 +93,7 @@ void expect_turned(const PairSums& plain, const PairSums& other, double bound, c
 
 TEST(TurnedFrame, TurnsForcesAndStressesOfEveryRecipe) {
   for (const Terms& terms : every_recipe()) {
-    if (terms.noise) continue;  // whose numbers belong to the axes
+    if (terms.noise) continue;  // random numbers are tied to the axes
     const Physics physics = physics_with(terms);
     const System system = dense_suspension(physics, 200, 12), other = turned(system);
     const Evaluation plain = evaluated(physics, system), found = evaluated(turned(physics), other);
@@ -109,7 +109,7 @@ TEST(TurnedFrame, TurnsForcesAndStressesOfEveryRecipe) {
   }
 }
 
-// Steps of either method go the same way; implicit ones to the accuracy that they are solved with.
+// Explicit and implicit steps lead to rotated stresses, implicit ones within the solver's tolerance.
 TEST(TurnedFrame, TurnsTheWaysOfBothMethods) {
   const Physics physics =
       physics_with({.lubrication = true, .contact = true, .friction = true, .conservative = true});

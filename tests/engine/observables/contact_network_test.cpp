@@ -7,8 +7,7 @@
 namespace peclet::engine {
 namespace {
 
-// Spheres 0 - 1 - 2 of radii 1, 2 and 1, the first two with an overlap of 0.1, the last one with its centre
-// at x.
+// Returns spheres 0 - 1 - 2 of radii 1, 2 and 1. The first two overlap by 0.1; the last has its centre at x.
 System chain(const Scene& scene, double x) {
   System system = loose_spheres(3);
   system.particles.position.set(0, {1, 1, 1});
@@ -19,8 +18,8 @@ System chain(const Scene& scene, double x) {
   return system;
 }
 
-// A chain 0 - 1 - 2 with overlaps of 0.1 and 0.2 and particle 3 alone; mu = 0.5, k_n = 1e4, k_t = 2/7 k_n: a
-// spring is as long as it may be at mu F_n / k_t = 1.75 overlaps.
+// A chain 0 - 1 - 2 with overlaps of 0.1 and 0.2, and particle 3 alone; mu = 0.5, k_n = 1e4, k_t = 2/7 k_n.
+// The longest spring is mu F_n / k_t = 1.75 overlaps.
 TEST(ContactNetwork, CountsContactsAndTheirMobilisation) {
   const Scene scene = scene_with("contact_network");
   System system = loose_spheres(4);
@@ -43,11 +42,11 @@ TEST(ContactNetwork, CountsContactsAndTheirMobilisation) {
   EXPECT_EQ(mean["sliding_contacts"], 0.5);
   EXPECT_EQ(mean["contact_network"]["contacts"], Json({0.25, 0.5, 0.25, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}));
   const Json& mobilisation = mean["contact_network"]["mobilisation"];
-  EXPECT_EQ(mobilisation[5].get<double>() + mobilisation[4].get<double>(), 0.5);  // 0.25 but for rounding
+  EXPECT_EQ(mobilisation[5].get<double>() + mobilisation[4].get<double>(), 0.5);  // 0.25 up to rounding
   EXPECT_EQ(mobilisation[19], 0.5);
 }
 
-// F_n = 1000 and 2000 beside a critical load of 1200: of the second contact k_t s = 250 of 0.5 * 800.
+// F_n = 1000 and 2000, critical load 1200: for the second contact k_t s = 250 of 0.5 * 800.
 TEST(ContactNetwork, LeavesContactsBelowTheCriticalLoadWithoutFriction) {
   Scene scene = scene_with("contact_network");
   scene.physics.contact->critical_load = 1200;
@@ -65,7 +64,7 @@ TEST(ContactNetwork, LeavesContactsBelowTheCriticalLoadWithoutFriction) {
   EXPECT_EQ(blocks["frictional_contacts"][0], 0.5);
 }
 
-// k_t s = 250 of 500 and, where the surfaces move, gamma_t v_t = 100 besides; what is more than 500 is cut.
+// k_t s = 250 of 500, plus gamma_t v_t = 100 where the surfaces move; the excess over 500 is cut.
 TEST(ContactNetwork, CountsWhatDashpotsPush) {
   Scene scene = scene_with("contact_network");
   scene.physics.contact->tangential_damping = 100;
@@ -80,7 +79,7 @@ TEST(ContactNetwork, CountsWhatDashpotsPush) {
   }
 }
 
-// Of two contacts with the same spring the one slides that remembers it.
+// Two contacts have equal springs; the one whose state says so slides.
 TEST(ContactNetwork, CountsContactsThatRememberThatTheySlide) {
   Scene scene = scene_with("contact_network");
   scene.physics.contact->kinetic_friction = 0.3;
@@ -95,8 +94,7 @@ TEST(ContactNetwork, CountsContactsThatRememberThatTheySlide) {
   EXPECT_EQ(mean["sliding_contacts"], 0.5);
 }
 
-// Contacts whose springs are half as long as they may be in the first quarter of the window, and all in the
-// others: their mean, and each block's.
+// Springs have half of their largest length in the first quarter of the window, and all of it later.
 TEST(ContactNetwork, HasBlocks) {
   const Scene scene = scene_with("contact_network");
   System system = loose_spheres(2);
@@ -107,7 +105,7 @@ TEST(ContactNetwork, HasBlocks) {
   system.springs = SpringField(SpringKinds::tangential, system.list.pairs().size());
   const auto observable = observable_of(scene, system, 256);
   for (std::size_t block = 0; block < 32; ++block) {
-    system.springs.set(0, {{0, block < 8 ? 0.0875 : 0.175, 0}, {}});  // of 1.75 overlaps
+    system.springs.set(0, {{0, block < 8 ? 0.0875 : 0.175, 0}, {}});  // longest: 1.75 overlaps
     if (block != 31) observable->sample(system, block);
   }
   Json blocks;
@@ -115,12 +113,12 @@ TEST(ContactNetwork, HasBlocks) {
   ASSERT_EQ(blocks["mobilised_friction"].size(), 32u);
   EXPECT_NEAR(blocks["mobilised_friction"][7].get<double>(), 0.5, 1e-12);
   EXPECT_NEAR(blocks["mobilised_friction"][8].get<double>(), 1, 1e-12);
-  EXPECT_TRUE(blocks["mobilised_friction"][31].is_null());  // without a sample
+  EXPECT_TRUE(blocks["mobilised_friction"][31].is_null());  // no sample
   EXPECT_EQ(blocks["sliding_contacts"][7], 0);
   EXPECT_EQ(blocks["sliding_contacts"][8], 1);
   ASSERT_EQ(blocks["contact_network"]["mobilisation"].size(), 4u);
   const Json& first = blocks["contact_network"]["mobilisation"][0];
-  EXPECT_EQ(first[9].get<double>() + first[10].get<double>(), 1);  // 0.5 but for rounding
+  EXPECT_EQ(first[9].get<double>() + first[10].get<double>(), 1);  // 0.5 up to rounding
   EXPECT_EQ(blocks["contact_network"]["mobilisation"][3][19], 1);
   EXPECT_EQ(blocks["contact_network"]["contacts"][0][1], 1);
   EXPECT_NEAR(mean_of(*observable)["mobilised_friction"].get<double>(), (8 * 0.5 + 23) / 31, 1e-12);

@@ -1,4 +1,4 @@
-// The fabric tensor of configurations whose directions are known, and of realisations.
+// The fabric tensor of configurations with known directions, and of realisations.
 #include <gtest/gtest.h>
 
 #include "tests/engine/observables/loose_spheres.h"
@@ -14,7 +14,7 @@ void expect_components(const Json& found, const Components& expected) {
   for (std::size_t c = 0; c < 6; ++c) EXPECT_NEAR(found[c].get<double>(), expected[c], 1e-12) << c;
 }
 
-// Spheres of radii 1 and 2 whose surfaces are `distance` apart along `way`.
+// Returns spheres of radii 1 and 2 at surface distance `distance` along `way`.
 System dumbbell(const Vector3& way, double distance) {
   System system = loose_spheres(2);
   const Vector3 first{9, 9.5, 1};
@@ -36,7 +36,7 @@ TEST(Fabric, OfTwoTouchingSpheresIsTheSquareOfTheirAxis) {
   EXPECT_EQ(fabric["near"], fabric["contacts"]);
 }
 
-// n = (2, -1, 2) / 3, through faces of the box; the same seen from the other sphere.
+// n = (2, -1, 2) / 3, through faces of the box, and as seen from the other sphere.
 TEST(Fabric, OfATurnedDumbbellIsTurnedWithIt) {
   for (const double sign : {1.0, -1.0}) {
     const Json fabric = fabric_of(dumbbell(sign * Vector3{2, -1, 2}, -0.01));
@@ -71,7 +71,7 @@ TEST(Fabric, OfAnIsotropicNetworkIsAThirdOfTheUnitTensor) {
     expect_components(fabric[pairs], {1. / 3, 1. / 3, 1. / 3, 0, 0, 0});
 }
 
-// Along x in the first quarter, in the second one along y; then nothing touches.
+// The contact is along x in the first quarter and along y in the second; later nothing touches.
 TEST(Fabric, HasTheQuartersOfTheWindow) {
   const System along_x = dumbbell({1, 0, 0}, -0.01), along_y = dumbbell({0, 1, 0}, -0.01);
   const auto observable = observable_of(scene_with("fabric"), along_x, 256);
@@ -85,15 +85,15 @@ TEST(Fabric, HasTheQuartersOfTheWindow) {
   ASSERT_EQ(contacts.size(), 4u);
   expect_components(contacts[0], {1, 0, 0, 0, 0, 0});
   expect_components(contacts[1], {0, 1, 0, 0, 0, 0});
-  EXPECT_TRUE(contacts[2].is_null());  // without a sample
-  EXPECT_TRUE(contacts[3].is_null());  // without a contact
+  EXPECT_TRUE(contacts[2].is_null());  // no sample
+  EXPECT_TRUE(contacts[3].is_null());  // no contact
   expect_components(blocks["fabric"]["near"][3], {0, 0, 1, 0, 0, 0});
   const Json fabric = mean_of(*observable).at("fabric");
   expect_components(fabric["contacts"], {2. / 3, 1. / 3, 0, 0, 0, 0});
   expect_components(fabric["near"], {0.5, 0.25, 0.25, 0, 0, 0});
 }
 
-// A dumbbell that turns from part to part of the window, and is torn apart in the last one.
+// A dumbbell that turns between parts of the window and opens in the last one.
 TEST(Fabric, IsFollowedOverTheWindowOfATransient) {
   const Scene scene = scene_with("transient", {{"bins", 4}, {"fabric_gap", 0.05}}, 0.3);
   const System parts[] = {dumbbell({1, 0, 0}, -0.01), dumbbell({1, -1, 0}, -0.01), dumbbell({0, 0, 1}, 0.05),
@@ -132,7 +132,7 @@ Json result_on(int threads, const Json& patch) {
   return run_job(job, {}).value();
 }
 
-// Shear presses pairs together along (1, -1, 0). On any number of threads the bits are the same.
+// Shear presses pairs together along (1, -1, 0). The bits agree on any number of threads.
 TEST(Fabric, OfAShearedSuspensionLiesAlongTheAxisOfCompression) {
   for (const double thermal_energy : {0.0, 0.02}) {
     const Json patch = {{"fluid", {{"thermal_energy", thermal_energy}}},

@@ -1,12 +1,13 @@
-// Linear response of a dumbbell whose viscosity is known.
+// Linear response of a dumbbell with known viscosity.
 //
-// Two beads at the mean distance L along (1, 1, 0)/sqrt 2, whose distance fluctuates by q: mu q'' = F - z q'
-// + noise of z, with the pairs' force F = -k q - g q' + noise of g, all noise at kT. Of V J only xy is not
-// zero: -L F / 2. In slow shear the beads are held back by their drag, so that F = z u with the affine
-// velocity u = L/2 for each unit of rate, whatever k, g and mu are:
-//   eta - background = L^2 z / (4 V) = (integral of the flux' correlation) / (2 V kT).
-// At the frequency w: with c = k + i w g, F over the affine displacement is c (i w z - w^2 mu)/(c + i w z -
-// w^2 mu).
+// Two beads have the mean distance L along (1, 1, 0)/sqrt 2, and their distance fluctuates by q. All noise is
+// at kT:
+//   mu q'' = F - z q' + noise of z,  F = -k q - g q' + noise of g.
+// The only nonzero component of V J is xy: -L F / 2. In slow shear the drag holds the beads back, so that
+// F = z u with the affine velocity u = L/2 per unit of rate, for any k, g and mu:
+//   eta - background = L^2 z / (4 V) = (integral of the flux correlation) / (2 V kT).
+// At frequency w, with c = k + i w g, F over the affine displacement is
+//   c (i w z - w^2 mu) / (c + i w z - w^2 mu).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -33,8 +34,7 @@ Scene rest_scene(const char* method) {
   return read_scene(document, "scene.json");
 }
 
-// As a step of either method has it: explicit, F at q of the velocity before; implicit, F of the velocity
-// that the step finds, at q in the middle of it.
+// Explicit steps take F at q and the old velocity; implicit steps at the midpoint q and the new velocity.
 class Dumbbell {
  public:
   Dumbbell(bool implicit, double dt, std::uint64_t seed)
@@ -68,13 +68,13 @@ class Dumbbell {
   double q_ = 0, v_;
 };
 
-// The traceless tensor of which these are the five components.
+// Returns the traceless tensor with these five components.
 SymmetricTensor with_components(const std::array<double, 5>& c) {
   const double third = c[4] / std::numbers::sqrt3;
   return {.xx = c[3] + third, .yy = third - c[3], .zz = -2 * third, .xy = c[0], .xz = c[1], .yz = c[2]};
 }
 
-// One dumbbell for each component: five times the statistics.
+// Simulates a dumbbell for each component, for five times the statistics.
 Json response_of_dumbbells(const Scene& scene, std::uint64_t seed, double sign_of_dissipation) {
   constexpr std::uint64_t steps = 20'000;
   constexpr double dt = 0.02;
@@ -114,7 +114,7 @@ class LinearResponseOfADumbbell : public testing::TestWithParam<const char*> {
  protected:
   static constexpr std::uint64_t seeds = 96;
 
-  // value(means of a seed) of every seed.
+  // Returns the mean over seeds of value(means of a seed).
   template <class Value>
   Found over_seeds(Value&& value, double sign_of_dissipation = 1) const {
     std::vector<double> values;
@@ -123,7 +123,7 @@ class LinearResponseOfADumbbell : public testing::TestWithParam<const char*> {
     }
     return engine::over_seeds(values);
   }
-  // Without the solvent, in the scene's units.
+  // Returns the viscosity without the background, in units of the scene.
   double viscosity_of(const Json& relative) const {
     return scene_.physics.viscosity * (relative.get<double>() - background_);
   }
@@ -139,8 +139,8 @@ TEST_P(LinearResponseOfADumbbell, IsItsDragWhateverHoldsItTogether) {
   EXPECT_NEAR(found.mean, expected, 3 * found.error);
 }
 
-// The correlation up to a lag of many times of the dumbbell, whose slowest rate is k / (g + z) = 0.86. Green
-// and Kubo's formula with a dissipative part of the other sign is far off.
+// The integral extends over many relaxation times of the dumbbell, whose slowest rate is k / (g + z) = 0.86.
+// The Green-Kubo formula with the opposite sign of the dissipative part is far off.
 TEST_P(LinearResponseOfADumbbell, IsThatOfTheCorrelationToo) {
   const auto by_correlation = [&](const Json& mean) {
     const Json& curves = mean.at("linear_response");
@@ -172,7 +172,7 @@ TEST_P(LinearResponseOfADumbbell, HasItsModuli) {
   int compared = 0;
   for (std::size_t k = 0; k < frequency.size(); ++k) {
     const double w = frequency[k];
-    if (w > 1 || w < 0.05) continue;  // steps are 0.02; the slope is taken as that of times up to 50
+    if (w > 1 || w < 0.05) continue;  // steps are 0.02; the slope covers times up to 50
     const std::complex<double> i(0, 1), held = stiffness + i * w * friction,
                                         lost = i * w * drag - w * w * mass;
     const std::complex<double> modulus = length * length / (4 * volume) * held * lost / (held + lost);
@@ -188,8 +188,8 @@ TEST_P(LinearResponseOfADumbbell, HasItsModuli) {
 INSTANTIATE_TEST_SUITE_P(EitherMethod, LinearResponseOfADumbbell, testing::Values("implicit", "explicit"),
                          [](const auto& of) { return std::string(of.param); });
 
-// Of the five components all count alike, and a rotation changes nothing: a constant flux s has <(s t)^2> =
-// s^2 t^2, s^2 = (xx^2 + yy^2 + zz^2)/2 - (xx + yy + zz)^2/6 + xy^2 + xz^2 + yz^2 summed over the five.
+// All five components have equal weight, and rotations have no effect. A constant flux s has <(s t)^2> = s^2
+// t^2, s^2 = (xx^2 + yy^2 + zz^2)/2 - (xx + yy + zz)^2/6 + xy^2 + xz^2 + yz^2 summed over the five.
 TEST(LinearResponse, CountsFiveComponentsAlike) {
   const Scene scene = rest_scene("implicit");
   for (const SymmetricTensor& flux :
@@ -200,7 +200,7 @@ TEST(LinearResponse, CountsFiveComponentsAlike) {
     const double trace = flux.xx + flux.yy + flux.zz;
     const double square = (flux.xx * flux.xx + flux.yy * flux.yy + flux.zz * flux.zz) / 2 -
                           trace * trace / 6 + flux.xy * flux.xy + flux.xz * flux.xz + flux.yz * flux.yz;
-    // The slope of s^2 t^2 / (2 V eta kT 5) from t to 2t, t a sixteenth of the window.
+    // Expected: the slope of s^2 t^2 / (2 V eta kT 5) from t to 2t, t a sixteenth of the window.
     const double t = 64 * timestep;
     const double slope = square * 3 * t / (2 * volume * scene.physics.viscosity * thermal_energy * 5);
     const Json mean = mean_of(*observable);

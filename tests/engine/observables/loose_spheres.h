@@ -1,4 +1,4 @@
-// Spheres in a box without a list, and one observable of them: configurations whose answer is known.
+// Spheres in a box without a neighbour list, and one observable of them: configurations with known answers.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace peclet::engine {
 
 constexpr double edge = 10, timestep = 0.5;
 
-// `count` spheres of radius 1 and 2 in turn, in a cube at rest with springless contacts, without a list.
+// Returns `count` spheres of radii 1 and 2 in turn, in a cube at rest with springless contacts.
 inline System loose_spheres(std::size_t count, double shear_rate = 0) {
   System system;
   std::vector<double> radius(count);
@@ -27,7 +27,7 @@ inline System loose_spheres(std::size_t count, double shear_rate = 0) {
   return system;
 }
 
-// A scene whose physics is at rest at kT = 2, with one observable and its settings.
+// Returns a scene at kT = 2 with one observable and its settings; at rest unless a rate is given.
 inline Scene scene_with(const char* observable, const Json& settings = Json::object(),
                         double shear_rate = 0) {
   Json document = small_scene();
@@ -38,7 +38,7 @@ inline Scene scene_with(const char* observable, const Json& settings = Json::obj
   return read_scene(document, "scene.json");
 }
 
-// The one observable of the scene, made for the spheres of `system` in a window of `steps` steps.
+// Returns the observable of the scene, for the spheres of `system` and a window of `steps` steps.
 inline std::unique_ptr<Observable> observable_of(const Scene& scene, const System& system,
                                                  std::uint64_t steps, double step = timestep) {
   Scene own = scene;

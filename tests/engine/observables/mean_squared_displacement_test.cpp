@@ -1,4 +1,4 @@
-// Displacements of spheres that fly straight on.
+// Displacements of spheres with constant velocities.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -10,7 +10,7 @@ namespace {
 
 class Flight : public testing::Test {
  protected:
-  // Even particles fly with (1, 2, 3), odd ones with (-1, 0, 3); wrapping into the cell is undone by images.
+  // Even particles move with (1, 2, 3), odd ones with (-1, 0, 3); images undo the wrapping into the cell.
   void fly(Observable& observable, System& system, std::uint64_t steps) {
     for (std::uint64_t step = 0; step < steps; step += observable.interval()) {
       for (std::size_t i = 0; i < system.particles.count(); ++i) {
@@ -28,13 +28,13 @@ class Flight : public testing::Test {
 
 TEST_F(Flight, HasSquaredDisplacementsOfItsSpeed) {
   System system = loose_spheres(6);
-  std::swap(system.particles.id[0], system.particles.id[2]);  // places in memory say nothing
+  std::swap(system.particles.id[0], system.particles.id[2]);  // order in memory is irrelevant
   const auto observable = observable_of(scene_with("mean_squared_displacement"), system, 1000);
   fly(*observable, system, 1000);
   const Json mean = mean_of(*observable)["mean_squared_displacement"];
   const auto times = mean["time"].get<std::vector<double>>();
   EXPECT_EQ(times.front(), timestep);
-  EXPECT_EQ(times.back(), 7 * 32 * timestep);  // 4 * 2^6 samples would be more than a quarter
+  EXPECT_EQ(times.back(), 7 * 32 * timestep);  // 4 * 2^6 samples exceed a quarter
   for (std::size_t k = 0; k < times.size(); ++k) {
     const double square = times[k] * times[k];
     EXPECT_NEAR(mean["species"][0]["y"][k].get<double>(), 4 * square, 1e-9 * square);
@@ -48,7 +48,7 @@ TEST_F(Flight, HasSquaredDisplacementsOfItsSpeed) {
   EXPECT_EQ(mean["species"][1]["radius"], 2);
 }
 
-// Relative to the centre, the squares are (1 + 1 + 0) t^2: 2 (4 - 1) t^2 / t over D_0 = kT / (pi eta a).
+// Relative to the centre the squares are (1 + 1 + 0) t^2: 2 (4 - 1) t^2 / t over D_0 = kT / (pi eta a).
 TEST_F(Flight, HasASlopeRelativeToTheCentre) {
   System system = loose_spheres(2);
   const Scene scene = scene_with("mean_squared_displacement");
@@ -69,8 +69,7 @@ TEST_F(Flight, UnderShearLeavesOutTheDirectionOfTheFlow) {
   EXPECT_EQ(mean["all"]["y"][0], 0.5 * timestep * timestep * 4);
 }
 
-// Relative to the centre, the squares across the flow are (1 + 0) t^2, and count for three axes: D = 3/2 of
-// theirs.
+// Relative to the centre the squares across the flow are (1 + 0) t^2, for three axes: D is 3/2 of theirs.
 TEST_F(Flight, UnderShearHasTheSlopeOfTwoAxesForThree) {
   System system = loose_spheres(2, /*shear_rate=*/0.3);
   const auto observable = observable_of(scene_with("mean_squared_displacement", {}, 0.3), system, 64);

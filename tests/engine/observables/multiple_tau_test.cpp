@@ -1,4 +1,4 @@
-// Correlations over lags of a widening grid, against plain sums.
+// Correlations over lags of a widening grid, compared with plain sums.
 #include "engine/observables/multiple_tau.h"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ TEST(MultipleTau, OfAHigherLevelCorrelatesMeans) {
   MultipleTau correlator(3);
   for (const double value : series) correlator.add(value);
   for (const auto& [lag, correlation] : correlator.values()) {
-    if (lag < 32) continue;  // of lower levels
+    if (lag < 32) continue;  // lower levels
     ASSERT_EQ(lag % 4, 0u);
     const std::size_t between = lag / 4;
     double sum = 0;

@@ -1,4 +1,4 @@
-// Which observables a scene may ask for, and when they are measured.
+// The observables that a scene may ask for, and the windows they need.
 #include <gtest/gtest.h>
 
 #include <algorithm>

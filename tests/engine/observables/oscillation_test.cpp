@@ -1,4 +1,4 @@
-// Moduli of stresses that are known, and of suspensions whose viscosity is.
+// Moduli of known stresses, and of suspensions with known viscosity.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,8 +27,8 @@ class Moduli : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(EitherMethod, Moduli, testing::Values("explicit", "implicit"),
                          [](const auto& method) { return std::string(method.param); });
 
-// sigma = g [(1 + cycle) sin + 5 cos + 2 sin 3 + 3 cos 3] in each of four cycles: at the middle of implicit
-// steps, at the end of explicit ones. The flux is that times the volume.
+// sigma = g [(1 + cycle) sin + 5 cos + 2 sin 3 + 3 cos 3] in each of four cycles, at the middle of implicit
+// steps and at the end of explicit ones. The flux is sigma times the volume.
 TEST_P(Moduli, AreThoseOfAStressThatIsASumOfHarmonics) {
   constexpr std::uint64_t steps = 200, cycles = 4;
   const Scene scene = oscillating(GetParam(), cycles);
@@ -45,7 +45,7 @@ TEST_P(Moduli, AreThoseOfAStressThatIsASumOfHarmonics) {
     made->take_flux(flux);
   }
   const Json mean = mean_of(*made);
-  // eta = 0.1 and phi = 0.45.
+  // eta = 0.1, phi = 0.45.
   const double background = 0.1 * frequency * (1 + 2.5 * 0.45);
   EXPECT_NEAR(mean["storage_modulus"].get<double>(), (1 + 2 + 3 + 4) / 4.0, 1e-12);
   EXPECT_NEAR(mean["loss_modulus"].get<double>(), 5 + background, 1e-12);
@@ -60,7 +60,7 @@ TEST_P(Moduli, AreThoseOfAStressThatIsASumOfHarmonics) {
   }
 }
 
-// A storage modulus of 1 + cycle. Every block has a cycle, so that the first ones tell how a window begins.
+// The storage modulus is 1 + cycle. Every block has a cycle, so that the first ones show the transient.
 TEST(Moduli, HaveAsManyBlocksAsTheirCyclesFill) {
   constexpr std::uint64_t steps = 64;
   const System system = loose_spheres(4);
@@ -88,14 +88,14 @@ TEST(Moduli, HaveAsManyBlocksAsTheirCyclesFill) {
       ASSERT_TRUE(value.is_number()) << cycles;
       sum += value.get<double>();
     }
-    // Blocks of unequal numbers of cycles differ from the mean of all cycles by half a cycle at most.
+    // Blocks of unequal numbers of cycles deviate from the mean of all cycles by at most half a cycle.
     EXPECT_NEAR(sum / static_cast<double>(values.size()), 0.5 * static_cast<double>(cycles + 1), 0.5)
         << cycles;
   }
 }
 
-// Without time to move, viscous spheres answer with the viscosity that they have in steady shear from the
-// same packing; what is in phase with the strain is their inertia alone, and there is no third harmonic.
+// At small amplitude inertialess spheres respond with the viscosity of steady shear from the same packing.
+// The in-phase part is inertia alone, and there is no third harmonic.
 TEST(Moduli, OfASmallOscillationAreTheViscosityOfThePacking) {
   const auto document = [](const Json& flow, const Json& equilibration, const Json& production,
                            const Json& observables) {
@@ -127,9 +127,9 @@ TEST(Moduli, OfASmallOscillationAreTheViscosityOfThePacking) {
                                                 {{"cycles", 0}}, {{"cycles", 2}}, {"stress", "oscillation"}));
   const Json means =
       StressMeans(scene).means(oscillated->system(), sum_of(oscillated->production().blocks()));
-  EXPECT_TRUE(means.at("relative_viscosity").is_null());  // of a stress that comes and goes
+  EXPECT_TRUE(means.at("relative_viscosity").is_null());  // oscillating stress
   const Json mean = mean_of(*oscillated->observables().front());
-  EXPECT_GT(viscosity, 2.2);  // pairs are felt: 1 + 2.5 phi is 2
+  EXPECT_GT(viscosity, 2.2);  // pairs contribute: 1 + 2.5 phi is 2
   EXPECT_NEAR(mean["dynamic_viscosity"].get<double>(), viscosity, 1e-3 * (viscosity - 2));
   // w rho a^2 / eta = 0.01.
   EXPECT_LT(std::abs(mean["storage_modulus"].get<double>()), 0.01 * mean["loss_modulus"].get<double>());

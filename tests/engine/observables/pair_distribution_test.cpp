@@ -1,4 +1,4 @@
-// Counts of pairs by distance and direction, of uniform points and of single pairs.
+// Counts of pairs by distance and direction, for uniform points and single pairs.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,9 +10,9 @@
 namespace peclet::engine {
 namespace {
 
-// Uniform points have the counts that stand beside them. Each bin's count is Poisson's to good accuracy
-// (twice that of unordered pairs, of variance 2 per ordered pair): 6 standard errors in 40 + 3200 bins fail
-// once in 10^5 runs, were the seed drawn anew.
+// Uniform points have the ideal counts. Each bin's count is Poisson to good accuracy (twice that of unordered
+// pairs, of variance 2 per ordered pair). Fresh seeds exceed 6 standard errors in 3240 bins with probability
+// 1e-5.
 TEST(PairDistribution, OfUniformPointsIsIdeal) {
   System system = loose_spheres(200);
   const auto observable = observable_of(
@@ -38,7 +38,7 @@ TEST(PairDistribution, OfUniformPointsIsIdeal) {
   }
 }
 
-// Beyond half of the box, up to 1 / sqrt(2) of it, for a pair.
+// For a pair, the range extends beyond half of the box, up to 1 / sqrt(2) of it.
 TEST(PairDistribution, OfAPairInASmallBoxIsIdealUpToTheCornerOfItsFaces) {
   System system = loose_spheres(2);
   const auto observable = observable_of(
@@ -65,7 +65,7 @@ TEST(PairDistribution, CountsAPairFromBothEnds) {
   observable->sample(system, 0);
   const Json mean = mean_of(*observable)["pair_distribution"];
   EXPECT_EQ(mean["radial"]["counts"], Json({0, 0, 2, 0}));
-  // Seen from the second it is (-1.5, 1.7, 0.4).
+  // Seen from the second sphere it is (-1.5, 1.7, 0.4).
   EXPECT_EQ(mean["slice"]["counts"], Json({{0, 0, 0, 0, 0, 0, 0, 0},
                                            {0, 0, 1, 0, 0, 0, 0, 0},
                                            {0, 0, 0, 0, 0, 0, 0, 0},
@@ -98,7 +98,7 @@ TEST(PairDistribution, HasTheQuartersOfTheWindowUnlessTheyAreLong) {
   };
   const Json radial = blocks_of(1)["pair_distribution"]["radial"];
   EXPECT_EQ(radial["counts"], Json({{0, 0, 4, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 2, 0}}));
-  // N (N - 1) / V times the shell's volume and the number of samples.
+  // N (N - 1) / V times the volume of the shell and the number of samples.
   const double shell = 4 * std::numbers::pi / 3 * (27 - 8);
   EXPECT_NEAR(radial["ideal"][0][2].get<double>(), 2 * 2.0 / 1000 * shell, 1e-4 * shell);
   EXPECT_EQ(radial["ideal"][1][2], 0);

@@ -1,4 +1,4 @@
-// Blocks of the production window, and what is sampled in them.
+// Blocks of the production window and their samples.
 #include "engine/observables/production.h"
 
 #include <gtest/gtest.h>
@@ -41,15 +41,15 @@ TEST(StatisticalInefficiency, IsOneWithoutCorrelation) {
   EXPECT_EQ(statistical_inefficiency(alternating), 1);
 }
 
-// 1, 1, -1, -1, ...: of the 31 products at lag one 16 are +1 and 15 are -1, over 32; at lag two all are -1.
+// 1, 1, -1, -1, ...: at lag one 16 of the 31 products are +1 and 15 are -1, over 32; at lag two all are -1.
 TEST(StatisticalInefficiency, SumsTheCorrelationUpToItsFirstZero) {
   std::vector<double> series(32, 1.0);
   for (std::size_t k = 0; k < 32; ++k) series[k] = k % 4 < 2 ? 1 : -1;
   EXPECT_NEAR(statistical_inefficiency(series), 1 + 2.0 / 32, 1e-14);
 }
 
-// The variance of the mean of a long AR(1) series is (1 + phi) / (1 - phi) that of independent values. With
-// 2^16 values the standard deviation of the estimate is below 0.1 of 3: five of them once in a million seeds.
+// The mean of a long AR(1) series has (1 + phi) / (1 - phi) times the variance for independent values. With
+// 2^16 values the standard deviation of the estimate is below 0.1 of 3; five occur once in a million seeds.
 TEST(StatisticalInefficiency, OfAnAutoregressiveSeriesIsItsFormula) {
   std::mt19937_64 generator(5);
   std::normal_distribution<double> normal;
@@ -96,7 +96,7 @@ TEST(BlockedMean, OfNothingIsNull) {
   EXPECT_EQ(mean.blocks(), Json({nullptr, nullptr, nullptr, {0.0, 0.0}}));
 }
 
-// Two spheres of radii 1 and 1.4 whose surfaces are h apart along x; the shells are 0.05 and 0.07 thick.
+// Two spheres of radii 1 and 1.4 at surface distance h along x; the shells are 0.05 and 0.07 thick.
 SymmetricTensor structural_stress_at(double h, double skin = 0.1) {
   Physics physics = physics_with({.contact = true});
   physics.thermal_energy = 0.3;
@@ -111,16 +111,16 @@ SymmetricTensor structural_stress_at(double h, double skin = 0.1) {
   return structural_brownian_stress(system, kinds, physics.thermal_energy);
 }
 
-// -(kT / V) (a / Delta) n n from each side whose shell holds the other's surface, a / Delta = 20.
+// -(kT / V) (a / Delta) n n from each side whose shell contains the other's surface, a / Delta = 20.
 TEST(StructuralBrownianStress, CountsEachSideOfAPairWithinItsOwnShell) {
   EXPECT_NEAR(structural_stress_at(-0.01).xx, -0.3 / 1000 * 20 * 2, 1e-15);
   EXPECT_NEAR(structural_stress_at(0.04).xx, -0.3 / 1000 * 20 * 2, 1e-15);
-  EXPECT_NEAR(structural_stress_at(0.06).xx, -0.3 / 1000 * 20, 1e-15);  // seen by the larger one alone
+  EXPECT_NEAR(structural_stress_at(0.06).xx, -0.3 / 1000 * 20, 1e-15);  // in the larger sphere's shell alone
   EXPECT_EQ(structural_stress_at(0.08).xx, 0);
   EXPECT_EQ(structural_stress_at(0.04).yy, 0);
 }
 
-// The list has what the shells need, though no force reaches that far.
+// The list includes the range of the shells, which exceeds that of the forces.
 TEST(StructuralBrownianStress, SeesTheWholeShellOfTheLargerSphere) {
   EXPECT_NEAR(structural_stress_at(0.069, /*skin=*/0).xx, -0.3 / 1000 * 20, 1e-15);
 }
@@ -130,10 +130,10 @@ TEST(KineticTemperatures, AreThoseOfMotionRelativeToTheStreamingFlow) {
   system.particles = make_particles({1, 1.4}, 0.1);
   system.box = PeriodicCell({10, 10, 10}, simple_shear(0.7));
   system.particles.position.set(1, {0, 3, 0});
-  system.particles.velocity.set(0, {1, 2, 2});        // 9
+  system.particles.velocity.set(0, {1, 2, 2});        // squared: 9
   system.particles.velocity.set(1, {0.7 * 3, 0, 0});  // at rest in the flow
   system.particles.angular_velocity.set(0, {0, 0, -0.35});
-  system.particles.angular_velocity.set(1, {0, 3, 4 - 0.35});  // 25
+  system.particles.angular_velocity.set(1, {0, 3, 4 - 0.35});  // squared: 25
   const double m0 = 0.1 * 4 * std::numbers::pi / 3, m1 = m0 * 1.4 * 1.4 * 1.4;
   const KineticTemperatures t = kinetic_temperatures(system, steady_shear(0.7));
   EXPECT_NEAR(t.translational, m0 * 9 / 6, 1e-14);

@@ -1,4 +1,4 @@
-// Volume fraction and velocity by y, of spheres whose slabs are known.
+// Volume fraction and velocity by y, for spheres with known slabs.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -10,15 +10,15 @@ namespace {
 
 double sphere(double radius) { return 4 * std::numbers::pi / 3 * radius * radius * radius; }
 
-// Bins of the box of edge 10 that are 2 wide: 200 of volume.
+// Returns profiles of the box of edge 10 in bins 2 wide, of volume 200.
 Json profiles_of(const System& system, int bins = 5, double shear_rate = 0) {
   const auto observable = observable_of(scene_with("profiles", {{"bins", bins}}, shear_rate), system, 256);
   observable->sample(system, 0);
   return mean_of(*observable)["profiles"];
 }
 
-// A sphere of radius 1 within one bin; one of radius 2 whose middle slab between -1 and 1 has the volume
-// pi (a^2 2 - 2 / 3), the rest in two equal caps.
+// A sphere of radius 1 lies in one bin. For one of radius 2 the middle slab from -1 to 1 has the volume pi
+// (a^2 2 - 2 / 3); the rest is in two equal caps.
 TEST(Profiles, GiveEachBinItsSlabOfASphere) {
   System system = loose_spheres(2);
   system.particles.position.set(0, {3, 1, 3});
@@ -52,7 +52,7 @@ TEST(Profiles, OfSpheresAnywhereAddUpToTheirVolume) {
   }
 }
 
-// Layers of equal spheres two apart, whatever their height in the bins: every bin has one layer's volume.
+// Layers of equal spheres two apart, at any height in the bins: every bin has the volume of one layer.
 TEST(Profiles, OfAUniformLatticeAreUniform) {
   for (const double offset : {0.0, 0.3, 1.7}) {
     System system;
@@ -70,7 +70,7 @@ TEST(Profiles, OfAUniformLatticeAreUniform) {
   }
 }
 
-// What a sphere around `height` has between two heights, in many thin discs; 2 for both faces of the box.
+// Returns the volume of a sphere at `height`, with its images, between two heights, by many thin discs.
 double discs_between(double low, double high, double height, double radius) {
   constexpr int discs = 20000;
   const double thickness = 2 * radius / discs;
@@ -106,7 +106,7 @@ TEST(Profiles, HaveTheSpheresOfEachRadiusApart) {
   }
 }
 
-// The small sphere lies in the first bin in the first quarter, in the last bin in the last one.
+// The small sphere lies in the first bin in the first quarter, and in the last bin in the last quarter.
 TEST(Profiles, OfEachRadiusHaveTheQuartersOfTheWindow) {
   const double small = sphere(1) / 200;
   System system = loose_spheres(2);
@@ -122,7 +122,7 @@ TEST(Profiles, OfEachRadiusHaveTheQuartersOfTheWindow) {
   ASSERT_EQ(quarters.size(), 4u);
   EXPECT_NEAR(quarters[0][0][0].get<double>(), small, 1e-5 * small);
   EXPECT_EQ(quarters[0][0][4], 0);
-  EXPECT_EQ(quarters[1], (Json{nullptr, nullptr}));  // nothing was sampled
+  EXPECT_EQ(quarters[1], (Json{nullptr, nullptr}));  // no sample
   EXPECT_NEAR(quarters[3][0][4].get<double>(), small, 1e-5 * small);
   EXPECT_EQ(quarters[3][0][0], 0);
   EXPECT_EQ(quarters[3][1], quarters[0][1]);

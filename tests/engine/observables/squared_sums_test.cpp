@@ -1,4 +1,4 @@
-// Mean squares of sums over windows of a widening grid, against plain sums.
+// Mean squares of sums over windows of a widening grid, compared with plain sums.
 #include <gtest/gtest.h>
 
 #include <numeric>
@@ -10,7 +10,7 @@
 namespace peclet::engine {
 namespace {
 
-// Windows of m 2^l entries begin at every multiple of 2^l.
+// Windows of m 2^l entries start at every multiple of 2^l.
 TEST(SquaredSums, AreThoseOfAllWindowsOfTheGrid) {
   Draws draws(1);
   std::vector<double> series(301);

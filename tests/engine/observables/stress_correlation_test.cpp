@@ -1,4 +1,4 @@
-// The correlation of the structural stress, of pairs that stand still or come and go.
+// The correlation of the structural stress, for pairs that are fixed or alternate between near and far.
 #include <gtest/gtest.h>
 
 #include "engine/kernels/pair_kinds.h"
@@ -7,8 +7,8 @@
 namespace peclet::engine {
 namespace {
 
-// A pair that both shells see has the stress -A n n with A = 2 * 20 kT / V, wherever n points: its traceless
-// part squared is 2/3 A^2, and G = (V / kT) / 10 of that at all lags, as long as nothing moves.
+// A pair within both shells has the stress -A n n, A = 2 * 20 kT / V, for any n. Its traceless part squared
+// is 2/3 A^2, and G = (V / kT) / 10 of that at all lags while nothing moves.
 TEST(StressCorrelation, OfAFrozenPairIsTheSquareOfItsTracelessStress) {
   const Scene scene = scene_with("stress_correlation");
   constexpr double thermal_energy = 2, volume = edge * edge * edge;
@@ -34,9 +34,9 @@ TEST(StressCorrelation, OfAFrozenPairIsTheSquareOfItsTracelessStress) {
   }
 }
 
-// A pair that is near at every other sample: the stress is A, 0, A, 0 ..., so that its correlation is A^2 / 2
-// at even lags and 0 at odd ones, and A^2 / 4 of means over two samples, from lag 16 on. Trapezia of the
-// first ones and of the last are of the same mean height, A^2 / 4; the one from lag 15 to 16 is half as high.
+// A pair that is near at every other sample has the stress A, 0, A, 0 .... The correlation is A^2 / 2 at even
+// lags, 0 at odd lags, and A^2 / 4 for means over two samples, from lag 16 on. The trapezia have the mean
+// height A^2 / 4; the one from lag 15 to 16 is half as high.
 TEST(StressCorrelation, IsIntegratedByTrapezia) {
   const Scene scene = scene_with("stress_correlation");
   constexpr double thermal_energy = 2, volume = edge * edge * edge;

@@ -1,4 +1,4 @@
-// Stress and balance of momentum by y: of pairs that are set by hand, and of a whole realisation.
+// Stress and momentum balance by y, for pairs set by hand and for a realisation.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -10,9 +10,9 @@
 namespace peclet::engine {
 namespace {
 
-constexpr std::size_t bins = 5;  // 2 wide, of the volume 200
+constexpr std::size_t bins = 5;  // 2 wide, of volume 200
 
-// The profiles of one step, whose pairs `take` shows; eta = 1, without noise.
+// Returns the profiles of one step, whose pairs `take` shows; eta = 1, without noise.
 template <class Take>
 Json of_step(const System& system, double shear_rate, double weight, const Take& take) {
   const Json document = small_scene({{"fluid", {{"viscosity", 1}, {"thermal_energy", nullptr}}},
@@ -26,7 +26,7 @@ Json of_step(const System& system, double shear_rate, double weight, const Take&
   return mean_of(*observable).at("profiles");
 }
 
-// The profiles of the spheres 0 and 1, which press on each other with this force and stress.
+// Returns the profiles of spheres 0 and 1 with this force and stress between them.
 Json of_pair(const System& system, const Vector3& force, const SymmetricTensor& stress, double weight = 1) {
   return of_step(system, 0, weight, [&](PairWatcher& profile) {
     PairSums sums;
@@ -35,7 +35,7 @@ Json of_pair(const System& system, const Vector3& force, const SymmetricTensor& 
   });
 }
 
-// With a list of the one pair that they are.
+// Returns two spheres and a list of their pair.
 System two_spheres_at(const Vector3& first, const Vector3& second) {
   System system = loose_spheres(2);
   system.particles.position.set(0, first);
@@ -49,7 +49,7 @@ System two_spheres_at(const Vector3& first, const Vector3& second) {
   return system;
 }
 
-// From y = 1 to 4: a third of the line is in the first bin, two thirds in the second.
+// From y = 1 to 4: a third of the line lies in the first bin, two thirds in the second.
 TEST(StressProfile, LiesOnTheLineBetweenTheCentres) {
   const System system = two_spheres_at({3, 1, 3}, {3.5, 4, 3});
   const Json found = of_pair(system, {2, -4, 6}, {7, -12, 1, 3, 0, 0});
@@ -79,7 +79,7 @@ TEST(StressProfile, OfALineAlongABinIsInThatBin) {
   EXPECT_NEAR(found["stress"]["pairs"][0][2].get<double>(), 3.0 / 200, 1e-15);
 }
 
-// A sphere of radius 1 at rest, a quarter of a bin above the boundary at 2, in a flow that is 0.3 there.
+// A sphere of radius 1 at rest, a quarter of a bin above the boundary at 2; the flow there is 0.3.
 TEST(StressProfile, HasTheDragOfTheSpheresAroundABoundary) {
   System system = loose_spheres(1, 0.3 / 2.5);
   system.particles.position.set(0, {3, 2.5, 3});
@@ -101,7 +101,7 @@ const Json& quiet_result(const Json& patch = Json::object()) {
   return result;
 }
 
-// Sampled at every step, its mean over the box is the stress.
+// The mean over the box equals the stress, if sampled at every step.
 TEST(StressProfile, HasTheStressOfTheBoxAsItsMean) {
   const Json& mean = quiet_result().at("mean");
   for (const char* term : {"lubrication", "contact_normal", "contact_damping", "friction", "repulsion"}) {
@@ -115,8 +115,7 @@ TEST(StressProfile, HasTheStressOfTheBoxAsItsMean) {
   }
 }
 
-// Momentum that a bin takes up is what its spheres gain: m (u_end - u_begin), small beside what is exchanged
-// in a long window.
+// A bin gains the momentum of its spheres, m (u_end - u_begin), small against the exchange in a long window.
 TEST(StressProfile, BalancesTheDrag) {
   Json patch = Json::parse(R"({"particles": {"density": 1e-3}, "box": {"height": 14},
       "flow": {"shear_rate": 0, "waves": [{"periods": 1, "sine": 5}], "faxen": true},
@@ -129,7 +128,7 @@ TEST(StressProfile, BalancesTheDrag) {
   for (const Json& drag : profiles.at("drag")[0]) largest = std::max(largest, std::abs(drag.get<double>()));
   double flux = 0;
   for (const Json& one : profiles.at("momentum_flux")[0]) flux = std::max(flux, std::abs(one.get<double>()));
-  EXPECT_GT(largest, 0.1 * flux);  // what would be missing
+  EXPECT_GT(largest, 0.1 * flux);  // the size of an omission
 }
 
 TEST(StressProfile, WithNoiseHasNoBalance) {

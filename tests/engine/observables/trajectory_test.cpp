@@ -1,4 +1,4 @@
-// Frames of a realisation against the realisation itself: places, motion, stress, contacts.
+// Frames of a trajectory compared with the realisation: positions, motion, stress, contacts.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ namespace peclet::engine {
 namespace {
 
 constexpr std::uint64_t seed = 3, equilibration = 100, production = 320;
-constexpr double rounding = 0x1p-24;  // of a number to the nearest float
+constexpr double rounding = 0x1p-24;  // to the nearest float, relative
 
 Json scene_with_trajectory(const Json& patch = Json::object(), const Json& interval = {{"time", 0.002}}) {
   Json scene = small_scene(
@@ -46,7 +46,7 @@ struct Way {
 const Json implicit = {{"integrator", {{"method", "implicit"}}}, {"particles", {{"density", 0.01}}}};
 Json implicit_and(const Json& patch) {
   Json all = implicit;
-  all.update(patch);  // with the nulls that take keys away
+  all.update(patch);  // including nulls, which remove keys
   return all;
 }
 const Way ways[] = {
@@ -97,7 +97,7 @@ TEST_P(TrajectoryStress, OfTheSpheresAddsUpToThatOfTheFrame) {
   EXPECT_EQ(simulation.step_errors().divided_steps > 50, divides);
 }
 
-// Frames of all steps have the mean of the window.
+// Frames at all steps have the mean of the window.
 TEST_P(TrajectoryStress, HasTheMeanOfTheResult) {
   Simulation simulation = started(scene_with_trajectory(GetParam().patch));
   simulation.advance(equilibration + production);
@@ -124,8 +124,8 @@ TEST_P(TrajectoryStress, HasTheMeanOfTheResult) {
   }
 }
 
-// The result has the stresslets of waves of a sample every ten explicit steps, and frames have them of every
-// one. In the uniform shear gamma they are 2.5 phi eta gamma.
+// The result samples the stresslets of waves every ten explicit steps; frames have them at every step. In
+// uniform shear gamma they are 2.5 phi eta gamma.
 TEST(TrajectoryStress, HasTheStressletsOfWaves) {
   const Way& waves = ways[std::size(ways) - 1];
   ASSERT_EQ(std::string(waves.name), "explicit_in_waves");
@@ -140,11 +140,11 @@ TEST(TrajectoryStress, HasTheStressletsOfWaves) {
     xy += file.get<double>(k, "log/stress/stresslet")[3] / samples;
   }
   const double of_waves = window.varying_stresslet.xy / samples, uniform = 2.5 * 0.45 * 0.1 * 2;
-  EXPECT_GT(std::abs(of_waves), 1e-5);  // or nothing would be seen of them
+  EXPECT_GT(std::abs(of_waves), 1e-5);  // large enough to matter
   EXPECT_NEAR(xy, uniform + of_waves, 1e-11);
 }
 
-// Through three changes of the basis: the way of each sphere is that of its unwrapped place.
+// Through three changes of basis each sphere moves by the displacement of its unwrapped position.
 TEST(Trajectory, HasPlacesAndMotionOfEverySphereInTheCell) {
   Simulation simulation = started(scene_with_trajectory());
   simulation.advance(equilibration);
@@ -176,7 +176,7 @@ TEST(Trajectory, HasPlacesAndMotionOfEverySphereInTheCell) {
     const auto image = file.get<std::int32_t>(k, "particles/image");
     for (std::size_t i = 0; i < particles.count(); ++i) {
       const std::size_t at = 3 * std::size_t{particles.id[i]};
-      // By whole cells, and into [-1/2, 1/2).
+      // Wrapped by whole cells into [-1/2, 1/2).
       const double y = position[at + 1] / ly, x = (position[at] - tilt * ly * y) / lx;
       for (const double fraction : {x, y, position[at + 2] / lz}) EXPECT_LE(std::abs(fraction), 0.5 + 1e-6);
       const LatticeShift shift = {image[at], image[at + 1], image[at + 2]};
@@ -187,7 +187,7 @@ TEST(Trajectory, HasPlacesAndMotionOfEverySphereInTheCell) {
       EXPECT_EQ(position[at], f(place.x));
       EXPECT_EQ(position[at + 1], f(place.y));
       EXPECT_EQ(position[at + 2], f(place.z));
-      // An image that lies so many Ly higher moves faster by rate Ly.
+      // An image n Ly higher moves faster by n rate Ly.
       EXPECT_EQ(velocity[at], f(particles.velocity[i].x - 2 * ly * removed.y)) << "rate 2";
       EXPECT_EQ(velocity[at + 1], f(particles.velocity[i].y));
       EXPECT_EQ(spin[at + 2], f(particles.angular_velocity[i].z));
@@ -196,8 +196,7 @@ TEST(Trajectory, HasPlacesAndMotionOfEverySphereInTheCell) {
   EXPECT_GT(wrapped, 1000U);
 }
 
-// The cell of an extension and of a cross shear turns, also as its basis changes: log/axes leads back to the
-// axes of the flow.
+// The cell of an extension or a cross shear rotates, with basis changes. log/axes maps to its axes.
 TEST(Trajectory, HasPlacesAndMotionAlongTheAxesOfATurnedCell) {
   const Json extension = Json::parse(R"({"shear_rate": null, "extension_rate": 2})");
   const Json across = Json::parse(R"({"shear_rate": 2, "cross_shear": {"amplitude": 0.3, "frequency": 10}})");
@@ -258,7 +257,7 @@ TEST(Trajectory, HasKindsOfSpheresInItsFirstFrame) {
   Simulation simulation = started(scene_with_trajectory());
   simulation.advance(equilibration + 3);
   const GsdReader file = file_of(simulation);
-  // The volume of radius 1.4 is shared equally: numbers as 1.4^3 to 1 of 60.
+  // Radii share the volume equally, so numbers are as 1.4^3 to 1 of 60.
   const std::size_t small = 44;
   const auto species = file.get<std::uint32_t>(0, "particles/typeid");
   const auto diameter = file.get<float>(0, "particles/diameter"), mass = file.get<float>(0, "particles/mass");
@@ -275,7 +274,7 @@ TEST(Trajectory, HasKindsOfSpheresInItsFirstFrame) {
   EXPECT_FALSE(file.has(1, "particles/typeid")) << "the first frame is the default of all";
 }
 
-// F_n = k_n delta, gap = -2 delta / (a_i + a_j) from the places; Coulomb's law bounds the other force.
+// F_n = k_n delta, and gap = -2 delta / (a_i + a_j) from the positions; Coulomb's law bounds the other force.
 TEST(Trajectory, ListsContactsWithTheirForces) {
   Simulation simulation = started(scene_with_trajectory());
   simulation.advance(equilibration + production);
@@ -336,7 +335,7 @@ TEST(Trajectory, HasTheSameBytesOnAnyNumberOfThreads) {
   }
 }
 
-// Rate 2; the Brownian time eta a^3 / kT is 5.
+// The rate is 2 and the Brownian time eta a^3 / kT is 5.
 TEST(Trajectory, HasAnIntervalInStrainTimeOrBrownianTimes) {
   const auto steps = [](const Json& limits) {
     const Scene scene = read_scene(scene_with_trajectory(Json::object(), limits), "scene.json");
@@ -356,7 +355,7 @@ TEST(Trajectory, IsRefusedWhereNobodyCouldKeepIt) {
   };
   EXPECT_NO_THROW(make(scene, 50'000));
   EXPECT_THROW(make(scene, 50'001), InputError);
-  // 10^6 spheres of 76 bytes and 6 contacts of 21 each, in 4 GiB: 21 frames.
+  // 10^6 spheres of 76 bytes with 6 contacts of 21 bytes each: 21 frames fit into 4 GiB.
   Scene large = scene;
   large.particles.count = 1'000'000;
   EXPECT_NO_THROW(make(large, 21));

@@ -1,4 +1,4 @@
-// Transients of stresses that are known.
+// Transients of known stresses.
 #include <gtest/gtest.h>
 
 #include "engine/observables/scene_reading.h"
@@ -24,7 +24,7 @@ struct Measured {
   std::vector<Quantity> quantities;
 };
 
-// Pairs of a stress that doubles in each of four parts of ten steps; the clock is at the end of each.
+// Measures a pair stress that doubles in each of four parts of ten steps, with the clock at a step's end.
 Measured measured(const Scene& scene, double begin) {
   System system = loose_spheres(4);
   const double volume = edge * edge * edge;
@@ -41,7 +41,7 @@ Measured measured(const Scene& scene, double begin) {
   return {mean_of(*made).at("transient"), made->quantities()};
 }
 
-// Reversed from rate 2 to -2, with 0.2 as the unit: pairs that still push the old way pull now.
+// Reversal from rate 2 to -2, with 0.2 as the unit: pairs still push in the old direction and count negative.
 TEST(Transient, IsThatOfTheReversedFlow) {
   const Scene scene = flowing(
       Json::parse(R"({"segments": [{"shear_rate": 2, "time": 1}, {"shear_rate": -2}]})"), {{"time", 1}});
@@ -59,7 +59,7 @@ TEST(Transient, IsThatOfTheReversedFlow) {
   EXPECT_EQ(all.front().axes.front().values, Json::array({1, 3, 5, 7}));  // of 8
 }
 
-// After a stop the solvent has no stress, and there is no rate to be a unit.
+// After a stop the solvent has no stress, and no rate gives a unit.
 TEST(Transient, IsInUnitsOfTheSceneWhereTheFlowHasStopped) {
   const Scene scene = flowing(
       Json::parse(R"({"segments": [{"shear_rate": 2, "time": 1}, {"shear_rate": 0}]})"), {{"time", 1}});
@@ -70,7 +70,7 @@ TEST(Transient, IsInUnitsOfTheSceneWhereTheFlowHasStopped) {
   EXPECT_EQ(all.front().axes.front().values, Json::array({0.5, 1.5, 2.5, 3.5}));
 }
 
-// (sigma_xx - sigma_yy) / (4 rate) of the solvent is its viscosity, 1 in the unit 2 rate viscosity.
+// (sigma_xx - sigma_yy) / (4 rate) of the solvent is its viscosity: 1 in units of 2 rate viscosity.
 TEST(Transient, OfExtensionIsTheExtensionalViscosity) {
   const Scene scene = flowing({{"extension_rate", 0.5}}, {{"time", 1}});
   const auto [transient, all] = measured(scene, 1);
@@ -84,8 +84,8 @@ class TransientOfEither : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Method, TransientOfEither, testing::Values("explicit", "implicit"),
                          [](const auto& method) { return std::string(method.param); });
 
-// Spheres that touch nobody add 2.5 phi; the mean rate of a part of a ramp is that of its middle. The end of
-// each step would be 2 % too late in the first part with explicit steps, and 0.5 % with implicit ones.
+// Spheres without neighbours add 2.5 phi. The mean rate in a part of a ramp is that at its middle. Sampling
+// at the end of a step would shift the first part by 2 % in explicit steps, by 0.5 % in implicit ones.
 TEST_P(TransientOfEither, OfADiluteRampIsThatOfTheMiddleOfEachPart) {
   constexpr double dilute = 0.02, last_rate = 2;
   constexpr int parts = 10;

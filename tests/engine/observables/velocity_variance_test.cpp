@@ -1,4 +1,4 @@
-// How much velocities scatter about their mean by y.
+// The variance of velocities about their mean, by y.
 #include "engine/observables/velocity_variance.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 namespace peclet::engine {
 namespace {
 
-// Slabs of a fifth: a shear of them moves the means of the slabs, and adds next to nothing to the variance.
+// Slabs are a fifth wide: shear shifts their means and hardly changes the variance.
 TEST(VelocityVariance, IsThatOfEachBinWithoutTheMeanFlow) {
   constexpr std::size_t bins = 3;
   VelocityVariance variance(12, 1, bins);  // bins 4 wide
@@ -21,7 +21,7 @@ TEST(VelocityVariance, IsThatOfEachBinWithoutTheMeanFlow) {
   }
   const Json found = variance.value();
   for (std::size_t bin = 0; bin < bins; ++bin) {
-    // Within a slab the flow 10 sin y varies by at most 2, a variance of 1/3 at most.
+    // Within a slab the flow 10 sin y varies by at most 2, a variance of at most 1/3.
     EXPECT_NEAR(found[1][bin].get<double>(), wanted[bin], 0.05 * wanted[bin]) << bin;
     EXPECT_GE(found[0][bin].get<double>(), 0.95 * wanted[bin]) << bin;
     EXPECT_LE(found[0][bin].get<double>(), 1.05 * wanted[bin] + 1.0 / 3) << bin;
@@ -29,7 +29,7 @@ TEST(VelocityVariance, IsThatOfEachBinWithoutTheMeanFlow) {
   }
 }
 
-// Two samples of each slab, 1 and 3: the variance is 2, not the mean square distance from their mean, 1.
+// Two samples of each slab, 1 and 3: the variance is 2, not the mean squared deviation from their mean, 1.
 TEST(VelocityVariance, HasNoBiasOfFewSamples) {
   VelocityVariance variance(2, 1, 1);
   for (int slab = 0; slab < 10; ++slab) {

@@ -13,7 +13,7 @@ std::array<int, 3> shown(const Colour& colour) {
   return {encoded(colour.red), encoded(colour.green), encoded(colour.blue)};
 }
 
-// IEC 61966-2-1: 0x808080 sends 0.2159 of white's light; what is encoded comes back.
+// IEC 61966-2-1: 0x808080 emits 0.2159 of white's light; encoding inverts decoding.
 TEST(PictureColour, IsLinearInLight) {
   EXPECT_NEAR(colour_of(0x808080).green, 0.2159, 1e-4);
   EXPECT_FLOAT_EQ(colour_of(0xffffff).blue, 1);
@@ -23,8 +23,8 @@ TEST(PictureColour, IsLinearInLight) {
   EXPECT_EQ(encoded(-1), 0);
 }
 
-// Published with matplotlib, _cm_listed.py: the first, the 103rd, the 128th, the 200th and the last of the
-// 256 colours, (0.267004, 0.004874, 0.329415) ... (0.993248, 0.906157, 0.143936).
+// Published with matplotlib, _cm_listed.py: colours 1, 103, 128, 200 and 256 of 256,
+// (0.267004, 0.004874, 0.329415) ... (0.993248, 0.906157, 0.143936).
 TEST(PictureColour, OfViridisIsThePublishedOne) {
   const std::array<std::pair<int, std::array<double, 3>>, 5> published = {
       {{0, {0.267004, 0.004874, 0.329415}},
@@ -51,8 +51,8 @@ Snapshot of_sizes(std::size_t sizes) {
   return made;
 }
 
-// Eight colours are told apart by name; more sizes lie on a scale of radii, whose ends are the least and the
-// largest, each with a colour of its own.
+// Up to eight sizes get separate colours. More sizes lie on a scale of radii from the smallest to the
+// largest, all with distinct colours.
 TEST(PictureColour, OfSpeciesIsNoOtherOnesColour) {
   for (const std::size_t sizes : {1, 8, 9, 14}) {
     const Colouring all = colouring_of(of_sizes(sizes), "species", "x.gsd");

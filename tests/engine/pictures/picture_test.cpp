@@ -1,4 +1,4 @@
-// Frames as pictures: which colours stand for what, and what is refused.
+// Frames as pictures: the meaning of colours, and refusals.
 #include "engine/pictures/picture.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ Snapshot small_frame() {
   Snapshot snapshot;
   snapshot.lattice = {Vector3{4, 0, 0}, Vector3{1, 4, 0}, Vector3{0, 0, 4}};
   snapshot.corner = {-2.5, -2, -2};
-  snapshot.position = {{0, 0, 0}, {9, 1, 0}};  // the second one two cells away
+  snapshot.position = {{0, 0, 0}, {9, 1, 0}};  // the second two cells away
   snapshot.radius = {1, 0.5};
   snapshot.species = {0, 1};
   snapshot.species_names = {"A", "B"};
@@ -42,7 +42,7 @@ TEST(Picture, HasTheSizeThatIsAskedForAndAWhiteGround) {
   ASSERT_EQ(image.rgb.size(), 3U * 320 * 200);
   EXPECT_EQ(std::vector<std::uint8_t>(image.rgb.begin(), image.rgb.begin() + 3),
             (std::vector<std::uint8_t>{255, 255, 255}));
-  // Somewhere it is blue, somewhere red: two species, of which the second is taken into the cell.
+  // Two species give blue and red pixels; the second sphere is wrapped into the cell.
   bool is_blue = false, is_red = false;
   for (std::size_t k = 0; k < image.rgb.size(); k += 3) {
     is_blue = is_blue || image.rgb[k + 2] > image.rgb[k] + 60;
@@ -51,7 +51,7 @@ TEST(Picture, HasTheSizeThatIsAskedForAndAWhiteGround) {
   EXPECT_TRUE(is_blue && is_red);
 }
 
-// (2 y, 0, 0) at strain 3 after a time of 1.5; the second sphere is 0.25 faster along z.
+// The flow is (2 y, 0, 0): strain 3 after a time of 1.5. The second sphere is 0.25 faster along z.
 TEST(Picture, ColoursSpeedsBeyondTheFlow) {
   Snapshot snapshot = small_frame();
   snapshot.velocity = {{0, 0, 0}, {2, 0, 0.25}};
@@ -64,7 +64,7 @@ TEST(Picture, ColoursSpeedsBeyondTheFlow) {
   EXPECT_EQ(colouring.scale.front().at(0.25).red, colouring.of_spheres[1].red);
 }
 
-// u = 3 (x, -y, 0): the second sphere is 0.5 faster along z.
+// The flow is u = 3 (x, -y, 0); the second sphere is 0.5 faster along z.
 TEST(Picture, ColoursSpeedsBeyondTheFlowThatTheFileHas) {
   Snapshot snapshot = small_frame();
   snapshot.velocity = {{0, 0, 0}, {27, -3, 0.5}};
@@ -76,7 +76,7 @@ TEST(Picture, ColoursSpeedsBeyondTheFlowThatTheFileHas) {
   EXPECT_EQ(colouring.scale.front().at(0.5).red, colouring.of_spheres[1].red);
 }
 
-// Ticks a step apart that is smaller than the rounding of their values would never come to an end.
+// Ticks closer than the rounding of their values would make an endless loop.
 TEST(Picture, OfValuesThatAreAlikeButForRoundingHasAScaleWithTicks) {
   for (const double width : {0.0, 1e-16, 1e-12}) {
     const ColourScale scale = scale_over("x", {1, 1 + width, 1 + 2 * width});
@@ -86,7 +86,7 @@ TEST(Picture, OfValuesThatAreAlikeButForRoundingHasAScaleWithTicks) {
   EXPECT_EQ(scale_over("x", {1, 1 + 1e-8}).low, 1);
 }
 
-// The first of them would be a rod without width, the second one without length, both of no colour.
+// The first would be a rod without width, the second without length; both have no colour.
 TEST(Picture, OfContactsWithoutForceOrLengthHasNoRods) {
   Snapshot snapshot = small_frame();
   PictureOptions options;
@@ -101,7 +101,7 @@ TEST(Picture, OfContactsWithoutForceOrLengthHasNoRods) {
   }
 }
 
-// A cube and the same cube turned by 90 degrees about z: its lattice is the same.
+// A cube and the cube rotated by 90 degrees about z have one lattice.
 TEST(Picture, OfATurnedCellHasTheSameSpheres) {
   Snapshot snapshot = small_frame();
   snapshot.lattice = {Vector3{4, 0, 0}, Vector3{0, 4, 0}, Vector3{0, 0, 4}};

@@ -1,4 +1,4 @@
-// What the camera sees, against the geometry of spheres.
+// The camera's view, compared with the geometry of spheres.
 #include "engine/pictures/renderer.h"
 
 #include <gtest/gtest.h>
@@ -20,14 +20,14 @@ Canvas drawn(const Stage& stage, const View& view, int threads = 1) {
 
 bool is_white(const Colour& c) { return c.red == 1 && c.green == 1 && c.blue == 1; }
 
-// The share of pixels that are covered, edges by their darkness beside the middle being no white.
+// Returns the share of pixels that are not white, those of edges included.
 double covered(const Canvas& canvas) {
   double share = 0;
   for (const Colour& c : canvas.pixel) share += is_white(c) ? 0 : 1;
   return share / static_cast<double>(canvas.pixel.size());
 }
 
-// A ball that fills the frame is a disc of pi/4 of it; half of the pixels of its edge are taken for covered.
+// A ball that fills the frame covers pi/4 of it; half of its edge pixels count as covered.
 TEST(PictureOfABall, IsADiscThatFillsTheFrame) {
   const Stage stage{{{{3, -2, 7}, 2, red}}, {}, {}};
   for (const View& view : {View{0, 0}, View{24, 18}, View{-100, -80}}) {
@@ -40,7 +40,7 @@ TEST(PictureOfABall, IsADiscThatFillsTheFrame) {
   }
 }
 
-// Looking along z the eye is at z > 0, x is to the right and y is up.
+// In a view along z the eye is at z > 0, with x to the right and y up.
 TEST(PictureOfBalls, ShowsTheNearerOneAndTheRightSideUp) {
   const Stage stage{{{{0, 0, 0}, 1, red}, {{0, 0, 3}, 0.5, blue}, {{0, 2, 0}, 0.5, blue}}, {}, {}};
   const Camera camera(stage, {0, 0}, whole);
@@ -71,21 +71,21 @@ TEST(PictureOfBalls, IsTheSameFromAnyNumberOfThreads) {
   }
 }
 
-// Of length 4 and radius 1/2 across the view: a strip with round ends. In perspective the near side is larger
-// by less than a part in a hundred.
+// A rod of length 4 and radius 1/2 across the view is a strip with round ends. Perspective enlarges the near
+// side by less than a hundredth.
 TEST(PictureOfARod, CoversAStripInEveryDirection) {
   const double share = (4 * 1 + std::numbers::pi / 4) / (5.0 * 5.0);
   for (const double angle : {0.0, 0.3, 1.2, std::numbers::pi / 2, 2.5}) {
     const Vector3 half{2 * std::cos(angle), 2 * std::sin(angle), 0};
     const Stage stage{{}, {{-half, half, 0.5, red}}, {}};
     const Canvas canvas = drawn(stage, {0, 0});
-    // It fits the frame by its longer side.
+    // The longer side fits the frame.
     const double side = 1 + 4 * std::max(std::abs(std::cos(angle)), std::abs(std::sin(angle)));
     EXPECT_NEAR(covered(canvas), share * 25 / (side * side), 0.02 * share * 25 / (side * side)) << angle;
   }
 }
 
-// Of a ball of radius a at the distance r, seen whole over the horizon at the angle t: (a/r)^2 cos t.
+// A ball of radius a at distance r, wholly above the horizon at angle t, occludes (a/r)^2 cos t.
 TEST(Occlusion, OfOneBallIsTheSolidAngleWithTheCosine) {
   const std::vector<Ball> balls = {{{0, 0, 0}, 1, red}, {{0, 3, 0}, 1, red}};
   const Occlusion sky(balls);

@@ -1,5 +1,4 @@
-// What goes with what: a scene with any flow, observable, method and start is refused with a reason before
-// anything runs, or it runs to its end.
+// Combinations of flow, observable, method and start: a scene is refused with a reason, or completes.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -24,7 +23,7 @@ struct NamedPatch {
   Json patch;
 };
 
-// 12 spheres, 40 steps.
+// Returns a scene of 12 spheres and 40 steps.
 Json tiny_scene() {
   return Json::parse(R"({
     "particles": {"count": 12, "density": 0.01, "species": [{"radius": 1}]},
@@ -67,7 +66,7 @@ std::vector<NamedPatch> flows() {
   return all;
 }
 
-// One after the other, each alone and beside the other ones.
+// Patches of the scene, applied one at a time.
 std::vector<NamedPatch> surroundings() {
   const char* const texts[][2] = {
       {"as it is", "{}"},
@@ -92,7 +91,7 @@ std::vector<NamedPatch> surroundings() {
   return all;
 }
 
-// What cannot be measured in a flow, whatever is around it.
+// Observables that a flow excludes in any surroundings.
 const std::set<std::string>& refused() {
   static const std::set<std::string> names = {
       // stress_correlation and linear_response need a fluid at rest, with noise.
@@ -104,13 +103,12 @@ const std::set<std::string>& refused() {
       "across + linear_response", "oscillation + linear_response", "reversal + linear_response",
       "ramp_and_stop + linear_response", "extension + linear_response", "uniaxial + linear_response",
       "biaxial + linear_response", "stress + linear_response", "peclet + linear_response",
-      // oscillation needs an oscillating flow; transient needs one that neither oscillates nor has a given
-      // stress.
+      // oscillation needs an oscillating flow; transient one that neither oscillates nor has a given stress.
       "rest + oscillation", "shear + oscillation", "waves + oscillation", "waves_alone + oscillation",
       "reversal + oscillation", "ramp_and_stop + oscillation", "extension + oscillation",
       "uniaxial + oscillation", "biaxial + oscillation", "stress + oscillation", "peclet + oscillation",
       "across + transient", "oscillation + transient", "stress + transient",
-      // Displacements, g(r) and profiles are kept along the axes of a steady shear.
+      // Displacements, g(r) and profiles need the axes of a steady shear.
       "across + mean_squared_displacement", "extension + mean_squared_displacement",
       "uniaxial + mean_squared_displacement", "biaxial + mean_squared_displacement",
       "stress + mean_squared_displacement", "extension + pair_distribution", "extension + profiles",
@@ -123,14 +121,14 @@ bool has_turned_cell(const std::string& flow) {
   return flow == "extension" || flow == "uniaxial" || flow == "biaxial";
 }
 
-// Whether a surrounding forbids what goes in the usual one.
+// True if these surroundings exclude an observable that the flow alone allows.
 bool is_forbidden(const std::string& around, const std::string& flow, const std::string& observable) {
   const bool mari = around.starts_with("mari"), quiet = around.ends_with("without noise") && flow != "peclet";
   const bool is_linear = observable == "linear_response";
   if (quiet && flow == "rest" && (is_linear || observable == "stress_correlation")) return true;
   if (around == "friction" && flow == "rest" && is_linear) return true;
   if (around == "no contact" && observable == "contact_network") return true;
-  // Strain rates of pairs have a stress that is not that of the forces alone.
+  // Strain rates of pairs contribute a stress that does not come from forces.
   if (mari && (observable == "oscillation" || observable == "transient")) return true;
   if (mari && !quiet && flow == "stress") return true;
   if (mari && flow == "rest" && is_linear) return true;
@@ -139,7 +137,7 @@ bool is_forbidden(const std::string& around, const std::string& flow, const std:
 
 class AdmittedScene : public testing::Test {
  protected:
-  // Why the scene is refused; empty where it is admitted, and then it runs to its end.
+  // Returns the reason of a refusal, or nothing if the scene is admitted and completes.
   std::string refusal(Json document, const std::string& name) {
     const auto& list = document["observables"];
     const auto lists = [&](const char* observable) {
@@ -148,7 +146,7 @@ class AdmittedScene : public testing::Test {
     for (const char* settings : {"pair_distribution", "transient"}) {
       if (!lists(settings)) document.erase(settings);
     }
-    // Its window has 512 steps at least.
+    // Its window needs at least 512 steps.
     if (lists("linear_response")) document["duration"]["production"]["time"] = 12;
     try {
       const Scene scene = read_scene(document, "scene.json");
@@ -176,7 +174,6 @@ class AdmittedScene : public testing::Test {
   TemporaryFolder folder_;
 };
 
-// What a flow measures does not depend on what is around it, but for what the reason of a refusal says.
 TEST_F(AdmittedScene, OfAnyFlowWithAnyObservableRunsToItsEnd) {
   for (const auto& [flow, of_flow] : flows()) {
     for (const ObservableKind& entry : observable_kinds()) {
@@ -207,8 +204,8 @@ TEST_F(AdmittedScene, OfAnyFlowAndObservableInAnySurroundingsRunsToItsEnd) {
   }
 }
 
-// A start that another flow has left, and one of the same. Only a box that is sheared along x is taken from a
-// file, and no turned cell begins in one.
+// Starts from the file of another flow and of the same one. Only a box sheared along x is read from a file,
+// and turned cells do not start from one.
 TEST_F(AdmittedScene, OfAnyFlowThatBeginsInAFileRunsToItsEnd) {
   for (const auto& [before, of_before] : flows()) {
     Json first = tiny_scene();
@@ -232,7 +229,7 @@ TEST_F(AdmittedScene, OfAnyFlowThatBeginsInAFileRunsToItsEnd) {
   }
 }
 
-// What a flow measures does not depend on where its spheres begin.
+// The observables that a flow allows do not depend on the start.
 TEST_F(AdmittedScene, OfAnyFlowAndObservableAndMethodThatBeginsInAFileRunsToItsEnd) {
   Json first = tiny_scene();
   first["observables"] = {"trajectory"};

@@ -27,7 +27,7 @@ class Checkpoint : public testing::Test {
     whole_ = read_file(path_);
   }
 
-  // The message with which the file is refused; it must name the file and leave it as it is.
+  // Returns the message of the refusal, which must name the file and leave it unchanged.
   std::string refusal(const std::string& bytes, const CheckpointIdentity& expected = identity) {
     write_durably(path_, bytes);
     Simulation fresh(scene_, make_schedule(scene_, ""), 7, 1, "");
@@ -46,7 +46,7 @@ class Checkpoint : public testing::Test {
     EXPECT_NE(refusal(bytes).find(reason), std::string::npos) << refusal(bytes);
   }
 
-  // The payload replaced, with a length and a checksum that fit.
+  // Returns the file with another payload, with matching length and checksum.
   std::string with_payload(const std::string& payload) const {
     ArchiveWriter length;
     length.put(static_cast<std::uint64_t>(payload.size()));
@@ -75,7 +75,7 @@ TEST_F(Checkpoint, WhatIsNoCheckpointIsSaidToBeNone) {
   expect_refused(other, "is no checkpoint");
 }
 
-// Nothing is followed, waited for, or read that is larger than any checkpoint.
+// Links are not followed, pipes not waited for, and oversized files not read.
 TEST_F(Checkpoint, WhatIsNoFileOfReasonableSizeIsRefused) {
   const auto refusal_of = [&](const std::filesystem::path& path) {
     Simulation fresh(scene_, make_schedule(scene_, ""), 7, 1, "");
@@ -115,18 +115,18 @@ TEST_F(Checkpoint, AnyFlippedBitOfThePayloadIsNoticed) {
     expect_refused(damaged, "is damaged");
   }
   std::string damaged = whole_;
-  damaged.back() = damaged.back() == '0' ? '1' : '0';  // of the checksum itself
+  damaged.back() = damaged.back() == '0' ? '1' : '0';  // changes the checksum
   expect_refused(damaged, "is damaged");
 }
 
-// Sound in themselves, but not what belongs there.
+// The payloads are intact but have the wrong length.
 TEST_F(Checkpoint, PayloadsOfTheWrongLengthAreRefused) {
   expect_refused(with_payload(payload() + "x"), "more than belongs there");
   expect_refused(with_payload(payload().substr(0, payload().size() - 8)), "ends too early");
   expect_refused(with_payload(""), "ends too early");
 }
 
-// A sphere or a cell that cannot be computed with would become an index of the grid of neighbours.
+// Positions or cells that are not finite would become indices of the neighbour grid.
 TEST_F(Checkpoint, PayloadsWithoutPlacesAreRefused) {
   const auto bytes_of = [](const auto& value) {
     ArchiveWriter writer;
@@ -146,7 +146,7 @@ TEST_F(Checkpoint, PayloadsWithoutPlacesAreRefused) {
                   bytes_of(Matrix3{Vector3{-1, 0, 0}, Vector3{bad, 0, 0}, Vector3{}}));
     expect_refused(with_payload(bytes), "has a cell that has no volume");
   }
-  // Flat, and tilted by a hundred edges: in both a hundred images are as near as one in a cube.
+  // A flat cell, and one tilted by a hundred edges: in both, a hundred images are near.
   for (const Matrix3& thin : {Matrix3{Vector3{}, Vector3{0, -0.99, 0}, Vector3{}},
                               Matrix3{Vector3{}, Vector3{100, 0, 0}, Vector3{}}}) {
     std::string bytes = payload();
@@ -181,7 +181,7 @@ JobSpecification job_with(const std::filesystem::path& checkpoint) {
 }
 
 TEST_F(Checkpoint, AJobEndsWithAnUnusableOneUnlessItMayStartAgain) {
-  write_durably(path_, whole_);  // of another scene's hash
+  write_durably(path_, whole_);  // has the hash of another scene
   JobSpecification job = job_with(path_);
   EXPECT_THROW(run_job(job, {}), CheckpointError);
   EXPECT_TRUE(read_file(path_) == whole_);

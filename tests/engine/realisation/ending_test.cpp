@@ -1,4 +1,4 @@
-// Every way in which a realisation ends has its name, its step and its state, and never a number.
+// Every ending of a realisation has a name, a step and a state, and no means unless it is complete.
 #include <gtest/gtest.h>
 
 #include "contract/durable_file.h"
@@ -31,7 +31,7 @@ class EndingOfAJob : public testing::Test {
     EXPECT_TRUE(result.at("statistical_inefficiency").is_null());
   }
 
-  // The saved state is a checkpoint of the step at which it broke off.
+  // Expects that the saved state is a checkpoint of the step at which the realisation ended.
   void expect_saved_state(const Json& result, const Json& patch) {
     const Json& ending = result.at("ending");
     ASSERT_EQ(ending.at("state"), "0123456789ab-5.state");
@@ -76,13 +76,13 @@ TEST_F(EndingOfAJob, DisplacementBeyondTheGuard) {
   expect_saved_state(result, patch);
 }
 
-// The noise of this temperature overflows.
+// Noise at this temperature overflows.
 TEST_F(EndingOfAJob, NonFinite) {
   const Json patch = {{"fluid", {{"thermal_energy", 1e308}}}};
   const Json result = result_of(patch);
   EXPECT_EQ(result.at("ending").at("cause"), "non-finite");
   expect_no_numbers(result);
-  // The state is saved, and nothing goes on from spheres that are nowhere.
+  // The state is saved, and cannot be resumed without finite positions.
   try {
     expect_saved_state(result, patch);
     ADD_FAILURE() << "it was read";
@@ -92,7 +92,7 @@ TEST_F(EndingOfAJob, NonFinite) {
   }
 }
 
-// Spheres that leap over each other have no neighbours to feel: no guard allows that.
+// Spheres that leap over each other meet no neighbours; no guard may allow this.
 TEST_F(EndingOfAJob, DisplacementBeyondTheForcesEvenIfTheGuardAllowsIt) {
   const Json result = result_of({{"fluid", {{"thermal_energy", 1e12}}},
                                  {"guard", {{"largest_displacement", 1e30}, {"largest_overlap", 1e30}}}});

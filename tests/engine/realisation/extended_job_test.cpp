@@ -1,4 +1,4 @@
-// A realisation that goes on from the checkpoint of a shorter one is, bit by bit, the longer one.
+// A realisation extended from the checkpoint of a shorter one equals the longer one bit by bit.
 #include <gtest/gtest.h>
 
 #include "contract/durable_file.h"
@@ -31,7 +31,7 @@ Json durations(double equilibration, double production) {
 
 class ExtendedJob : public testing::TestWithParam<Way> {
  protected:
-  // 100 steps and 320, or as `duration` says, and other observables than the first one has.
+  // Returns a job of 100 and 320 steps, or of `duration`, with other observables than the first one.
   JobSpecification job(const Json& patch) const {
     JobSpecification job;
     job.header = {"point", 4};
@@ -57,7 +57,7 @@ class ExtendedJob : public testing::TestWithParam<Way> {
 INSTANTIATE_TEST_SUITE_P(EveryWay, ExtendedJob, testing::ValuesIn(ways),
                          [](const auto& way) { return std::string(way.param.name); });
 
-// 420 steps are its equilibration: nothing of it is measured, and everything is as from the beginning.
+// The 420 steps are its equilibration: measurements begin after it, as in an uninterrupted run.
 TEST_P(ExtendedJob, IsTheLongerOneWithAllItsMeans) {
   for (const double equilibration : {0.84, 1.0}) {
     JobSpecification longer =
@@ -70,7 +70,7 @@ TEST_P(ExtendedJob, IsTheLongerOneWithAllItsMeans) {
   }
 }
 
-// A window that had begun is measured from the checkpoint on.
+// If the window had begun before the checkpoint, it is measured from the checkpoint on.
 TEST_P(ExtendedJob, EndsInTheSameStateWhateverItsWindowIs) {
   JobSpecification longer = job({{"duration", durations(0.2, 1.28)}});
   const Json uncut = run_job(longer, {}).value();
@@ -79,7 +79,7 @@ TEST_P(ExtendedJob, EndsInTheSameStateWhateverItsWindowIs) {
   EXPECT_EQ(extended.at("final_state_sha256"), uncut.at("final_state_sha256"));
   EXPECT_EQ(extended.at("steps").dump(), R"({"equilibration":420,"production":320})");
   EXPECT_NE(extended.at("mean"), uncut.at("mean"));
-  // The same window, of the scene that says so.
+  // A scene with that window gives equal means.
   JobSpecification same = job({{"duration", durations(0.84, 0.64)}});
   EXPECT_EQ(extended.at("mean"), run_job(same, {}).value().at("mean"));
 }
@@ -96,9 +96,9 @@ TEST_P(ExtendedJob, CanBeCutAndExtendedAgain) {
   int drains = 0;
   for (; !result; ++drains) result = run_job(longer, events);
   EXPECT_GE(drains, 2);
-  for (Json* one : {&uncut, &*result}) one->erase("files");  // which hold what they cost
+  for (Json* one : {&uncut, &*result}) one->erase("files");  // files include costs
   EXPECT_EQ(without_cost(*result).dump(), without_cost(uncut).dump());
-  // It belongs to the run whose window begins at the first checkpoint, and to no other.
+  // The checkpoint belongs to the run whose window begins at the first checkpoint.
   JobSpecification plain = longer;
   plain.extended.clear();
   EXPECT_THROW(run_job(plain, {}), CheckpointError);
@@ -109,7 +109,7 @@ TEST_P(ExtendedJob, CanBeCutAndExtendedAgain) {
   EXPECT_EQ(without_cost(run_job(longest, {}).value()).dump(), without_cost(whole).dump());
 }
 
-// A cycle of 140 steps; the first job is cut within one.
+// A cycle has 140 steps; the first job is cut within one.
 TEST(ExtendedOscillation, GoesOnFromWholeCyclesAlone) {
   const TemporaryFolder folder;
   JobSpecification job;

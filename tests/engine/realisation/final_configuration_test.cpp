@@ -1,4 +1,4 @@
-// What other programs read of the spheres: against the state itself, and from a realisation as a whole.
+// The final configuration as other programs read it, compared with the state and with a whole realisation.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -34,7 +34,7 @@ double number_after(const std::string& line, const std::string& key) {
   return std::stod(line.substr(line.find(key) + key.size()));
 }
 
-// A reader that knows the format alone.
+// A reader written from the format alone.
 Text read_extended_xyz(const std::string& bytes) {
   std::istringstream lines(bytes);
   std::string line;
@@ -62,7 +62,7 @@ Text read_extended_xyz(const std::string& bytes) {
   return text;
 }
 
-// Bit by bit: the numbers are of a hand, and of many digits.
+// Numbers set by hand with many digits, compared bit by bit.
 TEST(FinalConfiguration, IsReadBackAsItWas) {
   System system;
   system.particles = make_particles({1.4, 1, 1.0 / 3}, 0.1);
@@ -84,7 +84,7 @@ TEST(FinalConfiguration, IsReadBackAsItWas) {
   EXPECT_EQ(text.time, 150 * 0.002);
   EXPECT_EQ(text.strain, 0.3);
   ASSERT_EQ(text.spheres.size(), 3U);
-  const std::array<std::size_t, 3> place{1, 2, 0};  // by their numbers
+  const std::array<std::size_t, 3> place{1, 2, 0};  // by id
   for (std::size_t i = 0; i < 3; ++i) {
     const Sphere& sphere = text.spheres[i];
     EXPECT_EQ(sphere.id, i);
@@ -132,7 +132,7 @@ TEST(FinalConfiguration, OfARealisationIsThatOfTheSameTimeLoop) {
     EXPECT_EQ(sphere.position.x, particles.position[i].x);
     EXPECT_EQ(sphere.velocity.y, particles.velocity[i].y);
   }
-  // rate 2 over 420 steps of 0.002
+  // Rate 2 over 420 steps of 0.002.
   EXPECT_NEAR(text.strain, 1.68, 1e-12);
   EXPECT_NEAR(text.time, 0.84, 1e-12);
 }

@@ -1,4 +1,4 @@
-// A trajectory on disk: what is kept, what is cut off, what is noticed.
+// A trajectory on disk: frames that are kept or cut off, and damage that is detected.
 #include "engine/realisation/growing_file.h"
 
 #include <gtest/gtest.h>
@@ -56,7 +56,7 @@ TEST_F(Growing, ForgetsWhatCameAfterTheCheckpoint) {
     file.go_on(lost);
     for (const double x : {-4, -5, -6}) add_frame(lost, x);
     file.take(lost);
-    file.finish(lost, folder_ / "lost.gsd");  // killed before its result was there
+    file.finish(lost, folder_ / "lost.gsd");  // killed before its result
   }
   GrowingFile file(path_);
   file.go_on(checkpoint);
@@ -70,7 +70,7 @@ TEST_F(Growing, ForgetsWhatCameAfterTheCheckpoint) {
   }
 }
 
-// The engine of a runner that is gone lives on for some seconds.
+// The engine of a runner that has ended may run on for some seconds.
 TEST_F(Growing, IsTheSameWhereTwoEnginesWriteIt) {
   gsd::Frames one = copy_of(frames_), other = copy_of(frames_);
   GrowingFile first(path_), second(path_);
@@ -123,7 +123,7 @@ TEST_F(Growing, LeavesNothingWithoutAName) {
   EXPECT_EQ(GsdReader(read_file(target_)).frames(), 1U);
 }
 
-// As on a full disk, but for the number of the error.
+// Simulates a full disk, except for the error number.
 TEST_F(Growing, KeepsWhatCouldNotBeWritten) {
   GrowingFile file(path_);
   file.go_on(frames_);

@@ -1,5 +1,5 @@
-// Seeds are fixed, so each claim holds or fails for good; a statistic is allowed five standard errors, which
-// one seed in a hundred thousand would exceed.
+// Seeds are fixed, so each claim is reproducible. A statistic may deviate by five standard errors, which one
+// seed in a hundred thousand would exceed.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -16,7 +16,7 @@ constexpr double rate = 2, thermal_energy = 0.02, count = 3000;
 System started(const Json& patch = Json::object()) {
   Json document = small_scene({{"particles", {{"count", count}}}, {"volume_fraction", 0.1}});
   document.merge_patch(patch);
-  document.erase("repulsion");  // nothing that moves spheres before they start
+  document.erase("repulsion");  // no forces that move spheres before the start
   const Scene scene = read_scene(document, "scene.json");
   Simulation simulation(scene, make_schedule(scene, "scene.json"), 5, 1, "scene.json");
   simulation.start();
@@ -25,8 +25,8 @@ System started(const Json& patch = Json::object()) {
 
 double product(const Vector3& a, const Vector3& b) { return dot(a, b) / 3; }
 
-// Each in units of its own standard deviation sqrt(kT / m) or sqrt(kT / I), I = 2/5 m a^2: the mean is 0, the
-// mean square 1 with the variance 2 / 3 N, and velocity and spin have nothing to do with each other.
+// In units of the standard deviations sqrt(kT / m) and sqrt(kT / I), I = 2/5 m a^2: the mean is 0, and the
+// mean square is 1 with variance 2 / 3 N. Velocity and spin are uncorrelated.
 TEST(InitialVelocities, AreThoseOfEquilibriumAboutTheFlow) {
   const System system = started();
   const ParticleState& p = system.particles;
@@ -52,7 +52,7 @@ TEST(InitialVelocities, AreThoseOfEquilibriumAboutTheFlow) {
   EXPECT_NEAR(both, 0, 5 / std::sqrt(3 * count));
 }
 
-// With tau_I the same for all sizes m = 4 pi / 3 rho a_i, a = 1: kT / m of each size.
+// With one tau_I for all sizes m = 4 pi / 3 rho a_i, a = 1: kT / m for each size.
 TEST(InitialVelocities, AreOfTheMassOfEachSize) {
   const System system = started({{"particles", {{"density_rule", "equal-inertia"}}}});
   const ParticleState& p = system.particles;

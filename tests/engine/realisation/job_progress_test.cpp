@@ -1,4 +1,4 @@
-// What a job tells on its way.
+// Progress messages of a job.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -32,7 +32,7 @@ std::vector<std::uint64_t> packing_steps(const std::vector<Progress>& told) {
   return steps;
 }
 
-// Whoever waits for a step of a long packing hears of one.
+// A caller that waits for a step of a long packing gets one.
 TEST(JobProgress, HasEveryStepOfThePacking) {
   const std::vector<std::uint64_t> loose = packing_steps(told_of(small_scene({{"volume_fraction", 0.3}})));
   const std::vector<std::uint64_t> dense = packing_steps(told_of(small_scene({{"volume_fraction", 0.55}})));
@@ -43,7 +43,7 @@ TEST(JobProgress, HasEveryStepOfThePacking) {
   EXPECT_GT(dense.size(), 2 * loose.size());
 }
 
-// A packing that nobody can make is looked for at smaller and smaller fractions: that takes longest.
+// An impossible packing is tried at decreasing volume fractions, which takes longest.
 TEST(JobProgress, GoesOnWhileTheDensestPackingIsLookedFor) {
   const std::vector<std::uint64_t> steps = packing_steps(told_of(small_scene({{"volume_fraction", 0.72}})));
   for (std::size_t k = 0; k < steps.size(); ++k) EXPECT_EQ(steps[k], k);

@@ -33,7 +33,7 @@ Packing packed(const Particles& wanted, double volume_fraction, std::uint64_t se
   return packing;
 }
 
-// Smallest r / (a_i + a_j) of all pairs, nearest images: the edge is larger than twice any range asked for.
+// Returns the smallest r / (a_i + a_j) over nearest images; the edge exceeds twice any range in use.
 double closest(const Packing& packing) {
   const ParticleState& p = packing.particles;
   const double edge = packing.box.lengths().x;
@@ -83,7 +83,7 @@ TEST(Packing, SpheresAreAtRest) {
   EXPECT_EQ(packing.particles.velocity, VectorField(50));
 }
 
-// Equal volumes of 1 and 1.4 jam at random between 0.64 and 0.66.
+// Radii 1 and 1.4 in equal volumes jam at random between 0.64 and 0.66.
 TEST(Packing, WhatCannotBePackedIsRefusedWithTheVolumeFractionReached) {
   try {
     packed(equal_volumes(300), 0.70, 1);
@@ -95,8 +95,8 @@ TEST(Packing, WhatCannotBePackedIsRefusedWithTheVolumeFractionReached) {
   }
 }
 
-// Two equal spheres in a cube come no nearer to 1 than in the body-centred lattice, where they are sqrt(3) /
-// 2 edges apart: a cube that is a little too small is refused, one that is a little larger is not.
+// Two equal spheres in a cube are farthest apart in the body-centred lattice, at sqrt(3) / 2 edges. A
+// slightly smaller cube is refused, a slightly larger one accepted.
 TEST(Packing, AcceptsNoOverlapHoweverSmall) {
   const auto pack_at = [](double distance_over_contact) {
     const double edge = 2 * distance_over_contact / (0.5 * std::sqrt(3.0));
@@ -109,7 +109,7 @@ TEST(Packing, AcceptsNoOverlapHoweverSmall) {
   EXPECT_NO_THROW(pack_at(1.01));
 }
 
-// Positions, or the volume fraction reached, of eight spheres whose lengths are all multiplied by `unit`.
+// Positions, or the volume fraction reached, of eight spheres with all lengths multiplied by `unit`.
 struct Scaled {
   VectorField position;
   double reached = 0;
@@ -128,9 +128,9 @@ Scaled packed_in_units(double unit, double volume_fraction) {
   return {particles.position, 0};
 }
 
-// Scaling every length by a power of two changes no rounding: the packing must be the same to the last bit.
+// A power of two changes no rounding, so the packings must agree bit by bit.
 TEST(Packing, DoesNotDependOnTheUnitOfLength) {
-  constexpr double unit = 0x1p-30;  // spheres of a nanometre, in metres
+  constexpr double unit = 0x1p-30;  // nanometres in metres
   const Scaled large = packed_in_units(1, 0.5), small = packed_in_units(unit, 0.5);
   ASSERT_EQ(large.position.size(), 8u);
   for (std::size_t i = 0; i < 8; ++i) {
@@ -148,7 +148,7 @@ TEST(SpeciesRadii, EqualVolumesOfAThousandAreThePublishedNumbers) {
   EXPECT_EQ(std::count(radius.begin(), radius.end(), 1.4), 267);
 }
 
-// 65536 of radii 1 and 3, volumes 1 : 0.25 (Monti et al. 2021): 64935 + 601.
+// 65536 of radii 1 and 3 in volumes 1 : 0.25 (Monti et al. 2021): 64935 + 601.
 TEST(SpeciesRadii, LargeMixtureIsThePublishedOne) {
   Particles particles = equal_volumes(65536);
   particles.species = {{1.0, 0.8}, {3.0, 0.2}};
@@ -160,7 +160,7 @@ TEST(SpeciesRadii, LargeMixtureIsThePublishedOne) {
 TEST(SpeciesRadii, AreRoundedByLargestRemainders) {
   Particles particles = equal_volumes(10);
   particles.shares = Particles::Shares::number;
-  // Exactly 4.4, 3.35 and 2.25: the one that is left over goes to the first.
+  // Exactly 4.4, 3.35 and 2.25; the remaining sphere goes to the first.
   particles.species = {{1.0, 0.44}, {2.0, 0.335}, {3.0, 0.225}};
   const std::vector<double> radius = species_radii(particles);
   EXPECT_EQ(std::count(radius.begin(), radius.end(), 1.0), 5);

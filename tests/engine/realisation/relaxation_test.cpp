@@ -12,8 +12,8 @@
 namespace peclet::engine {
 namespace {
 
-// A packing whose spheres repel each other much more than the flow presses them together: from places as they
-// were packed, four of seeds 0 to 7 leap over their neighbours in the second step.
+// Returns a packing with repulsion much stronger than the flow. Without relaxation four of seeds 0 to 7 leap
+// over their neighbours in the second step.
 Scene repulsive_scene() {
   return read_scene(Json::parse(R"({
     "particles": {"count": 100, "density": 0.1,
@@ -57,7 +57,7 @@ TEST(Relaxation, MovesSpheresAndNothingElse) {
   }
 }
 
-// Neither flow nor noise is a force here.
+// Flow and noise exert no force here.
 TEST(Relaxation, LeavesAPackingWithoutForcesWhereItIs) {
   Scene scene = repulsive_scene();
   scene.physics.repulsion.reset();

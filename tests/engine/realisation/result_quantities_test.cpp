@@ -1,4 +1,4 @@
-// What a result says of its quantities, beside the quantities themselves.
+// The list of quantities in a result, compared with the values.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -10,7 +10,7 @@
 namespace peclet::engine {
 namespace {
 
-// Numbers along each axis of a value, and what it would be without them.
+// Returns the number of entries along each axis of a value.
 std::vector<std::size_t> shape_of(const Json& value) {
   std::vector<std::size_t> shape;
   for (const Json* list = &value; list->is_array(); list = &list->front()) shape.push_back(list->size());

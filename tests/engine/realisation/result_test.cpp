@@ -1,4 +1,4 @@
-// The numbers of a completed realisation, against sums that are done here.
+// The numbers of a completed realisation, compared with independent sums.
 #include "engine/realisation/result.h"
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@
 namespace peclet::engine {
 namespace {
 
-// Only the parts that enter the total.
+// Returns the sum of the parts without the total.
 std::vector<double> sum_of_parts(const Json& stress) {
   std::vector<double> sum(6);
   for (const auto& [name, tensor] : stress.items()) {
@@ -75,8 +75,8 @@ TEST(Result, ViscosityAndNormalStressesAreThoseOfTheTotal) {
   EXPECT_GT(mean.at("pressure"), 0);
 }
 
-// Single spheres in a wave of m u^2 = 5, beside which kT = 0.02 is little: they carry n kT all the same,
-// relative to the flow. 60 spheres over 100 times of the decay of their velocities have an error of some 2 %.
+// Single spheres in a wave with m u^2 = 5 have the kinetic stress n kT relative to the flow, though kT = 0.02
+// is small. 60 spheres over 100 velocity decay times give a standard error of about 2 %.
 TEST(Result, TheStressOfTheMotionIsRelativeToWavesToo) {
   for (const char* method : {"implicit", "explicit"}) {
     const Json result =
@@ -96,8 +96,8 @@ TEST(Result, TheStressOfTheMotionIsRelativeToWavesToo) {
   }
 }
 
-// Of planar extension in x and y, in units of twice the rate of extension times the viscosity: eta_E =
-// (sigma_xx - sigma_yy) / (4 eta rate), the stress of the noise included.
+// Planar extension in x and y, in units of twice the extension rate times the viscosity:
+// eta_E = (sigma_xx - sigma_yy) / (4 eta rate), the stress of the noise included.
 TEST(Result, TheViscosityOfAnExtensionIsThatOfItsNormalStresses) {
   const Json result = result_of({{"flow", {{"shear_rate", nullptr}, {"extension_rate", 1}}},
                                  {"integrator", {{"method", "implicit"}}},
@@ -110,8 +110,8 @@ TEST(Result, TheViscosityOfAnExtensionIsThatOfItsNormalStresses) {
   for (std::size_t c = 0; c < 6; ++c) EXPECT_NEAR(total[c], sum[c], 1e-12 * std::abs(expected));
 }
 
-// eta_E / 3 eta = (sigma_xx - (sigma_yy + sigma_zz) / 2) / (3 eta rate), in units of sqrt(3) |rate| eta, also
-// where the rate is below 0: biaxial extension.
+// eta_E / 3 eta = (sigma_xx - (sigma_yy + sigma_zz) / 2) / (3 eta rate), in units of sqrt(3) |rate| eta.
+// Negative rates are biaxial extension.
 TEST(Result, TheViscosityOfAUniaxialExtensionIsAThirdOfTheExtensionalOne) {
   for (const double rate : {1.0, -1.0}) {
     const Json result = result_of({{"flow", {{"shear_rate", nullptr}, {"uniaxial_rate", rate}}},
@@ -121,15 +121,15 @@ TEST(Result, TheViscosityOfAUniaxialExtensionIsAThirdOfTheExtensionalOne) {
     const auto component = [&](int c) { return total[c].get<double>(); };
     const double expected = (component(0) - (component(1) + component(2)) / 2) / std::sqrt(3.0) * rate;
     EXPECT_NEAR(mean.at("relative_viscosity"), expected, 1e-12 * std::abs(expected));
-    // Of the solvent and the stresslets 1 + 2.5 phi.
+    // Solvent and stresslets contribute 1 + 2.5 phi.
     const double of_pairs = mean.at("relative_viscosity_pair").get<double>();
     EXPECT_NEAR(expected - of_pairs, 1 + 2.5 * 0.45, 1e-12 * std::abs(expected));
-    EXPECT_NEAR(result.at("strain").at("production"), 0.64, 1e-9);  // in either direction
+    EXPECT_NEAR(result.at("strain").at("production"), 0.64, 1e-9);  // both signs count
   }
 }
 
-// 320 steps make 32 blocks of ten, so that blocks weigh the same. They have five digits: each is wrong by at
-// most half a unit of the last one.
+// 320 steps make 32 blocks of ten, of equal weight. Blocks have five digits, so each is wrong by at most half
+// a unit of the last digit.
 void expect_average(const Json& blocks, const Json& mean, const std::string& where) {
   ASSERT_EQ(blocks.size(), 32u) << where;
   double sum = 0, largest_error = 0;
@@ -146,7 +146,7 @@ TEST(Result, BlocksAverageToTheMean) {
   for (const auto& [name, value] : mean.items()) {
     if (value.is_number() && name != "mean_overlap") expect_average(blocks.at(name), value, name);
   }
-  // A mean over contacts.
+  // The mean overlap is a mean over contacts.
   double overlaps = 0, contacts = 0;
   for (std::size_t k = 0; k < 32; ++k) {
     const double of_block = blocks.at("contacts_per_particle")[k];
@@ -175,7 +175,7 @@ TEST(Result, BlocksHoldWhatFluctuatesAndNothingElse) {
   }
 }
 
-// The quarters are eight blocks each, here of ten steps: xy in quarters is the mean of eight blocks.
+// A quarter is eight blocks, here of ten steps: xy in quarters is the mean of eight blocks.
 TEST(Result, TensorsHaveTheQuartersOfTheWindow) {
   const Json& blocks = usual_result().at("blocks");
   ASSERT_EQ(blocks.at("stress").at("total").size(), 4u);
@@ -189,7 +189,7 @@ TEST(Result, TensorsHaveTheQuartersOfTheWindow) {
     ASSERT_EQ(total.size(), 6u);
     EXPECT_NEAR(total[3].get<double>(), sum, largest_error) << quarter;
   }
-  EXPECT_FALSE(blocks.at("stress").contains("solvent"));  // the same in every block
+  EXPECT_FALSE(blocks.at("stress").contains("solvent"));  // constant
 }
 
 TEST(Result, StatesWhatWasSimulated) {
@@ -225,8 +225,7 @@ double variance(const std::vector<double>& series) {
   return sum / static_cast<double>(series.size());
 }
 
-// Lubrication resists what the noise does, so that the stress varies less with that of the noise than without
-// it.
+// Lubrication opposes the noise, so the stress varies less with the stress of the noise than without it.
 TEST(Result, AtRestTheStressScattersLessWithThatOfTheNoise) {
   const Json result = result_of(
       {{"flow", {{"shear_rate", 0}}},
@@ -252,8 +251,8 @@ TEST(Result, SameSeedSameBytesButForTheCost) {
   EXPECT_EQ(again.dump(), first.dump());
 }
 
-// The stresslets of spheres in waves depend on where they are: the mean over the samples, one every ten steps
-// of this window, each evaluated once more.
+// Stresslets of spheres in waves depend on positions: the mean over samples, one every ten steps of this
+// window, each evaluated again.
 TEST(Result, HasTheStressletsOfSpheresWhereTheWavesAre) {
   const Json waves =
       Json::parse(R"([{"periods": 1, "sine": 0.5}, {"periods": 2, "sine": 0.3, "cosine": -0.4}])");
@@ -274,7 +273,7 @@ TEST(Result, HasTheStressletsOfSpheresWhereTheWavesAre) {
   }
   const Json result = result_of(patch);
   const double found = result.at("mean").at("stress").at("stresslet")[3];
-  constexpr double unit = 0.1 * 2;  // viscosity, rate
+  constexpr double unit = 0.1 * 2;  // viscosity times rate
   EXPECT_NEAR(found, sum / 32 / unit, 1e-12 * std::abs(found));
   EXPECT_GT(std::abs(found - 2.5 * 0.45), 1e-3);
   EXPECT_TRUE(result.at("gate").at("energy_imbalance").is_null());
@@ -282,8 +281,8 @@ TEST(Result, HasTheStressletsOfSpheresWhereTheWavesAre) {
   EXPECT_EQ(result.at("blocks").at("stress").at("stresslet").size(), 4U);
 }
 
-// Contact and repulsion depend on positions alone: every step of the production window is evaluated here once
-// more, one configuration at a time.
+// Contact and repulsion depend on positions alone; every step of the window is evaluated again, one
+// configuration at a time.
 TEST(Result, MeansAreTakenOverEveryStepOfTheProductionWindow) {
   const Scene scene = read_scene(small_scene(), "scene.json");
   Simulation simulation(scene, make_schedule(scene, ""), seed, 1, "");
@@ -314,7 +313,7 @@ TEST(Result, MeansAreTakenOverEveryStepOfTheProductionWindow) {
     }
   }
   const Json& mean = usual_result().at("mean");
-  constexpr double unit = 0.1 * 2 * 320;  // viscosity, rate, steps
+  constexpr double unit = 0.1 * 2 * 320;  // viscosity times rate times steps
   for (const char* term : {"contact_normal", "repulsion"}) {
     const Json& found = mean.at("stress").at(term);
     EXPECT_NEAR(found[3], sums[term] / unit, 1e-11 * std::abs(sums[term] / unit)) << term;

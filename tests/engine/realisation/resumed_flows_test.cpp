@@ -1,5 +1,4 @@
-// Runs of flows that change, cut and resumed, end in the same bits as those that were not, on any number of
-// threads.
+// Runs in time-dependent flows end in the same bits if cut and resumed, on any number of threads.
 #include <gtest/gtest.h>
 
 #include "engine/observables/scene_reading.h"

@@ -1,4 +1,4 @@
-// A run of an oscillating shear that was cut and resumed ends in the same bits as one that was not.
+// A run in oscillating shear ends in the same bits if cut and resumed.
 #include <gtest/gtest.h>
 
 #include "engine/observables/scene_reading.h"
@@ -12,7 +12,7 @@ constexpr std::uint64_t seed_of_run = 3, three_cycles = 3 * 128;
 
 class ResumedOscillation : public testing::TestWithParam<const char*> {
  protected:
-  // Strain 0.04 sin(50 t): a cycle has the 128 steps that it has at least.
+  // Strain 0.04 sin(50 t): a cycle has 128 steps, the minimum.
   Scene scene() const {
     return read_scene(
         small_scene(
@@ -60,7 +60,7 @@ TEST_P(ResumedOscillation, EndsAsTheUncutOneWhereverItWasCut) {
   }
 }
 
-// A whole cycle brings the cell back.
+// A whole cycle restores the cell.
 TEST_P(ResumedOscillation, EndsInTheCellThatItBeganIn) {
   const auto run = simulation();
   run->start();

@@ -1,4 +1,4 @@
-// A run that was cut and resumed ends in the same bits as one that was not.
+// A run ends in the same bits if cut and resumed.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -16,7 +16,7 @@ namespace {
 constexpr std::uint64_t seed = 3;
 constexpr std::uint64_t total_steps = 420;
 
-// What is special about each way to step.
+// A way to step, with its patch of the scene.
 struct Way {
   const char* name;
   Json patch;
@@ -29,7 +29,7 @@ const Json strained_lubrication = {{"form", "mari"},
 const Json waves = {{"waves", {{{"periods", 1}, {"sine", 0.4}}}}, {"faxen", true}};
 const Way ways[] = {
     {"explicit", Json::object()},
-    // With less inertia, which large steps follow in a part of the range only.
+    // Less inertia, so that large steps resolve part of its range.
     {"implicit", {{"integrator", {{"method", "implicit"}}}, {"particles", {{"density", 0.01}}}}},
     {"implicit_without_noise",
      {{"integrator", {{"method", "implicit"}}},
@@ -83,7 +83,7 @@ class ResumedRun : public testing::TestWithParam<Way> {
     return archive.bytes();
   }
 
-  // What the uncut run ends in.
+  // Returns the final state of the uninterrupted run.
   const std::string& uncut() const {
     static std::map<std::string, std::string> bytes;
     std::string& of_method = bytes[GetParam().name];
@@ -102,7 +102,7 @@ class ResumedRun : public testing::TestWithParam<Way> {
   Scene scene_ = read_scene(small_scene(GetParam().patch), "scene.json");
 };
 
-// The claims below say little unless this holds.
+// The claims below are weak unless this holds.
 TEST_P(ResumedRun, PassesThroughContactsRebuildsAndFlips) {
   const auto run = started();
   std::size_t steps_with_springs = 0;
@@ -125,7 +125,7 @@ TEST_P(ResumedRun, EndsAsTheUncutOneWhereverItWasCut) {
     ArchiveReader reader(archive.bytes());
     after->load(reader);
     EXPECT_TRUE(reader.at_end());
-    EXPECT_EQ(bytes_of(*after), archive.bytes()) << "cut at " << cut;  // nothing is lost on the way
+    EXPECT_EQ(bytes_of(*after), archive.bytes()) << "cut at " << cut;  // saving loses nothing
     const std::optional<Ending> ending = after->advance(total_steps);
     ASSERT_TRUE(ending.has_value());
     EXPECT_EQ(ending->cause, Ending::Cause::completed);
@@ -137,9 +137,9 @@ TEST_P(ResumedRun, EndsAsTheUncutOneAfterThreeCheckpointsOnDisk) {
   const TemporaryFolder folder;
   const CheckpointIdentity identity = {"scene", seed, "binary"};
   auto run = started();
-  for (const std::uint64_t steps : {90U, 111U, 150U}) {  // in equilibration, and twice in production
+  for (const std::uint64_t steps : {90U, 111U, 150U}) {  // in equilibration, then twice in production
     EXPECT_FALSE(run->advance(steps).has_value());
-    EXPECT_GT(stretched_springs(run->system()), 0u);  // in the middle of contacts with friction
+    EXPECT_GT(stretched_springs(run->system()), 0u);  // amid frictional contacts
     write_checkpoint(folder / "checkpoint", identity, {1.5, 2.5}, *run);
     run = simulation();
     const Spent spent = read_checkpoint(folder / "checkpoint", identity, *run);
@@ -156,7 +156,7 @@ TEST_P(ResumedRun, HasTheSameBitsOnAnyNumberOfThreads) {
   two->advance(150);
   EXPECT_TRUE(bytes_of(*two) == bytes_of(*one));
 
-  const auto three = simulation(3);  // and the number may change on the way
+  const auto three = simulation(3);  // the number of threads may change
   ArchiveWriter archive;
   two->save(archive);
   ArchiveReader reader(archive.bytes());
@@ -168,7 +168,7 @@ TEST_P(ResumedRun, HasTheSameBitsOnAnyNumberOfThreads) {
 
 INSTANTIATE_TEST_SUITE_P(EveryWay, ResumedRun, testing::ValuesIn(ways), name_of_way);
 
-// Pairs across blocks of memory come and go, and lists are rebuilt, before and after the cut.
+// Pairs across memory blocks form and part, and lists are rebuilt, before and after the cut.
 class ResumedLargeRun : public testing::TestWithParam<Way> {};
 INSTANTIATE_TEST_SUITE_P(EveryWay, ResumedLargeRun, testing::ValuesIn(ways), name_of_way);
 TEST_P(ResumedLargeRun, EndsAsTheUncutOne) {
@@ -212,7 +212,7 @@ TEST_P(ResumedRun, OtherSeedsEndElsewhere) {
   EXPECT_FALSE(bytes_of(other) == uncut());
 }
 
-// The observables that a flow does not allow, and a friction that one of them does not.
+// Observables that need rest, and the friction that linear_response allows.
 class ResumedRunAtRest : public testing::TestWithParam<std::tuple<const char*, const char*>> {};
 
 TEST_P(ResumedRunAtRest, KeepsItsObservables) {
@@ -249,12 +249,12 @@ INSTANTIATE_TEST_SUITE_P(EitherMethod, ResumedRunAtRest,
                          testing::Combine(testing::Values("implicit", "explicit"),
                                           testing::Values("green_kubo_viscosity", "zero_shear_viscosity")));
 
-// A job that is drained at every opportunity, and one that is left alone.
+// Compares a job that is drained at every opportunity with an undisturbed one.
 TEST(ResumedJob, ResultEqualsTheUncutOneButForItsCost) {
   const TemporaryFolder folder;
   JobSpecification job;
   job.header = {"point", seed};
-  // A job looks up after 65536 particle-steps, 1092 steps here.
+  // A job polls its events after 65536 particle-steps, 1092 steps here.
   job.scene = small_scene({{"duration", {{"production", {{"time", 9}}}}}});
   job.scene_name = "scene.json";
   Json uncut = run_job(job, {}).value();

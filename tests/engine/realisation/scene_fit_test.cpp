@@ -1,4 +1,4 @@
-// What is checked before a sphere is placed, and the names that are promised before anything is measured.
+// Checks before any sphere is placed, and the names promised before anything is measured.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -49,7 +49,7 @@ TEST(SceneFit, IsRefusedWithTheReason) {
             std::string::npos);
 }
 
-// Number shares of 1 to 999: from 1000 spheres on one is the first.
+// Number shares of 1 to 999: the first size gets a sphere from 1000 spheres on.
 TEST(SceneFit, OfASizeWithoutASphereSaysTheCountThatWouldDo) {
   const Json species = {{{"radius", 1}, {"number_share", 1}}, {{"radius", 1.4}, {"number_share", 999}}};
   const std::string fault = fault_of(with_species(60, species));
@@ -97,8 +97,8 @@ TEST(SceneFit, ABoxNarrowerThanTheRangeOfTheForcesIsRefused) {
   EXPECT_NE(fault(0).find("/box/height"), std::string::npos);
 }
 
-// Forces of spheres of radius 1 reach 2.1. A cube with an edge of 2.15 is wide enough in shear; in extension
-// its images come as near as 0.946 or 0.905 of that.
+// Forces of spheres of radius 1 reach 2.1. A cube of edge 2.15 is wide enough in shear; in extension its
+// images come as near as 0.946 or 0.905 of that.
 TEST(SceneFit, ACubeWhoseImagesExtensionBringsWithinTheRangeOfTheForcesIsRefused) {
   const auto fault = [](const Json& flow, double edge) {
     Json patch = with_species(1, {{{"radius", 1}}});
@@ -115,7 +115,7 @@ TEST(SceneFit, ACubeWhoseImagesExtensionBringsWithinTheRangeOfTheForcesIsRefused
   EXPECT_EQ(fault(uniaxial, 2.35), "");
 }
 
-// The edge is a part of the trajectory: to the last bit that of a box for the list of all radii.
+// The edge is part of the trajectory, so it must equal that for the list of all radii bit by bit.
 TEST(SceneFit, TheBoxIsThatOfAllRadii) {
   for (const std::size_t count : {2U, 7U, 60U, 12345U}) {
     const Scene scene = read_scene(small_scene(with_species(count, {{{"radius", 1.1}, {"number_share", 1}},
@@ -129,14 +129,14 @@ TEST(SceneFit, OfTheLargestSceneTakesNoMemory) {
   const auto high_water = [] {
     rusage used{};
     getrusage(RUSAGE_SELF, &used);
-    return used.ru_maxrss;  // kB
+    return used.ru_maxrss;  // [kB]
   };
   const long before = high_water();
   EXPECT_EQ(fault_of({{"particles", {{"count", 10'000'000}}}}), "");
-  EXPECT_LT(high_water() - before, 20'000);  // a list of radii alone has 80 000
+  EXPECT_LT(high_water() - before, 20'000);  // a list of radii alone takes 80 000
 }
 
-// Paths of all numbers of a result's mean, "*" for the indices of a list.
+// Adds the paths of all numbers of a result's mean, with "*" for the indices of a list.
 void add_numbers(const Json& value, const std::string& path, std::set<std::string>& names) {
   if (value.is_number()) names.insert(path);
   if (value.is_array() && !value.empty() && !value.front().is_object()) {
@@ -149,7 +149,7 @@ void add_numbers(const Json& value, const std::string& path, std::set<std::strin
   }
 }
 
-// Values of axes, and the parts of ratios.
+// True for values of axes and parts of ratios.
 bool is_no_target(const std::string& name) {
   const std::string last = name.substr(name.rfind('/') + 1);
   return name.starts_with("pair_distribution/") || name.starts_with("profiles/velocity/") ||
@@ -207,7 +207,7 @@ TEST(NamesOfTargets, AreThoseOfTheNumbersThatTheResultHas) {
     const Scene scene = read_scene(job.scene, "scene.json");
     const std::vector<std::string> names = names_of_targets(scene, make_schedule(scene, "scene.json"));
     EXPECT_EQ(names, std::vector<std::string>(numbers.begin(), numbers.end())) << patch;
-    // What another observable measures is hinted at where the scene does not ask for it.
+    // Quantities of other observables are in the hints of a scene that does not ask for them.
     for (const std::string& name : names) {
       const bool is_of_all = names_of_all.contains(name) || name.starts_with("stress/");
       EXPECT_TRUE(is_of_all || hints.contains(name) || hints.contains(name.substr(0, name.find('/'))))

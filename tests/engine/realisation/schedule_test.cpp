@@ -17,7 +17,7 @@ Schedule schedule_of(const Json& equilibration, const Json& production) {
   return make_schedule(read_scene(document, "scene.json"), "scene.json");
 }
 
-// eta a^3 / kT = 0.1 * 2.744 / 0.02 = 13.72 with the reference radius of 1.4; without 6 pi.
+// eta a^3 / kT = 0.1 * 2.744 / 0.02 = 13.72 with the reference radius of 1.4, without the factor 6 pi.
 TEST(Schedule, ABrownianTimeIsEtaACubedOverTheThermalEnergy) {
   const Schedule schedule = schedule_of({{"brownian_times", 0.05}}, {{"brownian_times", 0.5}});
   EXPECT_EQ(schedule.equilibration, 343u);
@@ -37,7 +37,7 @@ TEST(Schedule, TheFirstLimitThatIsReachedEndsAPhase) {
   EXPECT_EQ(schedule.production, 3430u);
 }
 
-// A cycle of 2 has 1000 steps of 0.002 and no fewer of a longer one; at most a 128th of it.
+// A cycle of 2 has 1000 steps of 0.002, rounded up for other steps; a step is at most a 128th of a cycle.
 TEST(Schedule, CyclesHaveWholeNumbersOfSteps) {
   const auto schedule_of_cycles = [](double frequency, double timestep) {
     Json document = small_scene();

@@ -1,4 +1,4 @@
-// What the engine makes of jobs that come while one runs.
+// The engine's handling of jobs that arrive while one runs.
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -17,7 +17,7 @@
 namespace peclet::engine {
 namespace {
 
-// Some tenths of a second and some minutes: the engine looks at its socket ten times a second.
+// Durations of tenths of a second and of minutes: the engine polls its socket ten times a second.
 const Json brief = small_scene({{"duration", {{"production", {{"time", 20}}}}}});
 const Json endless = small_scene({{"duration", {{"production", {{"time", 20000}}}}}});
 
@@ -39,7 +39,7 @@ class Serving : public testing::Test {
     shutdown(ends_[0], SHUT_RDWR);
     if (engine_.joinable()) engine_.join();
   }
-  // The next message that is no progress; null when the engine has left.
+  // Returns the next message other than progress, or null if the engine has left.
   Json answer() {
     for (Json message; runner_.receive(message, std::chrono::minutes(1)) == FrameChannel::Status::message;) {
       if (message.at("type") != "progress") return message;
@@ -130,7 +130,7 @@ TEST_F(Serving, AThirdJobIsOneTooMany) {
   EXPECT_EQ(message.at("type"), "failed");
   EXPECT_EQ(message.at("job"), 1);
   EXPECT_NE(message.at("message").get<std::string>().find("another one waits"), std::string::npos) << message;
-  wait_for_progress();  // of the second
+  wait_for_progress();  // of the second job
   drain();
   expect_answer("drained", 2);
 }

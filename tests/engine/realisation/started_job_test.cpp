@@ -1,4 +1,4 @@
-// Realisations that begin where a file has the spheres.
+// Realisations that start from the spheres of a file.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -58,7 +58,7 @@ class StartedJob : public testing::Test {
   TemporaryFolder folder_;
 };
 
-// The end of a realisation, by its own time loop, and the start of the next.
+// Compares the end of a realisation, by its own time loop, with the start of the next.
 TEST_F(StartedJob, BeginsWhereTheOtherOneHasEnded) {
   const Scene of_first = read_scene(small_scene(), "");
   Simulation first(of_first, make_schedule(of_first, ""), 2, 1, "");
@@ -93,7 +93,7 @@ TEST_F(StartedJob, OfATrajectoryBeginsAtItsFrame) {
       << refusal(scene(start_));
 }
 
-// The cell at the start is no cube: a checkpoint has to know of it.
+// The initial cell is not a cube; a checkpoint has to store it.
 TEST_F(StartedJob, ThatIsCutAndResumedEndsAsOneThatWasNot) {
   for (const char* method : {"explicit", "implicit"}) {
     const Json scene_ = scene(start("a.final.xyz"),
@@ -172,8 +172,7 @@ TEST_F(StartedJob, ThatDoesNotFitItsFileIsRefused) {
   expect(scene(start("no.xyz")), path("no.xyz"));
 }
 
-// A list as it is saved elsewhere: with a byte-order mark, lines that end as on Windows, and empty ones
-// behind.
+// A list saved by other programs: with a byte-order mark, Windows line ends, and empty lines at the end.
 TEST_F(StartedJob, OfAListInAnotherDialectIsTheSame) {
   const std::string line = fmt::format("{}  {}", sha256_of_file(path("a.final.xyz")), path("a.final.xyz"));
   write_durably(path("plain"), line + "\n" + line + "\n");
@@ -189,7 +188,7 @@ TEST_F(StartedJob, OfAListInAnotherDialectIsTheSame) {
       << refusal(scene(dialect), 2);
 }
 
-// The edge of the cell with six digits, as LF_DEM has it: up to 5e-6 of it may be lost.
+// The cell edge has six digits, as in LF_DEM: up to 5e-6 of it may be lost.
 TEST_F(StartedJob, OfAFileWithSixDigitsIsTaken) {
   const double edge =
       placed_spheres(read_scene(scene(start("a.final.xyz")), ""), 0, "").system.box.lengths().x;
@@ -203,7 +202,7 @@ TEST_F(StartedJob, OfAFileWithSixDigitsIsTaken) {
     return refusal(scene(start("six.xyz")));
   };
   EXPECT_EQ(with_edge(edge * (1 + 4.9e-6)), "");
-  // phi (L / L')^3
+  // The volume fraction is phi (L / L')^3.
   const double other = 1.01 * edge, fraction = 0.45 / std::pow(1.01, 3);
   EXPECT_NE(with_edge(other).find(fmt::format("in that cell the volume fraction is {:.8g}", fraction)),
             std::string::npos)
@@ -271,7 +270,7 @@ TEST_F(StartedJob, OfANameThatNoFileCanHaveIsRefused) {
   }
 }
 
-// The file of seeds 0 and 2, under another name the second time.
+// Seeds 0 and 2 have one file under two names.
 TEST_F(StartedJob, OfAListThatHasOneFileTwiceIsNoCampaignWithoutNoise) {
   const Json patch = {{"fluid", {{"thermal_energy", nullptr}}}};
   const auto refusal_of = [&](const Json& document) -> std::string {
@@ -295,7 +294,7 @@ TEST_F(StartedJob, OfAListThatHasOneFileTwiceIsNoCampaignWithoutNoise) {
   EXPECT_EQ(refusal_of(scene(start("starts", "list"), patch)), "");
 }
 
-// Positions alone: the streaming flow, and noise by the seed, as after packing.
+// With positions alone velocities are those of the flow plus noise by the seed, as after packing.
 TEST_F(StartedJob, WithoutMotionInItsFileBeginsWithThatOfAFreshOne) {
   std::string text = read_file(path("a.final.xyz"));
   const std::string known = "angular_velocity:R:3";

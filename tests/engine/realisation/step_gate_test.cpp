@@ -1,5 +1,4 @@
-// What a realisation does about a step that is too large for its packing, and what its result says of the
-// step.
+// The response to a step that is too large for the packing, and the step's errors in the result.
 #include <gtest/gtest.h>
 
 #include "engine/integrators/stability.h"
@@ -11,7 +10,7 @@
 namespace peclet::engine {
 namespace {
 
-// The published parameters without noise.
+// Returns the published parameters without noise.
 Json published(double volume_fraction) {
   Json scene = Json::parse(R"({
     "particles": {"count": 60, "density": 0.1,
@@ -28,7 +27,7 @@ Json published(double volume_fraction) {
 
 Scene published_scene(double volume_fraction) { return read_scene(published(volume_fraction), "scene.json"); }
 
-// With a step of one's own, which make_schedule() might refuse.
+// Starts with a given step, which make_schedule() might refuse.
 Simulation started(const Scene& scene, const Schedule& schedule) {
   Simulation simulation(scene, schedule, /*seed=*/1, /*threads=*/1, "scene.json");
   simulation.start();
@@ -54,12 +53,12 @@ TEST(StepGate, EndsARealisationThatIsTooStiffAtItsStart) {
   EXPECT_EQ(ending->step, 0u);
   EXPECT_GE(simulation.step_errors().largest_stability_share, 1);
   EXPECT_LT(named_bound(*ending), step);
-  // The bound that the message names is one.
+  // The bound in the message is sufficient.
   Simulation slower = started(scene, {0.999 * named_bound(*ending), 0, 1000});
   EXPECT_FALSE(slower.advance(10).has_value());
 }
 
-// Spheres come nearer to each other by and by. A resumed realisation ends as one that was not cut.
+// The packing gets denser locally with time. A resumed realisation ends like an uninterrupted one.
 TEST(StepGate, EndsARealisationWhosePackingGetsTooStiffOnItsWay) {
   const Scene scene = published_scene(0.5);
   const Schedule schedule = {4.2e-4, 0, 40000};
@@ -105,7 +104,7 @@ bool has_warning(const Json& result, const std::string& code) {
   return false;
 }
 
-// Of first order in the step, as everything that velocity Verlet gets wrong by velocities half a step old.
+// The error is of first order in the step, as from velocities half a step old in velocity Verlet.
 TEST(StepGate, EnergyThatTheStepMakesIsInProportionToIt) {
   const auto imbalance = [](double step) {
     JobSpecification job;
@@ -129,8 +128,8 @@ TEST(StepGate, FlagsAResultWhoseStepMakesTooMuchEnergy) {
   EXPECT_TRUE(flagged.at("mean").is_object());
 }
 
-// The comparison runs beside the system, through the steps that the system takes next, bit by bit. Beyond the
-// stable steps whole steps drift away from half ones.
+// The comparison follows the steps that the system takes next, bit by bit. Above the stable step, whole steps
+// diverge from half steps.
 TEST(StepGate, StepsAreComparedWithHalfStepsOfTheSameMotion) {
   constexpr int steps = 200;
   Json document = published(0.55);
@@ -176,8 +175,8 @@ TEST(StepGate, FlagsAResultThatHalfStepsWouldChange) {
   EXPECT_EQ(flagged.at("mean"), fine.at("mean"));
 }
 
-// Beyond what is known of their error with noise, where a repulsion is cut off that still is strong, which
-// leaves equations without a solution, and where most steps had to be divided.
+// Cases: a step beyond the known error with noise; a cut-off of a strong repulsion, which leaves equations
+// without a solution; mostly divided steps.
 TEST(StepGate, FlagsImplicitSteps) {
   const auto result = [](Json scene, const Json& patch) {
     scene.merge_patch(

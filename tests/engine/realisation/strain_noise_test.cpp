@@ -1,5 +1,5 @@
-// The strain at a given stress as a Brownian particle: its balance of momentum and its temperature, beside
-// pairs whose friction and noise are known.
+// The strain at a given stress as a Brownian particle: its momentum balance and temperature, with pairs of
+// known friction and noise.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,17 +15,17 @@ namespace {
 
 constexpr double viscosity = 0.1, energy = 0.02, fraction = 0.45, timestep = 0.01, stress = 0.3, edge = 8;
 constexpr double solvent = viscosity * (1 + 2.5 * fraction), volume = edge * edge * edge;
-// Far above that of the solvent and the stresslets, 0.21.
+// Far above the friction of solvent and stresslets, 0.21.
 constexpr double friction = 10;
 constexpr std::uint64_t seed = 3;
 
-// Stress of the noise that belongs to a friction, from one step to the next.
+// Returns the stress of the noise of a friction in one step.
 double noise_of(double of_friction, Purpose purpose, std::uint64_t step) {
   return std::sqrt(2 * energy * of_friction / (volume * timestep)) *
          KeyedRandom(seed, purpose).normals(step, 0).first.x;
 }
 
-// Pairs of the stress friction times rate, and their noise.
+// Pairs with the stress friction times rate, and its noise.
 class KnownPairs : public Integrator {
  public:
   explicit KnownPairs(const ControlledShear& shear)
@@ -69,8 +69,8 @@ class StrainNoise : public testing::Test {
   System system_;
 };
 
-// sigma - <sigma that acted> = M d(rate) / (V T) over a window of the length T: all friction is felt at the
-// mean of the rates before and after a step.
+// sigma - <acting sigma> = M d(rate) / (V T) over a window of length T. All friction acts on the mean of the
+// rates before and after a step.
 TEST_F(StrainNoise, TakesUpTheMomentumThatTheStressLeaves) {
   for (int n = 0; n < 1030; ++n) step();
   const double before = rate();
@@ -87,8 +87,8 @@ TEST_F(StrainNoise, TakesUpTheMomentumThatTheStressLeaves) {
   EXPECT_GT(std::abs(left), 1e-3);
 }
 
-// The mean of rate^2 less that of the flow, times M / kT. Its error is sqrt(2 * 20 / 8e6) = 0.22 % for a rate
-// that forgets in 20 steps; friction at the old rate alone would make it 1.026.
+// The variance of the rate about its mean, times M / kT. Its error is sqrt(2 * 20 / 8e6) = 0.22 % for a
+// memory of 20 steps. Friction on the old rate alone would give 1.026.
 TEST_F(StrainNoise, HasTheTemperatureOfTheSpheres) {
   const double mean = stress / (friction + solvent);
   double squares = 0;

@@ -1,4 +1,4 @@
-// Flow at a given stress: the stress that is held, the rate that it leads to, and what noise makes of it.
+// Flow at a given stress: the stress, the resulting rate, and the effect of noise.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -32,7 +32,7 @@ double inertia_of(const Simulation& simulation) {
   return dynamic_cast<const StressControl&>(simulation.driver()).inertia();
 }
 
-// Stress of all terms, relative to the one that is held.
+// Returns the stress of all terms relative to the imposed one.
 double held(const Simulation& simulation, double stress, double solvent) {
   const BlockSums sums = sum_of(simulation.production().blocks());
   double pairs = 0;
@@ -50,8 +50,8 @@ class StressControlled : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(EitherMethod, StressControlled, testing::Values("explicit", "implicit"),
                          [](const auto& method) { return std::string(method.param); });
 
-// What a step misses, up to 1 % here and twice that where the last one did, the next ones make up for: over a
-// window there is no more missing than at its ends. eta = 0.1, phi = 0.45.
+// A step may miss the stress by up to 1 %, or twice that after such a step, and the next steps compensate.
+// Over a window only the ends contribute. eta = 0.1, phi = 0.45.
 TEST_P(StressControlled, HoldsItsStress) {
   constexpr double stress = 4;
   Json document = at_stress(stress, for_grains);
@@ -65,7 +65,7 @@ TEST_P(StressControlled, HoldsItsStress) {
   EXPECT_GT(simulation->strains().production, 0.1);
 }
 
-// Spheres that touch nobody: stress / [eta (1 + 2.5 phi)] is the rate from the first step on.
+// Spheres without neighbours: the rate is stress / [eta (1 + 2.5 phi)] from the first step on.
 TEST_P(StressControlled, OfFewSpheresFlowsAsTheSolventAndTheirStresslets) {
   constexpr double stress = 2, fraction = 0.02;
   Json document = at_stress(stress, for_grains);
@@ -78,20 +78,19 @@ TEST_P(StressControlled, OfFewSpheresFlowsAsTheSolventAndTheirStresslets) {
   EXPECT_NEAR(rate, stress / (0.1 * (1 + 2.5 * fraction)), 0.011 * rate);
 }
 
-// Counted as jammed at a viscosity that every suspension has.
 TEST(StressControl, EndsWhatStandsStill) {
   Json document = at_stress(4, for_grains);
-  document["flow"]["jammed_viscosity"] = 3;  // less than any suspension has
+  document["flow"]["jammed_viscosity"] = 3;  // below that of any suspension
   const auto simulation = started(document);
   const std::optional<Ending> ending = simulation->advance(simulation->schedule().total());
   EXPECT_EQ(ending->cause, Ending::Cause::jammed);
   EXPECT_LT(simulation->system().step, simulation->schedule().total());
-  // The window begins where it has jammed, and has a wait of its own.
+  // Equilibration ends when jamming is noticed; the window lasts as long again, 0.01 eta_j eta / stress.
   EXPECT_GT(simulation->schedule().equilibration, 0u);
   EXPECT_GT(simulation->system().step, simulation->schedule().equilibration);
   EXPECT_NEAR(simulation->schedule().timestep * static_cast<double>(simulation->schedule().equilibration),
               0.01 * 3 * 0.1 / 4, simulation->schedule().timestep);
-  // It has a result, in which the window has no rate, and which can be summed up.
+  // A result exists: the rate in the window is zero, and the summary works.
   const Scene scene = read_scene(document, "scene.json");
   const Json result = make_result({"point", 3}, scene, *simulation, *ending, "", {});
   const Json& mean = result.at("mean");
@@ -105,7 +104,7 @@ TEST(StressControl, EndsWhatStandsStill) {
   EXPECT_NE(summary(result, "here").find("jammed at a strain of"), std::string::npos);
 }
 
-// eta_j = 10^4 strains by 0.01 in 100 stress times; the window has 40.
+// At eta_j = 10^4 a strain of 0.01 takes 100 stress times; the window has 40.
 TEST(StressControl, SaysNothingOfWhatFlowsInAWindowThatEndsBeforeAJamIsNoticed) {
   for (const auto& [viscosity, is_known] : {std::pair{1e4, false}, {4000, false}, {3900, true}}) {
     Json document = at_stress(4, for_grains);
@@ -127,7 +126,7 @@ TEST(StressControl, SaysNothingOfWhatFlowsInAWindowThatEndsBeforeAJamIsNoticed) 
   }
 }
 
-// A window that begins where a checkpoint is has the strain since then.
+// A window that begins at a checkpoint counts the strain from there on.
 TEST(StressControl, CountsTheStrainOfALongerRunFromItsOwnWindowOn) {
   const Json document = at_stress(4, for_grains);
   const Scene scene = read_scene(document, "scene.json");
@@ -159,8 +158,7 @@ const Json for_colloids = {{"particles", {{"count", 20}}},
                             {{"equilibration", {{"time", nullptr}, {"brownian_times", 0.2}}},
                              {"production", {{"time", nullptr}, {"brownian_times", 400}}}}}};
 
-// <rate^2> M / kT = 1: of 40 000 steps, of which the rate forgets in 20, with an error of some sqrt(2 * 40 /
-// 40 000).
+// <rate^2> M / kT = 1. A memory of 20 steps in 40 000 gives a standard error of about sqrt(2 * 40 / 40 000).
 TEST(StressControl, GivesTheStrainItsShareOfTheTemperature) {
   const auto simulation = started(at_stress(1e-9, for_colloids));
   simulation->advance(400);
@@ -176,7 +174,7 @@ TEST(StressControl, GivesTheStrainItsShareOfTheTemperature) {
   EXPECT_NEAR(temperature, 1, 3 * std::sqrt(2 * 40.0 / steps));
 }
 
-// M / V = 20 dt eta_inf, which has nothing to do with the stress.
+// M / V = 20 dt eta_inf, independent of the stress.
 TEST(StressControl, HasTheSameInertiaAtEveryStress) {
   const auto inertia_at = [](double stress) {
     const auto simulation = started(at_stress(stress * 0.02, for_colloids));
@@ -188,9 +186,9 @@ TEST(StressControl, HasTheSameInertiaAtEveryStress) {
   EXPECT_NEAR(inertia_at(1), inertia, 1e-3 * inertia);
 }
 
-// Next to no stress the rate is that of temperature, sqrt(kT / M), whatever the packing: at phi = 0.3 the
-// viscosity between pairs that do not move is 1 + 2.5 phi = 1.75 at least. 400 steps have the squares of some
-// 20 independent rates: an error of 32 % a seed, and of 9 % over twelve.
+// At vanishing stress the rate is thermal, sqrt(kT / M), for any packing. At phi = 0.3 the viscosity of fixed
+// pairs is at least 1 + 2.5 phi = 1.75. 400 steps give about 20 independent rates: a standard error of 32 %
+// per seed, 9 % over twelve.
 TEST(StressControl, LetsTheStrainOfEveryPackingMove) {
   Json document = at_stress(1e-9 * 0.02, for_colloids);
   const Scene scene = read_scene(document, "scene.json");

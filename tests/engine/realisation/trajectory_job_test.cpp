@@ -1,4 +1,4 @@
-// The trajectory as a file of a job: beside the result, cut and resumed, of a realisation that broke off.
+// The trajectory file of a job: beside the result, cut and resumed, and after an early end.
 #include <gtest/gtest.h>
 
 #include "contract/durable_file.h"
@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Large enough for many turns of the job's loop: 13 steps each.
+// Returns a scene large enough for many iterations of the job's loop, of 13 steps each.
 Json large_scene() {
   return small_scene({{"observables", {"trajectory"}},
                       {"trajectory", {{"interval", {{"time", 0.01}}}, {"contacts", true}}},
@@ -56,7 +56,7 @@ TEST(TrajectoryJob, ThatIsCutAndResumedLeavesTheSameBytes) {
   EXPECT_TRUE(read_file(cut / "job@trajectory.gsd") == bytes);
 }
 
-// As a kill would leave them: the file has frames that the checkpoint knows nothing of, or lacks some.
+// After a kill the file has frames beyond the checkpoint, or lacks some.
 TEST(TrajectoryJob, GoesOnFromTheCheckpointOrStartsAgain) {
   const TemporaryFolder folder;
   JobSpecification job = job_of(large_scene(), folder);
@@ -101,7 +101,7 @@ TEST(TrajectoryJob, ThatBrokeOffLeavesItsFrames) {
   EXPECT_EQ(result.at("files").at(0).at("name"), "trajectory.gsd");
   const GsdReader file(read_file(folder / "job@trajectory.gsd"));
   const auto step = result.at("ending").at("step").get<std::uint64_t>();
-  EXPECT_EQ(file.frames(), step > 100 ? step - 101 : 0);  // one each step of the window but the last one
+  EXPECT_EQ(file.frames(), step > 100 ? step - 101 : 0);  // one per step of the window but the last
   std::size_t files = 0;
   for ([[maybe_unused]] const auto& entry : fs::directory_iterator(folder.path())) ++files;
   EXPECT_EQ(files, 1U) << "without a checkpoint nothing else is left";

@@ -1,4 +1,4 @@
-// Sizes that do not go together are refused by name.
+// Sizes that do not fit together are refused by name.
 #include <gtest/gtest.h>
 
 #include "contract/errors.h"
@@ -21,7 +21,7 @@ struct CompositionFault {
   const char *edit, *pointer, *value, *allowed;
 };
 
-// An edit of the mixture is a merge patch; null removes.
+// Each edit of the mixture is a merge patch; null removes a key.
 const CompositionFault mixture_faults[] = {
     {R"({"volume_fraction": 0.5})", "/addition", "{\"added\":\"grains\",\"base_volume_fraction\":0.55}",
      "must not be given beside volume_fraction"},
@@ -62,7 +62,7 @@ const CompositionFault mixture_faults[] = {
      "/particles/mixture/grains/0/density", "0", "must be a number > 0"},
 };
 
-// An edit of the distribution of a scene of one.
+// A scene with a size distribution, which the edits below change.
 const char* const distributed = R"({
   "particles": {"count": 4000, "density": 0.1, "species": [{"distribution":
     {"form": "lognormal", "by": "number", "mean_radius": 1, "relative_width": 0.2}}]},

@@ -1,4 +1,4 @@
-// Mixtures of colloids and grains, distributions and densities of a scene.
+// Mixtures of colloids and grains, size distributions and densities of a scene.
 #include "engine/scene/composition.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ Scene read(Json document, const Json& patch = Json::object()) {
   return read_scene(document, "scene.json");
 }
 
-// As published: grains added to colloids at 0.55, and colloids to grains.
+// Published: grains added to colloids at 0.55, and colloids to grains.
 TEST(Mixture, HasThePublishedVolumeFractions) {
   const double published[] = {0.550, 0.576, 0.604, 0.636, 0.671, 0.710};
   for (int k = 0; k <= 5; ++k) {
@@ -44,7 +44,7 @@ TEST(Mixture, HasThePublishedVolumeFractions) {
   }
 }
 
-// Liquid (1 - phi) over the group that was there, phi (1 - alpha) or phi alpha, stays what it was.
+// An addition conserves liquid (1 - phi) over the group already there, phi (1 - alpha) or phi alpha.
 TEST(Mixture, AdditionKeepsLiquidAndTheOtherGroup) {
   for (const double base : {0.3, 0.55, 0.62}) {
     for (const double alpha : {0.01, 0.3, 0.6}) {
@@ -59,7 +59,7 @@ TEST(Mixture, AdditionKeepsLiquidAndTheOtherGroup) {
 TEST(Mixture, AtAGivenVolumeFractionAlphaAloneVaries) {
   Json document = mixture(0.7, "grains", 0.5);
   document.erase("addition");
-  document["volume_fraction"] = 0.78;  // more than spheres of one size can fill
+  document["volume_fraction"] = 0.78;  // denser than spheres of one size
   EXPECT_EQ(read(document).volume_fraction, 0.78);
 }
 
@@ -71,7 +71,7 @@ TEST(Mixture, GroupsHaveTheirPartsOfTheVolume) {
   for (std::size_t s = 0; s < 4; ++s) EXPECT_NEAR(particles.species[s].share, expected[s], 1e-15);
 }
 
-// Of equal numbers of radii 5 and 7 the volumes are as 125 to 343.
+// Equal numbers of radii 5 and 7 have volumes 125 to 343.
 TEST(Mixture, AGroupMayHaveSharesOfTheNumber) {
   const Json patch = Json::parse(R"({"particles": {"mixture": {
       "grains": [{"radius": 5, "number_share": 2}, {"radius": 7, "number_share": 2}]}}})");
@@ -109,9 +109,9 @@ TEST(Mixture, TheRadiusOfReferenceIsThatOfAGroupOrTheirMean) {
             3);
 }
 
-// By hand: shares over a^3 are 0.45, 0.16399, 0.0004 and 0.00014577, of 4000 spheres 0.95 of the largest,
-// whose rounding to 1 takes 17.6 from the volume of the others: 307.9 / 125 = 2.46. Of the 3997 that are
-// left 2.744 to 1 are small.
+// By hand: shares over a^3 are 0.45, 0.16399, 0.0004 and 0.00014577, so 4000 spheres have 0.95 of the largest
+// size. Rounding it to 1 takes 17.6 from the volume of the others: 307.9 / 125 = 2.46. The other 3997 are
+// 2.744 : 1.
 TEST(Mixture, GrainsAreRoundedFromTheLargestOn) {
   const Scene scene = read(mixture(0.1, "grains", 0.55));
   EXPECT_EQ(species_numbers(scene.particles), (std::vector<std::size_t>{2929, 1068, 2, 1}));
@@ -127,7 +127,7 @@ TEST(Mixture, AlphaIsMetToHalfOfTheSmallestGrain) {
       const Scene scene = read(mixture(alpha, "grains", 0.01, count));
       const std::vector<std::size_t> numbers = species_numbers(scene.particles);
       EXPECT_EQ(std::accumulate(numbers.begin(), numbers.end(), std::size_t{0}), count);
-      // Of the volume before rounding; a sphere more or less of the colloids changes it little.
+      // Volume before rounding; one colloid more or less changes it little.
       const double per_volume = (1 - alpha) * (0.5 + 0.5 / 2.744) + alpha * (0.5 / 125 + 0.5 / 343);
       const double volume = static_cast<double>(count) / per_volume;
       const double grains = 125 * static_cast<double>(numbers[2]) + 343 * static_cast<double>(numbers[3]);
@@ -146,7 +146,7 @@ TEST(Mixture, PecletNumbersAreOfEachGroup) {
   EXPECT_EQ(to_json(groups)["volume_fraction"], scene.volume_fraction);
 }
 
-// Their hash is the identity of checkpoints: documents without the new keys are filled as they always were.
+// The hash identifies checkpoints, so documents without these keys must be filled in as before.
 TEST(Composition, NothingIsFilledIntoScenesWithoutIt) {
   const Json particles = {{"count", 10}, {"density", 0.1}, {"species", {{{"radius", 1}}}}};
   Json document = mixture(0, "grains", 0.5);
@@ -179,7 +179,7 @@ TEST(Composition, ADistributionSharesWithOtherSizes) {
   EXPECT_NEAR(radius / number, 1, 3e-3);
 }
 
-// Derived numbers are of whole spheres: 10 000 of them leave half a sphere of each of 16 sizes.
+// Derived numbers are those of whole spheres: 10 000 spheres miss up to half a sphere of each of 16 sizes.
 TEST(Composition, MeanAndWidthOfWholeSpheresAreTold) {
   const Scene scene =
       read(mixture(0, "grains", 0.5), Json::parse(R"({"addition": null, "volume_fraction": 0.4,
@@ -221,8 +221,8 @@ TEST(Composition, DensitiesAreOfEachSpecies) {
   for (std::size_t i = 0; i < radius.size(); ++i) EXPECT_EQ(density[i], radius[i] == 1 ? 0.1 : 0.7);
 }
 
-// tau_I = rho_i a_i^2 / eta is that of the radius of reference, so St and tau_I / tau_B are bound by it: for
-// St 0.009 * 0.1 / 0.1 for all, and rho_i kT / (eta^2 a_i) for the smallest.
+// tau_I = rho_i a_i^2 / eta is that of the reference radius. Expected: St = 0.009 * 0.1 / 0.1 for all sizes,
+// and tau_I / tau_B = rho_i kT / (eta^2 a_i) of the smallest sphere.
 TEST(Composition, EqualInertiaIsThatOfTheRadiusOfReference) {
   const Scene scene = read(mixture(0.4, "grains", 0.5), Json::parse(R"({
       "fluid": {"thermal_energy": 0.01}, "particles": {"density_rule": "equal-inertia"}})"));

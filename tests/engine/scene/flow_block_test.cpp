@@ -1,4 +1,4 @@
-// What scenes say of their flow, and what they must not.
+// The flow of a scene: valid blocks and their meaning.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,14 +27,14 @@ TEST(FlowBlock, ReadsAReversal) {
                  "scene.json");
   EXPECT_EQ(scene.physics.flow.deformation().velocity_gradient(1), simple_shear(2));
   EXPECT_EQ(scene.physics.flow.deformation().velocity_gradient(2), simple_shear(-2));
-  EXPECT_EQ(scene.physics.flow.steady_rate(), 2);  // of the window
+  EXPECT_EQ(scene.physics.flow.steady_rate(), 2);  // in the window
   EXPECT_EQ(scene.physics.flow.shear_part({.xy = -3}), 3);
   const Schedule schedule = make_schedule(scene, "scene.json");
-  EXPECT_EQ(schedule.equilibration, 750u);  // of 0.002
+  EXPECT_EQ(schedule.equilibration, 750u);  // steps of 0.002
   EXPECT_EQ(schedule.production, 1250u);
 }
 
-// A window that begins before the last segment does has no unit of its own.
+// A window that begins before the last segment has no steady rate.
 TEST(FlowBlock, HasNoSteadyRateAcrossSegments) {
   const Scene scene =
       read_scene(flowing(Json::parse(R"({"segments": [{"shear_rate": 2, "strain": 3}, {"shear_rate": -2}]})"),
@@ -67,8 +67,7 @@ TEST(FlowBlock, ReadsShearAcross) {
   EXPECT_EQ(scene.physics.flow.deformation().swing()->component, &SymmetricTensor::yz);
 }
 
-// A Brownian time is 5 and a cycle 2 pi / 20. What moduli are measured of lasts whole cycles, and those that
-// are given at least.
+// A Brownian time is 5 and a cycle 2 pi / 20. A window of moduli has whole cycles, rounded up.
 TEST(FlowBlock, RoundsAnOscillationUpToWholeCycles) {
   constexpr double period = 2 * M_PI / 20;
   const auto cycles_of = [&](const Json& flow, const Json& equilibration) {
@@ -86,14 +85,14 @@ TEST(FlowBlock, RoundsAnOscillationUpToWholeCycles) {
       Json::parse(R"({"shear_rate": 0.1, "cross_shear": {"amplitude": 0.1, "frequency": 20}})");
   for (const Json& flow : {alone, across}) {
     EXPECT_EQ(cycles_of(flow, {{"cycles", 2}}), 2);
-    EXPECT_EQ(cycles_of(flow, {{"brownian_times", 1}}), 16);  // of 15.9
+    EXPECT_EQ(cycles_of(flow, {{"brownian_times", 1}}), 16);  // 15.9 rounded up
     EXPECT_EQ(cycles_of(flow, {{"cycles", 2}, {"brownian_times", 1}}), 16);
     EXPECT_EQ(cycles_of(flow, {{"cycles", 20}, {"brownian_times", 1}}), 20);
     EXPECT_EQ(cycles_of(flow, {{"brownian_times", 1}, {"time", 1.5 * period}}), 2);
     EXPECT_EQ(cycles_of(flow, {{"cycles", 0}}), 0);
     EXPECT_EQ(cycles_of(flow, {{"time", 0}}), 0);
   }
-  EXPECT_EQ(cycles_of(across, {{"strain", 0.1}}), 4);  // of 3.2
+  EXPECT_EQ(cycles_of(across, {{"strain", 0.1}}), 4);  // 3.2 rounded up
 }
 
 TEST(FlowBlock, CountsExtensionInHenckyStrains) {
@@ -114,7 +113,7 @@ TEST(FlowBlock, ReadsUniaxialAndBiaxialExtension) {
   }
 }
 
-// Stress 3 and viscosity 0.1: its unit of time is 1/30.
+// At stress 3 and viscosity 0.1 the unit of time is 1/30.
 TEST(FlowBlock, CountsTimesOfAStress) {
   const Scene scene =
       read_scene(flowing({{"stress", 3}}, {{"stress_times", 30}}, {{"stress_times", 60}}), "scene.json");
@@ -123,7 +122,7 @@ TEST(FlowBlock, CountsTimesOfAStress) {
   EXPECT_EQ(scene.physics.flow.steady_rate(), 0);
   EXPECT_EQ(scene.physics.flow.deformation().at_stress()->stress(), 3);
   EXPECT_FALSE(derived_groups(scene).peclet.has_value());
-  // (1 - 0.45 / 0.65)^1.6 of stress / viscosity.
+  // (1 - 0.45 / 0.65)^1.6 times stress / viscosity.
   EXPECT_NEAR(scene.physics.flow.rate(), 30 * std::pow(0.2 / 0.65, 1.6), 1e-12);
 }
 

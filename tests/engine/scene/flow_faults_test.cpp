@@ -1,4 +1,4 @@
-// Every fault of a flow has one message: where, what, and what is allowed.
+// Every fault of a flow has one message: place, value, allowed values.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -106,7 +106,7 @@ TEST(FlowFaults, AreNamedWithWhatIsAllowed) {
   }
 }
 
-// Shear at a rate goes with waves or with a shear across, and no other flow with another.
+// A shear rate goes with waves or with a cross shear; all other pairs of flows are refused.
 TEST(FlowFaults, NameTheFlowBesideWhichAnotherIsGiven) {
   const Json flows = Json::parse(R"({
       "shear_rate": 1, "oscillation": {"amplitude": 1, "frequency": 1},

@@ -18,7 +18,7 @@ std::string text_of(const std::vector<MeasuredSize>& sizes) {
 TEST(MeasuredSizes, AreReadInEveryDialect) {
   for (const char* text : {
            "1.0 10\n1.4 20\n",
-           "1.4 20\n1.0 10",  // from the largest on
+           "1.4 20\n1.0 10",  // descending
            "\xef\xbb\xbf"
            "1.0 10\r\n1.4 20\r\n\r\n",
            "Size;Share\n1,0;10\n1,4;20\n",  // a spreadsheet with decimal commas

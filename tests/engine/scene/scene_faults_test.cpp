@@ -1,4 +1,4 @@
-// Every fault of a scene has one message: where, what, and what is allowed.
+// Every fault of a scene has one message: place, value, allowed values.
 #include <gtest/gtest.h>
 
 #include "contract/errors.h"
@@ -20,7 +20,7 @@ const char* const whole_scene = R"({
   "integrator": {"timestep": 1e-4},
   "duration": {"equilibration": {"strain": 2}, "production": {"strain": 5}}})";
 
-// One edit of the scene (RFC 7396: null removes), and the complaint about it.
+// One edit of the scene (RFC 7396: null removes), and its complaint.
 struct Fault {
   const char* edit;
   const char* pointer;

@@ -1,4 +1,4 @@
-// The files that others read say the same as the table of keys.
+// The schema files agree with the table of keys.
 #include <gtest/gtest.h>
 
 #include "contract/durable_file.h"
@@ -21,7 +21,7 @@ TEST(SceneSchema, TheExampleInTheManualIsValid) {
       read_scene(parse_json(page.substr(begin, page.find("```", begin) - begin), "README.md"), "README.md"));
 }
 
-// schema_agreement.py holds the schema file to the same documents.
+// schema_agreement.py tests the schema file with these documents.
 TEST(SceneSchema, TheTableJudgesTheReferenceDocumentsByTheirNames) {
   int documents = 0;
   for (const fs::directory_entry& entry : fs::directory_iterator(source / "tests/reference/scenes")) {

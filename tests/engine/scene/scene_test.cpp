@@ -45,7 +45,7 @@ TEST(Scene, WhatIsAbsentIsNotComputed) {
   EXPECT_EQ(scene.guard.half_step_difference, 0.03);
 }
 
-// Implicit steps where there is lubrication, and the room that they need.
+// Lubrication selects implicit steps and their wider guard.
 TEST(Scene, LubricationDecidesTheMethod) {
   const Json lubrication = {{"form", "kim-karrila"}};
   const Scene without = scene_with(Json::object());
@@ -155,13 +155,13 @@ TEST(Scene, EquilibrationOfZeroIsOverBeforeItStarts) {
   EXPECT_EQ(scene.equilibration.time, 0);
 }
 
-// Table 4.1 of Li (2023): rate and k_B T at each Pe with eta = 0.1, a = 1, printed to two digits.
+// Table 4.1 of Li (2023): rate and k_B T at each Pe with eta = 0.1, a = 1, printed with two digits.
 constexpr struct {
   double peclet, shear_rate, thermal_energy;
 } table_4_1[] = {{0.01, 9e-5, 0.017},  {0.046, 4.2e-4, 0.017}, {0.22, 1.9e-3, 0.017}, {1, 9e-3, 0.017},
                  {4.6, 9e-3, 3.7e-3},  {22, 9e-3, 7.9e-4},     {100, 9e-3, 1.7e-4},   {460, 9e-3, 3.7e-5},
                  {2200, 9e-3, 7.9e-6}, {1e4, 9e-3, 1.7e-6}};
-constexpr double rounding = 0.07;  // of two digits and of Pe itself: 1.9e-3 is printed for 1.98e-3
+constexpr double rounding = 0.07;  // of two digits and of Pe: 1.9e-3 stands for 1.98e-3
 
 TEST(Scene, PecletNumberWithinLimitsGivesThePublishedRatesAndTemperatures) {
   for (const auto& row : table_4_1) {
@@ -176,7 +176,7 @@ TEST(Scene, PecletNumberWithinLimitsGivesThePublishedRatesAndTemperatures) {
                 1e-12 * row.peclet);
     EXPECT_LE(physics.flow.rate(), 0.009);
     EXPECT_LE(physics.thermal_energy, 0.017);
-    EXPECT_TRUE(physics.flow.rate() == 0.009 || physics.thermal_energy == 0.017);  // as large as allowed
+    EXPECT_TRUE(physics.flow.rate() == 0.009 || physics.thermal_energy == 0.017);  // at its limit
   }
 }
 
@@ -224,8 +224,8 @@ TEST(Scene, EachFormOfLubricationHasKeysAndDefaultsOfItsOwn) {
             Json::parse(R"({"form": "mari", "regularisation": 0.001, "outer_distance": 0.2})"));
 }
 
-// 1 - regularisation times the smallest radius, where ln(1/d) becomes negative; of a configuration, the radii
-// of its state.
+// The bound is 1 - regularisation times the smallest radius, where ln(1/d) becomes negative. For a
+// configuration it uses the radii of its state.
 TEST(Scene, TheOuterDistanceOfLubricationIsBoundByTheSmallestSphere) {
   const auto scene_of = [](double smallest, double distance) {
     return scene_with(

@@ -1,4 +1,4 @@
-// From a measured table to the species of a scene.
+// Species of a scene chosen from a measured table.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@
 namespace peclet::engine {
 namespace {
 
-// Fourteen sieves with tails of less than a percent of the volume.
+// Fourteen sieves, with tails below a percent of the volume.
 const char* const sieves =
     "0.5 0.05\n0.6 0.3\n0.7 1.2\n0.8 4\n0.9 9.5\n1.0 16\n1.1 20.5\n1.2 19.3\n1.3 14\n"
     "1.4 8.3\n1.5 4.2\n1.6 1.8\n1.7 0.6\n1.8 0.25\n";
@@ -35,12 +35,12 @@ class SizeChoice : public testing::Test {
   static Json distribution(const SizesAnswer& answer) {
     return Json::parse("{" + answer.block + "}").at("species")[0].at("distribution");
   }
-  // "": a scene with these species and as many spheres fits.
+  // Returns the refusal of a scene with these species and this many spheres, or nothing.
   static std::string fault_of(const SizesAnswer& answer, std::size_t count) {
     Json scene = small_scene();
     scene["particles"]["species"] = Json::parse("{" + answer.block + "}").at("species");
     scene["particles"]["count"] = count;
-    scene["integrator"] = {{"method", "implicit"}};  // of any sizes
+    scene["integrator"] = {{"method", "implicit"}};  // any sizes
     try {
       const Scene read = read_scene(scene, "scene.json");
       check_fit(read, make_schedule(read, "scene.json"), "scene.json");
@@ -59,7 +59,7 @@ TEST_F(SizeChoice, OfAllSizesSaysTheCountThatAScenePasses) {
   std::size_t size = 0, spheres = 0;
   std::sscanf(all.remarks.c_str() + all.remarks.find('\n'), "%zu %zu", &size, &spheres);
   EXPECT_EQ(size, 14U) << all.remarks;
-  // The fewest spheres of a size are one: those of the largest radius.
+  // The rarest size, of the largest radius, has one sphere.
   double sum = 0;
   std::istringstream table(sieves);
   for (double radius = 0, share = 0; table >> radius >> share;) sum += share / std::pow(radius, 3);
@@ -73,9 +73,9 @@ TEST_F(SizeChoice, OfAllSizesSaysTheCountThatAScenePasses) {
 TEST_F(SizeChoice, MergesThinSizesUntilEachHasASphere) {
   for (const std::size_t count : {1U, 20U, 300U, 1000U}) {
     const SizesAnswer some = answer(count);
-    // A box of few spheres is too small for a scene; one size is there at any count.
+    // Few spheres make too small a box for a scene; one size exists at any count.
     EXPECT_EQ(fault_of(some, count == 1 ? 60 : count), "") << some.block;
-    // Number and volume of all spheres are those of the table: 1 / mean of a^-3 over volume.
+    // Number and volume of all spheres are those of the table: the mean of a^-3 over the volume, inverted.
     double number = 0, volume = 0, expected = 0, whole = 0;
     const Json found = distribution(some);
     for (std::size_t i = 0; i < found["radii"].size(); ++i) {

@@ -1,4 +1,4 @@
-// The few sizes that stand for a distribution, against its moments in closed form.
+// The few sizes that represent a distribution, compared with its moments in closed form.
 #include "engine/scene/size_distribution.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 
 using Form = SizeDistribution::Form;
 
-// Mean of a^p over the number of all spheres.
+// Returns the mean of a^p over the numbers of spheres.
 double moment(const std::vector<SizeClass>& sizes, double power) {
   double sum = 0;
   for (const SizeClass& size : sizes) sum += size.number * std::pow(size.radius, power);
@@ -23,10 +23,10 @@ double moment(const std::vector<SizeClass>& sizes, double power) {
 struct Case {
   std::string name;
   SizeDistribution distribution;
-  std::function<double(double)> integral;  // of a^p and the density of the given kind, up to a factor
+  std::function<double(double)> integral;  // integral of a^p times the density, up to a factor
 };
 
-// Mean of a^p over a lognormal density of mean m and relative width c: m^p (1 + c^2)^(p (p - 1) / 2).
+// The mean of a^p over a lognormal density of mean m and relative width c: m^p (1 + c^2)^(p (p - 1) / 2).
 Case lognormal(double m, double c, bool by_volume) {
   return {"lognormal " + std::to_string(c), {Form::lognormal, m, c, by_volume, 16}, [=](double p) {
             return std::pow(m, p) * std::pow(1 + c * c, p * (p - 1) / 2);
@@ -41,7 +41,7 @@ Case uniform(double m, double c, bool by_volume) {
           }};
 }
 
-// Symmetric: no third moment about the mean.
+// A symmetric density has no third central moment.
 Case gaussian(double m, double c) {
   return {"gaussian " + std::to_string(c), {Form::gaussian, m, c, false, 16}, [=](double p) {
             const double variance = m * m * c * c;
@@ -66,7 +66,7 @@ TEST(SizeDistribution, KeepsItsMoments) {
     const std::vector<SizeClass> sizes = size_classes(one.distribution);
     ASSERT_EQ(sizes.size(), 16U);
     EXPECT_NEAR(moment(sizes, 0), 1, 1e-12) << one.name;
-    // By volume the density of the number is that of the volume over a^3.
+    // A density by volume becomes one by number after division by a^3.
     const double shift = one.distribution.by_volume ? 3 : 0;
     for (const double p : {1.0, 2.0, 3.0}) {
       const double exact = one.integral(p - shift) / one.integral(-shift);
@@ -92,7 +92,7 @@ TEST(SizeDistribution, FinerClassesAreNearer) {
   }
 }
 
-// The one size that has the mean volume: (1 + c^2) m for a lognormal distribution.
+// One size has the mean volume: (1 + c^2) m for a lognormal distribution.
 TEST(SizeDistribution, OneClassHasTheMeanVolume) {
   const std::vector<SizeClass> sizes = size_classes({Form::lognormal, 2, 0.5, false, 1});
   ASSERT_EQ(sizes.size(), 1U);

@@ -1,4 +1,4 @@
-// The layout of a GSD file, byte by byte as it is published.
+// The published layout of a GSD file, byte by byte.
 #include <gtest/gtest.h>
 
 #include "engine/snapshots/gsd_file.h"
@@ -30,7 +30,7 @@ TEST(GsdFrames, HaveThePublishedHeader) {
   EXPECT_EQ(file.text(48), "peclet-engine");
   EXPECT_EQ(file.text(112), "hoomd");
   EXPECT_EQ(bytes.substr(176, 80), std::string(80, '\0'));
-  // Data, names in whole segments, index: nothing else.
+  // The file has data, names in whole segments, and the index, nothing else.
   const auto names = value_at<std::uint64_t>(bytes, 24), index = value_at<std::uint64_t>(bytes, 8);
   EXPECT_EQ(names, 256U + 8 + 6 * 4);
   EXPECT_EQ(index, names + 64 * value_at<std::uint64_t>(bytes, 32));
@@ -41,7 +41,7 @@ TEST(GsdFrames, HaveThePublishedHeader) {
 TEST(GsdFrames, HaveAnIndexByFrameAndName) {
   Frames frames;
   add_frame(frames, 1);
-  frames.add_single<std::uint64_t>("configuration/step", 8);  // and nothing else
+  frames.add_single<std::uint64_t>("configuration/step", 8);  // the only chunk
   frames.end_frame();
   add_frame(frames, -1);
   const GsdReader file(whole(frames));
@@ -66,7 +66,7 @@ TEST(GsdFrames, HaveAnIndexByFrameAndName) {
   EXPECT_EQ(file.get<std::uint64_t>(1, "configuration/step"), std::vector<std::uint64_t>{8});
 }
 
-// The numbers of the types, as published: 1 uint8, 3 uint32, 5 int8, 7 int32, 10 double.
+// Published numbers of types: 1 uint8, 3 uint32, 5 int8, 7 int32, 10 double.
 TEST(GsdFrames, NameTheTypesOfValues) {
   Frames frames;
   frames.add_single<std::uint8_t>("a", 1);
@@ -118,7 +118,7 @@ TEST(GsdFrames, GoOnFromAnArchiveAsIfTheyHadNotStopped) {
   ArchiveWriter writer;
   before.save(writer);
   ArchiveReader reader(writer.bytes());
-  add_frame(after, 99);  // what it was is forgotten
+  add_frame(after, 99);  // discarded by load()
   after.load(reader);
   EXPECT_TRUE(reader.at_end());
   for (float x = 2; x < 5; ++x) add_frame(after, x);

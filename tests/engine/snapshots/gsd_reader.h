@@ -1,4 +1,4 @@
-// A reader that knows the published layout alone: offsets as the specification's structs have them.
+// A reader written from the published layout alone, with the offsets of the specification's structs.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ class GsdReader {
     std::uint8_t type, flags;
   };
 
-  // Throws std::exception for what is no such file.
+  // Throws std::exception if the bytes are not a GSD file.
   explicit GsdReader(std::string bytes) : bytes_(std::move(bytes)) {
     if (value_at<std::uint64_t>(bytes_, 0) != 0x65DF65DF65DF65DF) throw std::runtime_error("no GSD file");
     const auto names = value_at<std::uint64_t>(bytes_, 24), segments = value_at<std::uint64_t>(bytes_, 32);

@@ -1,4 +1,4 @@
-// Frames of the schema "hoomd", as this program and others write them.
+// Frames of the schema "hoomd", written by this program and by others.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -19,7 +19,7 @@ using gsd::Frames;
 
 class GsdSnapshot : public testing::Test {
  protected:
-  // What `add` puts into each of two frames, of two spheres unless it says otherwise.
+  // Returns one of two frames; `add` writes the content of each, two spheres unless stated.
   Snapshot read(std::uint64_t frame, const std::function<void(Frames&, int)>& add) const {
     Frames frames;
     for (int k = 0; k < 2; ++k) {
@@ -53,7 +53,7 @@ TEST_F(GsdSnapshot, HasTheCellThatTheSchemaSays) {
   const Snapshot snapshot = read(1, add_least);
   const Matrix3 lattice = {Vector3{10, 0, 0}, Vector3{5, 20, 0}, Vector3{-20, 5, 40}};
   EXPECT_TRUE(snapshot.lattice == lattice);
-  EXPECT_TRUE(snapshot.corner == (Vector3{2.5, -12.5, -20}));  // its centre is the origin
+  EXPECT_TRUE(snapshot.corner == (Vector3{2.5, -12.5, -20}));  // centred at the origin
   EXPECT_TRUE(snapshot.position[0] == (Vector3{1, 2, 3}));
   EXPECT_TRUE(snapshot.single);
 }
@@ -141,7 +141,7 @@ TEST_F(GsdSnapshot, OfWhatTheSchemaForbidsIsRefused) {
       "lengths 10, 20 and 0: must be > 0: with Lz = 0 the file has two dimensions");
 }
 
-// Rows of a GSD file of 65 536 names, the most that an index can tell apart.
+// A GSD file has at most 65 536 names, the range of its index entries.
 TEST_F(GsdSnapshot, OfManyNamesIsReadInATimeThatGrowsAsTheyDo) {
   Frames frames;
   add_least(frames, 0);
@@ -164,7 +164,7 @@ TEST_F(GsdSnapshot, OfManyNamesIsReadInATimeThatGrowsAsTheyDo) {
   const gsd::Reader reader(path_);
   EXPECT_EQ(reader.names().size(), 65'003U);
   EXPECT_EQ(read_gsd_frame(reader, 0).count(), 2U);
-  // Compared name by name with all that come before, they would take 10 s.
+  // Comparing each name with all earlier ones would take 10 s.
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(2));
   with_names(80'000);
   EXPECT_THROW(gsd::Reader{path_}, InputError);

@@ -1,4 +1,4 @@
-// Trajectories from anywhere: what was written is read, and whatever else comes is refused in one sentence.
+// Trajectories from any source: valid files are read, others are refused with one sentence.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -24,7 +24,7 @@ class GsdFile : public testing::Test {
     whole_ = frames.head() + frames.pending() + frames.tail();
   }
 
-  // "": it was read, with every chunk that its index lists.
+  // Returns the refusal, or nothing if the file was read with every chunk of its index.
   std::string refusal(const std::string& bytes) const {
     write_durably(path_, bytes);
     try {
@@ -67,7 +67,7 @@ TEST_F(GsdFile, IsReadAsItWasWritten) {
   EXPECT_THROW(reader.get<float>(*reader.find(2, "particles/position"), 6), InputError);
 }
 
-// Places of the header's numbers: as published.
+// The published positions of the header's numbers.
 TEST_F(GsdFile, OfNoSuchKindIsRefusedWithWhatItIs) {
   EXPECT_NE(refusal("").find("0 bytes"), std::string::npos);
   EXPECT_NE(refusal(std::string(4096, 'x')).find("begins with 0x7878787878787878"), std::string::npos);
@@ -86,7 +86,7 @@ TEST_F(GsdFile, WithANameTwiceIsRefused) {
       << refusal(bytes);
 }
 
-// Nothing is allocated for them: the machine has not as much memory.
+// No memory is allocated for these counts, which exceed the machine's.
 TEST_F(GsdFile, OfCountsBeyondItsLengthIsRefused) {
   const auto index = value_at<std::uint64_t>(whole_, 8);
   for (const std::uint64_t huge : {std::uint64_t{1} << 20, std::uint64_t{1} << 40, ~std::uint64_t{0}}) {
@@ -113,7 +113,7 @@ TEST_F(GsdFile, CutAnywhereIsRefused) {
   EXPECT_NE(refusal(whole_.substr(0, whole_.size() - 1)), "");
 }
 
-// Read or refused, but nothing else: a crash, an endless loop or a bad_alloc would end the test.
+// Every file is read or refused; a crash, an endless loop or a bad_alloc would end the test.
 TEST_F(GsdFile, WithAnyByteChangedEndsInOneOfTwoWays) {
   std::size_t refused = 0;
   for (std::size_t place = 0; place < whole_.size(); ++place) {

@@ -1,4 +1,4 @@
-// What files may say of spheres, and what cannot be computed with.
+// Values that files may give for spheres, and values that cannot be computed with.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -48,7 +48,7 @@ TEST(SnapshotCheck, TakesWhatCanBeComputedWith) {
            [](Snapshot& s) {
              s.lattice.column[2] = {0, 0, -10};
            },                 // left-handed
-           [](Snapshot& s) {  // turned, as extension turns it
+           [](Snapshot& s) {  // rotated, as by extension
              s.lattice = {Vector3{-7, -5.6, 0}, Vector3{4.4, -9, 0}, Vector3{0, 0, 9.4}};
            }}) {
     Snapshot snapshot = touching();

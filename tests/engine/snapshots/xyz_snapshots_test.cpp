@@ -56,7 +56,7 @@ TEST(XyzSnapshot, OfATextThatWasWrittenIsWhatWasWritten) {
   EXPECT_NE(written.find("stress_total=\"1 2 3 4 5 6\""), std::string::npos);
 }
 
-// The same spheres as editors, shells and other programs save them.
+// One set of spheres as editors, shells and other programs save it.
 TEST(XyzSnapshot, IsReadInEveryDialect) {
   const auto replaced = [](std::string bytes, const std::string& from, const std::string& to) {
     for (std::size_t at = bytes.find(from); at != std::string::npos; at = bytes.find(from, at + to.size()))
@@ -78,7 +78,7 @@ TEST(XyzSnapshot, IsReadInEveryDialect) {
   }
 }
 
-// What a chemist's program would take for the symbols of elements has another name.
+// A key that chemistry programs take for element symbols gets another name.
 TEST(XyzSnapshot, IsWrittenWithTypesThatAreWords) {
   Snapshot snapshot = read_xyz_frame(text, "t.xyz");
   snapshot.species_names = {"", "two words"};

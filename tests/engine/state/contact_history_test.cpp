@@ -1,4 +1,3 @@
-// Springs outlive wrapping, flips of the box and rebuilds of the list.
 #include "engine/state/contact_history.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +19,7 @@ const Physics physics = physics_with({.lubrication = true,
                                       .conservative = true,
                                       .kinetic = true});
 
-// With a timestep of 0 the springs act as they are.
+// Returns forces and torques at a timestep of 0, which leaves the springs unchanged.
 std::vector<double> loads_of(System system) {
   const std::size_t count = system.particles.count();
   VectorField force(count), torque(count);
@@ -47,7 +46,7 @@ void expect_same_loads(const System& before, const System& after) {
   }
 }
 
-// The springs of all contacts by their particles: no two of them meet twice here.
+// Returns the springs of all contacts by their particles; no pair touches in two images here.
 std::map<std::pair<std::uint32_t, std::uint32_t>, ContactSprings> springs_by_particles(const System& system) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, ContactSprings> springs;
   for (const HeldContact& held : held_contacts(system.list, system.particles, system.springs)) {
@@ -67,7 +66,7 @@ void expect_same_springs(const System& before, const System& after) {
 }
 
 TEST(ContactHistory, SurvivesWrapping) {
-  const System before = dense_suspension(physics, 200, 1);  // a third of the particles stands outside
+  const System before = dense_suspension(physics, 200, 1);  // a third of the particles lies outside the cell
   System after = before;
   rebuild_neighbours(after);
   EXPECT_EQ(after.box.basis(), BasisChange{});
@@ -79,7 +78,7 @@ TEST(ContactHistory, SurvivesWrapping) {
 TEST(ContactHistory, SurvivesFlipsInEitherDirection) {
   for (const std::int32_t count : {-2, -1, 1}) {
     System before = dense_suspension(physics, 200, 2);
-    before.box.change_basis(flips(count));  // another basis of the same lattice, too steep
+    before.box.change_basis(flips(count));  // another basis of the lattice, too steep
     before.list.build(before.particles, before.box);
     const System original = dense_suspension(physics, 200, 2);
     std::vector<HeldContact> held = held_contacts(original.list, original.particles, original.springs);
@@ -94,7 +93,7 @@ TEST(ContactHistory, SurvivesFlipsInEitherDirection) {
   }
 }
 
-// All particles drift together, several times through the cell: nothing changes between them.
+// All particles drift together several times through the cell; their relative positions are constant.
 TEST(ContactHistory, SurvivesManyPassagesThroughTheBoundaries) {
   const System start = dense_suspension(physics, 200, 3);
   System system = start;
@@ -110,8 +109,7 @@ TEST(ContactHistory, SurvivesManyPassagesThroughTheBoundaries) {
   expect_same_loads(start, system);
 }
 
-// Carried by the flow through strains that flip the box again and again, each particle ends where the flow
-// takes it.
+// Particles carried by the flow through strains with several box flips end where the flow takes them.
 TEST(ContactHistory, UnwrappedPlacesFollowTheFlowThroughFlips) {
   System system = dense_suspension(physics, 50, 3);
   system.springs = SpringField(system.springs.kinds(), system.list.pairs().size());
@@ -131,7 +129,7 @@ TEST(ContactHistory, UnwrappedPlacesFollowTheFlowThroughFlips) {
     system.box.deform(simple_shear(0.2 * step));
     rebuild_neighbours(system);
   }
-  EXPECT_EQ(system.box.basis(), flips(3));  // the tilt began at 0.31 and would have ended at 2.71 edges
+  EXPECT_EQ(system.box.basis(), flips(3));  // the tilt grows from 0.31 to 2.71 edges
   for (std::size_t i = 0; i < 50; ++i) {
     EXPECT_NEAR(norm(unwrapped(i) - expected[i]), 0, 1e-10);
   }
@@ -153,7 +151,7 @@ TEST(ContactHistory, SpringsOfZeroAreNotHeld) {
   EXPECT_TRUE(held_contacts(system.list, system.particles, system.springs).empty());
 }
 
-// A contact slides without a spring where nothing holds it.
+// A sliding contact is stored even if its springs are zero.
 TEST(ContactHistory, ContactsThatSlideAreHeldWithoutASpring) {
   System system = dense_suspension(physics, 60, 4);
   system.springs = SpringField(system.springs.kinds(), system.list.pairs().size());

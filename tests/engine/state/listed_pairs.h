@@ -1,4 +1,4 @@
-// Spheres at random places, the pairs of them that are near, and those that a list has.
+// Spheres at random places, their near pairs, and the pairs of a list.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace peclet::engine {
 
-constexpr double outer = 1.025;  // range over contact distance: lubrication up to a gap of 0.05
+constexpr double outer = 1.025;  // range over contact distance: lubrication gap 0.05
 
 inline RangeTable ranges_of(const std::vector<double>& radius) {
   const std::vector<double> sizes = distinct_radii(radius);
@@ -22,7 +22,7 @@ inline RangeTable ranges_of(const std::vector<double>& radius) {
   return ranges;
 }
 
-// Spheres of these sizes at random places, most of them outside the cell, overlapping as they will.
+// Returns spheres of these sizes at random places, most outside the cell, with overlaps.
 inline ParticleState scattered(std::size_t count, const std::vector<double>& sizes, const PeriodicCell& box,
                                Draws& draws) {
   std::vector<double> radius;
@@ -43,8 +43,8 @@ inline std::vector<SeenPair> near(const ParticleState& particles, const Periodic
   });
 }
 
-// Nearer than outer (a_i + a_j) and the skin: of the smallest range of all, and of a tenth of what the pair's
-// range is more.
+// Returns pairs nearer than outer (a_i + a_j) plus the skin: `skin` times the smallest range of all plus a
+// tenth of the excess of the pair's range.
 inline std::vector<SeenPair> near_with_skin(const ParticleState& particles, const PeriodicCell& box,
                                             double skin) {
   const double least = 2 * *std::min_element(particles.radius.begin(), particles.radius.end());

@@ -1,4 +1,4 @@
-// For how long a list holds, and that it comes back from its reference.
+// The lifetime of a neighbour list, and its restoration from reference positions.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,7 +9,7 @@
 namespace peclet::engine {
 namespace {
 
-// Affine motion with the flow and random steps of up to `step` in each component.
+// Moves particles with the flow plus a random displacement of up to `step` in each component.
 void move(ParticleState& particles, PeriodicCell& box, double strain, double step, Draws& draws) {
   for (std::size_t i = 0; i < particles.count(); ++i) {
     const Vector3 x = particles.position[i];
@@ -50,16 +50,15 @@ TEST_P(NeighbourListOfSizes, MissesNoInteractingPairForAsLongAsItHolds) {
   EXPECT_GT(checks, 200);
 }
 
-// Two of the largest spheres, not listed by a hair's breadth, approach as fast as the criterion supposes: it
-// gives way when they come into range, not before. Checked without strain, where each moves by half the skin
-// times the range, and at strains for which the separation lies along the direction that the flow compresses
-// most.
+// Two of the largest spheres, just outside the list, approach as fast as the criterion assumes. It must fail
+// when they come into range, not before. Without strain each moves by half the skin times the range. With
+// strain the separation lies along the direction of largest compression.
 TEST(NeighbourList, IsRebuiltOnlyWhenAPairCouldBeMissing) {
   constexpr double skin = 0.15, range = 2 * outer;
   for (const double strain : {0.0, 0.02, -0.05, 0.1}) {
     PeriodicCell box({20, 20, 20}, simple_shear(1));
     ParticleState particles = make_particles({1, 1}, 1);
-    // F = [[1, g], [0, 1]] compresses most, by the factor s, the eigenvector (g, s^2 - 1) of F^T F.
+    // F = [[1, g], [0, 1]] compresses most, by s, along the eigenvector (g, s^2 - 1) of F^T F.
     const double s = std::sqrt(1 + 0.25 * strain * strain) - 0.5 * std::abs(strain);
     const Vector3 along = strain == 0 ? Vector3{0.6, 0, 0.8} : Vector3{strain, s * s - 1, 0};
     const Vector3 compressed = (1 / norm(along)) * along;
@@ -71,7 +70,7 @@ TEST(NeighbourList, IsRebuiltOnlyWhenAPairCouldBeMissing) {
     const Vector3 carried = particles.position[1] + Vector3{strain * particles.position[1].y, 0, 0};
     ASSERT_NEAR(norm(carried), s * range * (1 + skin), 1e-8) << strain;
     const Vector3 direction = (1 / norm(carried)) * carried;
-    const double distance = 0.5 * (norm(carried) - range);  // of each, until they come into range
+    const double distance = 0.5 * (norm(carried) - range);  // of each sphere until they are in range
     const auto approach = [&](double each) {
       particles.position.set(0, each * direction);
       particles.position.set(1, carried - each * direction);
@@ -82,7 +81,7 @@ TEST(NeighbourList, IsRebuiltOnlyWhenAPairCouldBeMissing) {
   }
 }
 
-// As strain grows, even a particle at rest in the flow uses up the skin: s (1 + skin) = 1.
+// Strain alone uses up the skin, for a particle at rest in the flow, when s (1 + skin) = 1.
 TEST(NeighbourList, StrainAloneUsesUpTheSkin) {
   PeriodicCell box({20, 20, 20}, simple_shear(1));
   ParticleState particles = make_particles({1, 1}, 1);
@@ -90,7 +89,7 @@ TEST(NeighbourList, StrainAloneUsesUpTheSkin) {
   NeighbourList list(ranges_of(particles.radius), 0.15);
   list.build(particles, box);
   const double stretch = 1 / 1.15;
-  const double largest = 1 / stretch - stretch;  // s(g) = stretch
+  const double largest = 1 / stretch - stretch;  // from s(strain) = stretch
   const auto carried_to = [&](double strain) {
     box.deform(simple_shear(strain));
     particles.position.set(1, {strain * 10, 10, 0});
@@ -100,7 +99,7 @@ TEST(NeighbourList, StrainAloneUsesUpTheSkin) {
   EXPECT_FALSE(carried_to(1.001 * largest));
 }
 
-// In planar extension by e that of the compression is 1 / e, from whatever extension the list was built at.
+// Planar extension by e compresses by 1 / e, from any extension at which the list was built.
 TEST(NeighbourList, ExtensionAloneUsesUpTheSkin) {
   for (const double before : {1.0, 1.6}) {
     PeriodicCell box({20, 20, 20}, Matrix3{});
@@ -120,8 +119,8 @@ TEST(NeighbourList, ExtensionAloneUsesUpTheSkin) {
   }
 }
 
-// Lists of candidates are those that a search through all particles makes, as long as the candidates hold,
-// and these hold until a pair could come within reach that is none of them.
+// Lists narrowed from candidates equal those of a full search while the candidates are valid. Candidates are
+// valid until a pair outside them could come within range.
 TEST_P(NeighbourListOfSizes, ListsCandidatesAsItWouldListAll) {
   constexpr double skin = 0.05;
   Draws draws(16);

@@ -19,8 +19,7 @@ struct Case {
   Vector3 edges;
 };
 
-// From a box of a single cell to many, cubic and not, one size, sizes that differ sevenfold, and many that
-// are alike.
+// Boxes of one cell to many, cubic and not; one size, sizes of ratio seven, and many similar sizes.
 const Case cases[] = {{2, {1}, {2.2, 2.3, 2.1}},
                       {2, {1}, {4, 4, 4}},
                       {10, {1, 1.4}, {5, 5, 5}},
@@ -50,7 +49,7 @@ TEST(NeighbourList, HoldsEveryPairInEveryImageAndNoOther) {
   EXPECT_GT(pairs, 10000u);
 }
 
-// Cells of any shape and handedness, against all images of up to six lattice vectors along each.
+// Cells of any shape and handedness, compared with all images of up to six lattice vectors along each.
 TEST(NeighbourList, HoldsEveryPairOfACellOfAnyShape) {
   Draws draws(21);
   std::size_t pairs = 0;
@@ -107,7 +106,7 @@ TEST(NeighbourList, KnowsTheSizesOfEachPair) {
   }
 }
 
-// In a cube of four radii a sphere touches two images of the other at once.
+// In a cube of edge four radii a sphere touches two images of another at once.
 TEST(NeighbourList, TwoSpheresMayMeetUnderSeveralImages) {
   const PeriodicCell box({4, 4, 4}, Matrix3{});
   ParticleState particles = make_particles({1, 1}, 1);
@@ -118,7 +117,7 @@ TEST(NeighbourList, TwoSpheresMayMeetUnderSeveralImages) {
   EXPECT_EQ(listed(list), expected);
 }
 
-// What the loop over pairs relies on.
+// Checks what the pair loop relies on.
 void expect_arranged(const NeighbourList& list) {
   std::uint32_t next = 0, next_run = 0, next_particle = 0, crossings = 0;
   std::set<std::pair<std::uint32_t, std::uint32_t>> outgoing, incoming;
@@ -140,7 +139,7 @@ void expect_arranged(const NeighbourList& list) {
         imaged = imaged || pair.image != 0;
         if (!crosses) continue;
         const std::uint32_t away = run.first_is_away ? pair.first : pair.second;
-        EXPECT_LT(away, block.begin);  // whoever comes to this block has been at its particle
+        EXPECT_LT(away, block.begin);  // in an earlier block
         outgoing.emplace(away, crossings++);
       }
       EXPECT_EQ(imaged, run.imaged);
@@ -170,8 +169,7 @@ TEST(NeighbourList, IsArrangedInBlocksAndRunsOfOneKind) {
   expect_arranged(list);
 }
 
-// Particles in any order: most pairs cross from one block into another, of which some are found from the
-// wrong end.
+// Particles in any order: most pairs cross between blocks, and some are found from the second particle.
 TEST(NeighbourList, HoldsEveryPairOfSeveralBlocksOnAnyNumberOfThreads) {
   Draws draws(16);
   const PeriodicCell box({22, 21, 23}, simple_shear(1), 4);

@@ -27,21 +27,21 @@ TEST(PeriodicCell, TiltGrowsWithTheStrain) {
   EXPECT_DOUBLE_EQ(box.volume(), 480);
 }
 
-// Without a trace: of a flow of constant density.
+// Returns a gradient without trace, of a flow of constant density.
 Matrix3 any_gradient(Draws& draws) {
   Matrix3 gradient{draws.vector(), draws.vector(), draws.vector()};
   gradient.column[2].z = -gradient.column[0].x - gradient.column[1].y;
   return gradient;
 }
 
-// Edges of about 10 that are far from right angles, right- or left-handed.
+// Returns a cell with edges of about 10, far from right angles, right- or left-handed.
 PeriodicCell any_cell(Draws& draws) {
   Matrix3 edges = 10 * identity() + Matrix3{draws.vector(3), draws.vector(3), draws.vector(3)};
   if (draws.vector().x < 0) std::swap(edges.column[0], edges.column[1]);
   return PeriodicCell::with_edges(edges, any_gradient(draws));
 }
 
-// Six that are one after the other, in any order of the axes.
+// Returns a change of basis composed of six shears along any axes.
 BasisChange any_change(Draws& draws) {
   BasisChange change;
   for (int k = 0; k < 6; ++k) {
@@ -108,7 +108,7 @@ TEST(PeriodicCell, ImagesMoveAsTheFlowDoesWhereTheyAre) {
   }
 }
 
-// dH/dt = L H: after a short time the places of images have changed by their velocities.
+// dH/dt = L H: images move by their velocities over a short time.
 TEST(PeriodicCell, ImagesGoWhereTheirVelocitiesLead) {
   Draws draws(3);
   const double time = 1e-6;
@@ -123,7 +123,7 @@ TEST(PeriodicCell, ImagesGoWhereTheirVelocitiesLead) {
   }
 }
 
-// F = diag(e, 1/e, 1): planar extension; and simple shear in any of the planes.
+// F = diag(e, 1/e, 1), planar extension, and simple shear in each plane.
 TEST(PeriodicCell, KeepsItsVolumeInAFlowOfConstantDensity) {
   Draws draws(4);
   for (int n = 0; n < 10; ++n) {
@@ -170,12 +170,11 @@ TEST(PeriodicCell, WidthsAreTheDistancesBetweenFaces) {
   }
 }
 
-// A square lattice, turned by half the angle whose tangent is 2, is itself again after planar extension by
-// ln((3 + sqrt 5) / 2): Kraynik and Reinelt (1992), Int. J. Multiphase Flow 18, 1045. Its points m, n are at
-// |x y| = edge^2 |m^2 + m n - n^2| / sqrt 5, which extension leaves alone, and which is edge^2 / sqrt 5 at
-// least. So no vector is shorter than sqrt(2 |x y|) >= sqrt(2 / sqrt 5) edge; an edge of the square is as
-// short as that where |x| = |y|, after a quarter of the period and after three. A compact cell is no thinner
-// than three quarters of its shortest vector.
+// A square lattice turned by atan(2) / 2 recurs after planar extension by ln((3 + sqrt 5) / 2): Kraynik and
+// Reinelt (1992), Int. J. Multiphase Flow 18, 1045. Its points m, n have |x y| = edge^2 |m^2 + m n - n^2| /
+// sqrt 5, invariant under extension and at least edge^2 / sqrt 5. Hence every vector is at least
+// sqrt(2 |x y|) >= sqrt(2 / sqrt 5) edge long, with equality for an edge of the square after one and three
+// quarters of the period, where |x| = |y|. A compact cell is at least 3/4 of that wide.
 TEST(PeriodicCell, IsMadeCompactInExtension) {
   const double edge = 7, angle = 0.5 * std::atan(2.0), period = std::log(0.5 * (3 + std::sqrt(5.0)));
   const double least = std::sqrt(2 / std::sqrt(5.0)) * edge;
@@ -233,8 +232,7 @@ TEST(Wrapping, PutsEveryParticleIntoTheCell) {
   }
 }
 
-// Separations and relative velocities of all pairs in all images, sorted so that names of images do not
-// matter.
+// Returns separations and relative velocities of all pairs in all images, in an order without image names.
 std::vector<std::array<double, 8>> relative_motions(const Suspension& s) {
   std::vector<std::array<double, 8>> motions;
   for (const SeenPair& pair : every_image(s.particles.position, s.box.lengths(), s.box.tilt(),
@@ -287,7 +285,7 @@ TEST(Wrapping, CountsWhatItRemoved) {
   }
 }
 
-// The particle leaves the streaming flow's velocity behind with the height: drag does not notice.
+// The velocity changes with the height by that of the flow, so drag is unchanged.
 TEST(Wrapping, KeepsTheVelocityRelativeToTheStreamingFlow) {
   const Suspension before = outside_the_cell();
   Suspension after = before;

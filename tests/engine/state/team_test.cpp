@@ -20,7 +20,7 @@ TEST(Team, SharesOutEverythingOnce) {
   }
 }
 
-// Each round takes the sums of the round before over both neighbours, whom other members work on: 2^rounds.
+// Each round sums both neighbours of the previous round, computed by other members: expected 2^rounds.
 TEST(Team, SeesWhatOthersDidBeforeTheyArrived) {
   constexpr std::size_t count = 12;
   constexpr int rounds = 50;

@@ -20,7 +20,7 @@ double derivative(Function&& function, double x) {
   return (function(x + step) - function(x - step)) / (2 * step);
 }
 
-// `energy` is written by hand beside each law.
+// Expects the gradients of `energy`, written independently of the law.
 template <class Law, class Energy>
 void expect_gradients(const Law& law, Energy&& energy, double first, double second) {
   Draws draws(53);
@@ -36,7 +36,7 @@ void expect_gradients(const Law& law, Energy&& energy, double first, double seco
   }
 }
 
-// Of |V''|, by trying distances from h on.
+// Returns the largest |V''| at distances from h on, by trial.
 template <class Law>
 double largest_in(const Law& law, double h) {
   double largest = 0;
@@ -51,7 +51,7 @@ TEST(Repulsion, HasTheGradientsOfTheExponential) {
   EXPECT_DOUBLE_EQ(law.range, 2.4 + 20 * 0.024);
 }
 
-// Monti et al. (2021) eq. 6: the force is that of contact in overlap.
+// Monti et al. (2021) eq. 6: in overlap the force is that at contact.
 TEST(Repulsion, HasTheGradientsOfTheScreenedForm) {
   const RepulsionOfPair law = of_pair(RepulsionParameters{.cutoff_lengths = 10,
                                                           .form = RepulsionParameters::Form::screened,
@@ -66,7 +66,7 @@ TEST(Repulsion, HasTheGradientsOfTheScreenedForm) {
   EXPECT_NEAR(norm(conservative_force(law, pair_at(1, 1.4, -0.01, {1, 0, 0}))), force, 1e-12);
 }
 
-// Monti et al. (2021) eq. 7 with a = 2 1.4 / 2.4 between spheres of 1 and 1.4.
+// Monti et al. (2021) eq. 7 with a = 2 1.4 / 2.4 for spheres of radii 1 and 1.4.
 TEST(Attraction, HasTheGradientsOfItsEnergyWhichEndsAtTheCutoff) {
   const AttractionOfPair law = of_pair(AttractionParameters{.hamaker = 0.6, .cutoff = 0.5}, 1, 1.4);
   const double mean = 2.8 / 2.4, c = 0.6 * mean / 12, width = 0.01 * mean;
@@ -87,7 +87,7 @@ TEST(Attraction, PullsSpheresInTouchByTheirRegularisedForce) {
   EXPECT_GT(symmetric_dyad({2, 0, 0}, force).xx, 0);  // tension
 }
 
-// Stiffness of what has to stay positive: that of the repulsion within its range, nothing beyond.
+// The positive stiffness is that of the repulsion within its range, and zero beyond.
 TEST(ConservativeLaws, GiveTheirStiffnessToMatricesWithinTheirRangeAlone) {
   ConservativeLaws laws;
   laws.repulsion = of_pair(RepulsionParameters{1.7, 0.01, 5}, 1, 1.4);
@@ -100,7 +100,7 @@ TEST(ConservativeLaws, GiveTheirStiffnessToMatricesWithinTheirRangeAlone) {
   EXPECT_EQ(largest_stiffness(laws, 0.1201, 2.4), 0);
 }
 
-// Attraction takes its part of the sum, which never falls below zero.
+// Attraction reduces the sum, which stays at zero or above.
 TEST(ConservativeLaws, GiveMatricesNoNegativeStiffness) {
   ConservativeLaws laws;
   laws.repulsion = of_pair(RepulsionParameters{1.7, 0.01, 5}, 1, 1);

@@ -8,7 +8,7 @@
 namespace peclet::engine {
 namespace {
 
-// -dE/dr along n by central differences is the force on j, so that on i is dE/dr n.
+// Returns dE/dr by central differences: the force on i along n, opposite to that on j.
 template <class Energy>
 double slope(Energy&& energy, double r) {
   const double step = 1e-6;
@@ -55,7 +55,7 @@ TEST(Repulsion, ForceIsTheGradientOfTheExponentialAlsoInOverlap) {
   }
 }
 
-// Energy of a touching pair: the force there is strength over length.
+// The energy of a pair at contact, where the force is strength over length.
 TEST(Repulsion, StrengthIsTheEnergyAtContact) {
   const RepulsionOfPair law = of_pair(RepulsionParameters{1.7, 0.01, 20}, 1, 1);
   EXPECT_NEAR(norm(conservative_force(law, pair_at(1, 1, 0, {1, 0, 0}))), 1.7 / 0.02, 1e-9);

@@ -1,4 +1,4 @@
-// Fluctuation and dissipation of a pair, exactly: B B^T = R, B the loads of unit random vectors.
+// Fluctuation-dissipation for a pair, exactly: B B^T = R, with B the loads of unit random vectors.
 #include <gtest/gtest.h>
 
 #include "engine/terms/pair_resistance.h"
@@ -12,7 +12,7 @@ constexpr double eta = 0.1;
 using NoiseLoad = PairLoad (*)(double, const ResistanceRoots&, const PairGeometry&, const Vector3&,
                                const Vector3&);
 
-// Covariance of (F_i, F_j, T_i, T_j) for theta and chi with independent components of variance one.
+// Returns the covariance of (F_i, F_j, T_i, T_j) for theta and chi with independent unit components.
 Matrix12 covariance(NoiseLoad noise, double amplitude, const ResistanceRoots& root,
                     const PairGeometry& pair) {
   Eigen::Matrix<double, 12, 6> loads;
@@ -24,7 +24,7 @@ Matrix12 covariance(NoiseLoad noise, double amplitude, const ResistanceRoots& ro
   return loads * loads.transpose();
 }
 
-// As eq. 24 is printed: a plus before the second torque's root.
+// Returns the noise of eq. 24 as printed, with a plus before the second torque's root.
 PairLoad wrong_sign(double amplitude, const ResistanceRoots& root, const PairGeometry& pair,
                     const Vector3& theta, const Vector3& chi) {
   PairLoad load = pair_noise_load(amplitude, root, pair, theta, chi);
@@ -48,9 +48,8 @@ TEST(PairNoise, CovarianceIsTheResistanceForUnequalSizes) {
   }
 }
 
-// The torques' block by itself: squeezing would hide it in the comparison above. The wrong sign makes Y_C12
-// too large by 4.0, 3.9, 2.3 and 2.0 at size ratios 1, 1.4, 5 and 7; figures of the published formulas, from
-// elsewhere.
+// The block of torques by itself, since squeezing would hide it in the comparison above. The wrong sign makes
+// Y_C12 too large by 4.0, 3.9, 2.3 and 2.0 at size ratios 1, 1.4, 5 and 7, by the published formulas.
 TEST(PairNoise, TheWrongSignInTheSecondTorqueIsFarFromTheResistance) {
   const struct { double ratio, too_large_by; } known[] = {{1, 4.0}, {1.4, 3.9}, {5, 2.3}, {7, 2.0}};
   for (const auto& each : known) {

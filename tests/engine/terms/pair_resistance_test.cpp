@@ -20,8 +20,8 @@ PairResistance at_gap(double first, double second, double gap) {
   return resistance_of(fluid_viscosity, first, second, pair_at(first, second, gap, along_x));
 }
 
-// Li, Royer & Ness (2023): the squeeze mode of equal spheres at the inner gap, and what is left of squeeze
-// and shear where they are cut off, in units of 6 pi eta a.
+// Li, Royer & Ness (2023): the squeeze mode of equal spheres at the inner gap, and the values of squeeze and
+// shear at the cut-offs, in units of 6 pi eta a.
 TEST(PairResistance, HasThePublishedMagnitudesForEqualSpheres) {
   const double unit = 6 * pi * fluid_viscosity;
   EXPECT_NEAR(at_gap(1, 1, 1e-3).squeeze / unit, 251.55, 0.005);
@@ -31,8 +31,8 @@ TEST(PairResistance, HasThePublishedMagnitudesForEqualSpheres) {
   EXPECT_NEAR(at_gap(1, 1, 0.5).shear / unit, 0.12, 0.005);
 }
 
-// Leading terms of two equal spheres in Jeffrey & Onishi (1984), X^A: 1/4, 9/40; Y^A: 1/6; Y^B: 1/4 (of 4 pi
-// eta a^2); Y^C: 1/5 and 1/20 (of 8 pi eta a^3). The levers q, q^2 are this program's.
+// Leading terms of two equal spheres in Jeffrey & Onishi (1984). X^A: 1/4, 9/40; Y^A: 1/6; Y^B: 1/4
+// (of 4 pi eta a^2); Y^C: 1/5 and 1/20 (of 8 pi eta a^3). The levers q and q^2 are the program's own.
 TEST(PairResistance, EqualSpheresHaveTheKnownLeadingTerms) {
   constexpr double a = 1.3, gap = 0.02;
   const double L = std::log(1 / gap), q = 1 + gap / 2, pi_eta = pi * fluid_viscosity;
@@ -46,7 +46,7 @@ TEST(PairResistance, EqualSpheresHaveTheKnownLeadingTerms) {
   EXPECT_NEAR(R.twist_cross / (8 * pi_eta * a * a * a), q * q * L / 20, 1e-13);
 }
 
-// A sphere that approaches a wall at surface distance h feels 6 pi eta a^2 U / h (Taylor), two equal spheres
+// A sphere approaching a wall at surface distance h feels 6 pi eta a^2 U / h (Taylor); two equal spheres feel
 // 3/2 pi eta a^2 U / h.
 TEST(PairResistance, SqueezeHasTheClassicalLimits) {
   constexpr double wall = 1e6, h = 2e-3, wall_gap = 2 * h / (1 + wall);
@@ -56,7 +56,6 @@ TEST(PairResistance, SqueezeHasTheClassicalLimits) {
   EXPECT_NEAR(at_sphere / (1.5 * pi * fluid_viscosity / h), 1, 1e-12);
 }
 
-// Both particles are the same physics seen from either side.
 TEST(PairResistance, ExchangingTheSpheresExchangesTheirModes) {
   for (const double ratio : size_ratios) {
     const PairResistance one = at_gap(1.2, 1.2 * ratio, 0.03), other = at_gap(1.2 * ratio, 1.2, 0.03);
@@ -69,7 +68,7 @@ TEST(PairResistance, ExchangingTheSpheresExchangesTheirModes) {
   }
 }
 
-// Below the inner gap, also in overlap, the coefficients stay; the lever q = r / (a_i + a_j) does not.
+// Below the inner gap and in overlap the coefficients are constant; the lever q = r / (a_i + a_j) is not.
 TEST(PairResistance, StaysConstantBelowTheInnerGapButForTheLever) {
   const PairResistance edge = at_gap(1, 1.4, inner_gap);
   for (const double gap : {5e-4, 0.0, -0.02}) {
@@ -92,8 +91,8 @@ TEST(PairResistance, FallsWithTheGapBeyondTheInnerOne) {
   }
 }
 
-// Six rigid motions of the pair and one common spin about the axis for each sphere less one shared cost
-// nothing: of twelve modes, squeezing, two of shearing and two of twisting remain.
+// Six rigid motions of the pair and the shared spin about its axis dissipate nothing. Of twelve modes
+// squeezing, two of shearing and two of twisting remain.
 TEST(PairResistance, IsSymmetricPositiveSemidefiniteAndOfRankFive) {
   Draws draws(21);
   for (const double ratio : size_ratios) {

@@ -1,4 +1,4 @@
-// The resistance of a pair within a step, beside the formulas of its head and averages by quadrature.
+// The resistance of a pair within a step, compared with its formulas and with averages by quadrature.
 #include "engine/terms/step_resistance.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@ namespace peclet::engine {
 namespace {
 
 constexpr double first = 1, second = 1.4, sum = first + second, timestep = 0.3;
-// Of both forms, with the same bounds of what the resistance is a function of: xi, and xi + inner_gap.
+// Both forms, with equal bounds of the argument of the resistance: xi, or xi + inner_gap.
 constexpr LubricationParameters lubrication = {1e-2, 0.1};
 constexpr LubricationParameters shifted = {
     .inner_gap = lubrication.inner_gap,
@@ -21,7 +21,7 @@ constexpr double shift_of(const LubricationParameters& form) {
   return form.form == LubricationParameters::Form::mari ? form.inner_gap : 0;
 }
 
-// Of a gap: 1/xi and L within the range.
+// Returns 1/xi, or below L, at a gap within the range.
 double inverse(double gap) {
   return gap <= lubrication.outer_gap ? 1 / std::max(gap, lubrication.inner_gap) : 0;
 }
@@ -41,7 +41,7 @@ PairGeometry pair_of(const LubricationParameters& form, double gap) {
   return {{distance, 0, 0}, {1, 0, 0}, distance, sum};
 }
 
-// Of a pair in the middle of a way of gaps.
+// Returns the modes of a pair in the middle of a displacement between two gaps.
 ResistanceModes modes(const LubricationParameters& form, StepResistance::Part part, double from, double to) {
   const double closing = 0.5 * sum * (to - from) / timestep;
   return resistance_modes(StepResistance{part, timestep}, lubricated_gap(form, sum),
@@ -51,7 +51,7 @@ ResistanceModes modes(const LubricationParameters& form, StepResistance::Part pa
 struct Way {
   double from, to;
 };
-// Within the range, into the inner gap and out of it, out of the range and into it, through all, and beyond.
+// Within the range, into and out of the inner gap, out of and into the range, through everything, and beyond.
 constexpr Way ways[] = {{0.02, 0.05}, {0.05, 0.02}, {0.03, -0.02}, {-0.02, 0.03}, {-0.03, -0.01},
                         {0.08, 0.13}, {0.13, 0.08}, {-0.01, 0.12}, {0.12, -0.01}, {0.13, 0.15}};
 
@@ -67,8 +67,7 @@ TEST(StepResistance, OnTheWayIsTheAverageOverItsGaps) {
   }
 }
 
-// From the same gap at the beginning of the step, beside differences of the force X_A dr/dt; other modes keep
-// their averages.
+// Steps from one initial gap, by differences of the force X_A dr/dt; other modes keep their averages.
 TEST(StepResistance, TheTangentIsTheDerivativeOfTheSqueezingForce) {
   for (const LubricationParameters& form : forms) {
     const ResistanceConstants k = resistance_constants(0.1, first, second, form.form);
@@ -93,7 +92,7 @@ TEST(StepResistance, TheTangentIsTheDerivativeOfTheSqueezingForce) {
   }
 }
 
-// Where pairs stand still every part is R, or R less half of what jumps.
+// For a pair at rest every part is R, or R minus half of the jump.
 TEST(StepResistance, OfAPairAtRestIsThatOfItsGap) {
   const double jump = 1 / lubrication.outer_gap, log_jump = std::log(jump);
   for (const double gap : {-0.02, 0.005, 0.02, 0.09, 0.11}) {
@@ -112,7 +111,7 @@ TEST(StepResistance, OfAPairAtRestIsThatOfItsGap) {
   }
 }
 
-// The way that the head describes, with the averages by quadrature.
+// The rule of step_resistance.h, with the averages by quadrature.
 TEST(StepResistance, AheadIsTheMeanOfItsTwoRulesAndHalfOfTheJump) {
   const double inner = lubrication.inner_gap, outer = lubrication.outer_gap;
   for (const auto& way : ways) {
@@ -135,7 +134,7 @@ TEST(StepResistance, AheadIsTheMeanOfItsTwoRulesAndHalfOfTheJump) {
   }
 }
 
-// Fixman's drift needs the resistance in the middle of the predicted step, to first order of its length.
+// Fixman's drift needs the resistance at the middle of the predicted step, to first order in its length.
 TEST(StepResistance, AheadIsThatOfTheMiddleToFirstOrder) {
   const double gap = 0.03;
   const auto error = [&](double way) {

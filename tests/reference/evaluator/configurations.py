@@ -1,4 +1,4 @@
-"""Configurations at random: spheres whose gaps and overlaps scatter around zero, with velocities, springs and noise."""
+"""Random configurations: spheres with gaps and overlaps around zero, velocities, springs and noise."""
 import copy
 
 import numpy as np
@@ -28,13 +28,13 @@ SCENE = {
 }
 
 
-# Keys that say how far a law reaches.
+# Keys of the ranges of laws.
 REACHES = ("outer_gap", "outer_distance", "relative_length", "debye_length", "cutoff")
 
 
 def varied(scene, generator):
-    """A scene whose numbers are up to three times larger or smaller; reaches do not grow, or a particle could meet its
-    own image, but for the outer gap, which is one of three."""
+    """Returns the scene with numbers up to three times larger or smaller. Ranges do not grow, or a particle
+    could meet its own image; the outer gap is one of three values."""
 
     def other(key, value):
         if not isinstance(value, float):
@@ -48,13 +48,13 @@ def varied(scene, generator):
 
 
 def with_only(scene, block):
-    """The scene without other laws of pairs than those of one block."""
+    """Returns the scene with the pair law of one block alone."""
     return {name: entries for name, entries in scene.items() if name in ("fluid", "flow", block)}
 
 
 def packed(radius, box, generator):
-    """Positions at random, then pushed apart until no two spheres of radii larger by a five-hundredth overlap by more
-    than a thousandth: true gaps scatter around zero."""
+    """Returns random positions, pushed apart until spheres enlarged by a five-hundredth overlap by less than
+    a thousandth: true gaps scatter around zero."""
     vectors = lattice(box)
     position = generator.uniform(size=(len(radius), 3)) @ vectors
     wanted = 1.002 * (radius[:, None] + radius)
@@ -89,13 +89,13 @@ def random_state(mixture, scene, generator):
 
 
 def named(pairs, **vectors):
-    """What a configuration lists of pairs."""
+    """Yields pairs with vectors in the format of a configuration."""
     for k, (i, j, image) in enumerate(pairs.names()):
         yield {"i": i, "j": j, "image": list(image), **{name: rows[k].tolist() for name, rows in vectors.items()}}
 
 
 def random_springs(pairs, generator):
-    """Of a length about that of the overlap, so that some of them slide and some do not."""
+    """Returns springs of about the length of the overlap, so that some slide and others do not."""
     touching = pairs.where(pairs.overlap > 0)
     size = touching.overlap[:, None]
     tangential, rolling = (across(touching.normal, generator.normal(size=(len(touching), 3))) for _ in range(2))
@@ -109,7 +109,7 @@ def random_noise(pairs, count, generator):
 
 
 def state_of(lines):
-    """Cell, centres, radii and velocities of a final.xyz that an engine has left."""
+    """Returns cell, centres, radii and velocities of a final.xyz written by an engine."""
     edges = np.array(lines[1].split('Lattice="')[1].split('"')[0].split(), float).reshape(3, 3)
     numbers = np.loadtxt(lines[2:], ndmin=2)
     return {
@@ -121,7 +121,7 @@ def state_of(lines):
 
 
 def packed_configuration(lines, scene, seed):
-    """Of a packing that an engine has made, with random spins, springs and noise."""
+    """Returns the configuration of an engine's packing, with random spins, springs and noise."""
     generator, state = np.random.default_rng(seed), state_of(lines)
     flow, count = flow_of(scene, state), len(state["radius"])
     height = np.array(state["position"])[:, 1]
@@ -132,7 +132,7 @@ def packed_configuration(lines, scene, seed):
 
 
 def add_springs_and_noise(configuration, pairs, generator):
-    """Springs where the scene has friction, noise where it has a thermal energy."""
+    """Adds springs if the scene has friction, and noise if it has a thermal energy."""
     scene, state = configuration["scene"], configuration["state"]
     if scene.get("contact", {}).get("friction", 0) > 0:
         state["springs"] = random_springs(pairs, generator)
@@ -142,7 +142,7 @@ def add_springs_and_noise(configuration, pairs, generator):
 
 
 def random_configuration(mixture, scene, seed):
-    """Some pair touches, and some act on each other over the boundary that moves."""
+    """Returns a configuration with a contact, and with a pair that interacts across the moving boundary."""
     generator = np.random.default_rng(seed)
     for _ in range(20):
         state = random_state(mixture, scene, generator)

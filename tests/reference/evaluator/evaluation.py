@@ -1,4 +1,4 @@
-"""Which laws a scene has, and what they make of a configuration."""
+"""The laws of a scene, and their forces on a configuration."""
 import numpy as np
 
 from evaluator.geometry import lattice, pairs_within
@@ -39,7 +39,7 @@ class Answer:
 
 
 def outermost(block, sums):
-    """The surface distance where lubrication ends, by the sum of the radii."""
+    """Returns the surface distance at which lubrication ends, by the sum of the radii."""
     if block["form"] == "mari":
         return block["outer_distance"] + 0 * sums
     return block["outer_gap"] * sums / 2
@@ -52,7 +52,7 @@ def screening_length(repulsion, sums):
 
 
 def reach_of(scene):
-    """The distance of centres within which two spheres act on each other, by their radii."""
+    """Returns the centre distance within which two spheres interact, by their radii."""
 
     def reach(a_i, a_j):
         sums = a_i + a_j
@@ -69,14 +69,14 @@ def reach_of(scene):
 
 
 def given(pairs, listed, *names):
-    """Vectors of these names of the listed pairs, in the order of `pairs`; zero for those that are not listed."""
+    """Returns vectors of these names in the order of `pairs`; zero for pairs that are not listed."""
     by_name = {(entry["i"], entry["j"], tuple(entry["image"])): entry for entry in listed}
     found = [by_name.get(name) for name in pairs.names()]
     return [np.array([entry[n] if entry else (0, 0, 0) for entry in found], float).reshape(-1, 3) for n in names]
 
 
 def springs_after(scene, state, pairs, time):
-    """Tangential and rolling springs of pairs in contact."""
+    """Returns the tangential and rolling springs of pairs in contact."""
     block = scene["contact"]
     normal_force = block["normal_stiffness"] * pairs.overlap
     tangential, rolling = given(pairs, state.get("springs", []), "tangential", "rolling")
@@ -121,7 +121,7 @@ def add_lubrication(answer, scene, state, pairs):
 
 
 def numbers(block):
-    """What a law takes by the names of the scene."""
+    """Returns the parameters of a law by the names of the scene."""
     return {name: value for name, value in block.items() if name != "form"}
 
 
@@ -135,7 +135,7 @@ def add_attraction(answer, scene, _, pairs):
     answer.add_pairs("attraction", pairs, surface_forces.attraction(pairs, **numbers(scene["attraction"])))
 
 
-# Block of a scene, and what it adds.
+# Blocks of a scene, and the functions that add their terms.
 PAIR_TERMS = {
     "contact": add_contact,
     "lubrication": add_lubrication,
@@ -172,7 +172,7 @@ def pairs_of(configuration):
 
 
 def evaluate(configuration):
-    """The answer to `peclet-engine forces`."""
+    """Returns the expected answer of `peclet-engine forces`."""
     scene, state = configuration["scene"], configuration["state"]
     pairs = pairs_of(configuration)
     answer = Answer(len(state["radius"]), np.linalg.det(lattice(state["box"])))
@@ -198,8 +198,8 @@ def advanced_springs(scene, state, pairs, time):
 
 
 def largest_difference(expected, answer):
-    """By block and term: the largest difference of two answers over the largest number of the term, or of the block
-    where the term is zero but for rounding; infinite where a term is missing."""
+    """Returns by block and term the largest difference over the largest number of the term. Terms of zero up
+    to rounding are compared on the scale of their block. A missing term gives infinity."""
     found = {}
     for block in ("force", "torque", "stress"):
         scale = max(np.abs(value).max() for value in expected[block].values())

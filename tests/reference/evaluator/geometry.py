@@ -4,21 +4,21 @@ import itertools
 
 import numpy as np
 
-# Lattice vectors beside the nearest ones that two particles may meet over: the tilt makes x the longest way.
+# Shifts from the nearest lattice vector by which two particles may interact; the tilt extends x.
 SHIFTS = np.array([*itertools.product((-2, -1, 0, 1, 2), (-1, 0, 1), (-1, 0, 1))])
 
 
 def lattice(box):
-    """Rows: the vectors (Lx, 0, 0), (tilt, Ly, 0), (0, 0, Lz)."""
+    """Returns the rows (Lx, 0, 0), (tilt, Ly, 0), (0, 0, Lz)."""
     vectors = np.diag(np.array(box["lengths"], float))
     vectors[1, 0] = box["tilt"]
     return vectors
 
 
 def shifts_within(vectors, reach):
-    """Those of SHIFTS by which an image can be nearer than `reach`. Beside the nearest lattice vectors a particle lies
-    within half of each vector, so that one more along y or z leads half of that cell away at least; one along x half of
-    Lx, less half of the tilt."""
+    """Returns the SHIFTS by which an image may be nearer than `reach`. From the nearest lattice vector a
+    particle lies within half of each vector. A further one along y or z is at least half of that edge away,
+    one along x half of Lx less half of the tilt."""
     x, y, z = np.abs(SHIFTS).T
     half = 0.5 * np.diag(vectors)
     least = np.where(y + z > 0, np.minimum(np.where(y > 0, half[1], np.inf), np.where(z > 0, half[2], np.inf)), 0)
@@ -27,7 +27,7 @@ def shifts_within(vectors, reach):
 
 
 def along(normal, vector):
-    """The part of each vector along the unit vector of its row."""
+    """Returns the part of each vector along the unit vector of its row."""
     return normal * np.sum(normal * vector, axis=-1, keepdims=True)
 
 
@@ -40,17 +40,17 @@ def column(values):
 
 
 def harmonic_mean(pairs):
-    """Of the radii, a_ij = 2 a_i a_j / (a_i + a_j)."""
+    """Returns the harmonic mean of the radii, a_ij = 2 a_i a_j / (a_i + a_j)."""
     return 2 * pairs.radius_i * pairs.radius_j / (pairs.radius_i + pairs.radius_j)
 
 
 @dataclasses.dataclass
 class Pairs:
-    """Rows of pairs of particles i < j; the separation r leads from i to an image of j, and F_i is the force on i."""
+    """Rows of pairs of particles i < j; r leads from i to an image of j, F_i acts on i."""
 
     i: np.ndarray
     j: np.ndarray
-    image: np.ndarray  # lattice vectors that are added to the position of j as it is given
+    image: np.ndarray  # lattice vectors added to the given position of j
     separation: np.ndarray
     radius_i: np.ndarray
     radius_j: np.ndarray
@@ -58,7 +58,7 @@ class Pairs:
     velocity_j: np.ndarray  # of the image: U_j + rate Ly k_y in x
     spin_i: np.ndarray
     spin_j: np.ndarray
-    height_i: np.ndarray  # y of i, by which the flow is known at i and at the image of j
+    height_i: np.ndarray  # y of i, which gives the flow at i and at the image of j
 
     def __len__(self):
         return len(self.i)
@@ -77,7 +77,7 @@ class Pairs:
 
     @property
     def surface_distance(self):
-        """h = r - a_i - a_j, negative in overlap."""
+        """Returns h = r - a_i - a_j, negative in overlap."""
         return self.distance - self.radius_i - self.radius_j
 
     @property
@@ -93,7 +93,7 @@ class Pairs:
 
 
 def near_ones(i, position, radius, vectors, shifts, reach):
-    """Of all later particles in all images, those near particle i: i, j, image and separation."""
+    """Returns i, j, image and separation of all later particles in all images near particle i."""
     apart = position[i + 1 :] - position[i]
     images = -np.rint(apart @ np.linalg.inv(vectors))[:, None, :] + shifts
     separation = apart[:, None, :] + images @ vectors
@@ -103,7 +103,7 @@ def near_ones(i, position, radius, vectors, shifts, reach):
 
 
 def pairs_within(state, shear_rate, reach):
-    """All pairs, in all images, whose centres are closer than reach(a_i, a_j). Every pair of particles is tried in
+    """Returns all pairs in all images whose centres are closer than reach(a_i, a_j). Every pair is tried in
     every image that could be near."""
     vectors = lattice(state["box"])
     position, radius = np.array(state["position"], float), np.array(state["radius"], float)

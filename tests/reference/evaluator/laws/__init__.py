@@ -1,5 +1,5 @@
-"""One function for each law. Sources as in engine/PHYSICS.md: L is Li, Royer & Ness (2023), M is Monti et al. (2021).
+"""One function for each law. Sources: L is Li, Royer & Ness (2023), M is Monti et al. (2021).
 
-A law of pairs takes Pairs and its own parameters, and returns the force on i; with it, where it has torques, those on i
-and on j. The force on j is the opposite one.
+A pair law takes Pairs and its own parameters. It returns the force on i, and for laws with torques those on i
+and j. The force on j is opposite.
 """

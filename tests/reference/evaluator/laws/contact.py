@@ -5,36 +5,36 @@ from evaluator.geometry import across, along, column, harmonic_mean
 
 
 def contact_normal(pairs, stiffness):
-    """F_i = -k_n delta n (L 3, M 4a)."""
+    """Returns F_i = -k_n delta n (L 3, M 4a)."""
     return -stiffness * column(pairs.overlap) * pairs.normal
 
 
 def contact_damping(pairs, damping):
-    """F_i = gamma_n n n.(U_j - U_i) while the spheres overlap (M 4a)."""
+    """Returns F_i = gamma_n n n.(U_j - U_i) while the spheres overlap (M 4a)."""
     touching = column(pairs.overlap > 0)
     return damping * touching * along(pairs.normal, pairs.velocity_j - pairs.velocity_i)
 
 
 def levers(pairs):
-    """l = a - delta / 2, from each centre to the middle of the overlap: with them the torques of a pair balance."""
+    """Returns l = a - delta / 2, from each centre to the middle of the overlap; torques then balance."""
     return pairs.radius_i - pairs.overlap / 2, pairs.radius_j - pairs.overlap / 2
 
 
 def slip_velocity(pairs):
-    """v_t = (1 - nn).(U_j - U_i) - (l_i Omega_i + l_j Omega_j) x n (L 4, M 5)."""
+    """Returns v_t = (1 - nn).(U_j - U_i) - (l_i Omega_i + l_j Omega_j) x n (L 4, M 5)."""
     lever_i, lever_j = levers(pairs)
     turning = np.cross(column(lever_i) * pairs.spin_i + column(lever_j) * pairs.spin_j, pairs.normal)
     return across(pairs.normal, pairs.velocity_j - pairs.velocity_i) - turning
 
 
 def rolling_velocity(pairs):
-    """v_r = a_ij n x (Omega_i - Omega_j) (M B.1)."""
+    """Returns v_r = a_ij n x (Omega_i - Omega_j) (M B.1)."""
     return column(harmonic_mean(pairs)) * np.cross(pairs.normal, pairs.spin_i - pairs.spin_j)
 
 
 def held_spring(pairs, spring, velocity, time, longest):
-    """A tangential spring after a time: turned into the tangent plane with its length kept, stretched by the velocity
-    there, and shortened to what Coulomb's law lets it be (M 5)."""
+    """Returns a tangential spring after a time: turned into the tangent plane at constant length, stretched
+    by the velocity there, and shortened to Coulomb's limit (M 5)."""
     length = np.linalg.norm(spring, axis=1, keepdims=True)
     flat = across(pairs.normal, spring)
     flat_length = np.linalg.norm(flat, axis=1, keepdims=True)
@@ -48,7 +48,7 @@ def shortened(vectors, longest):
 
 
 def friction(pairs, spring, stiffness, damping=0.0, limit=np.inf):
-    """F_i = k_t s + gamma_t v_t, which Coulomb's law limits, T = l n x F_i on both (L 3 and 4, M 4)."""
+    """Returns F_i = k_t s + gamma_t v_t within Coulomb's limit, and T = l n x F_i (L 3 and 4, M 4)."""
     force = shortened(stiffness * spring + damping * slip_velocity(pairs), limit)
     moment = np.cross(pairs.normal, force)
     lever_i, lever_j = levers(pairs)
@@ -56,6 +56,6 @@ def friction(pairs, spring, stiffness, damping=0.0, limit=np.inf):
 
 
 def rolling(pairs, spring, stiffness):
-    """T_i = a_ij n x k_r s_r = -T_j, without a force (M B.1)."""
+    """Returns T_i = a_ij n x k_r s_r = -T_j and no force (M B.1)."""
     torque = column(harmonic_mean(pairs)) * np.cross(pairs.normal, stiffness * spring)
     return np.zeros_like(torque), torque, -torque

@@ -5,10 +5,9 @@ PI = np.pi
 
 
 def resistances(pairs, viscosity, inner_gap):
-    """X_A, Y_A, Y_B11, Y_B21, Y_C11, Y_C12, Y_C22 (L 9-12, 15-18) at xi = 2 h / (a_i + a_j), or at the inner gap where
-    that is larger; with eta in them. Y_B times q and Y_C times q^2, q = r / (a_i + a_j), so that rigid motion meets no
-    resistance.
-    """
+    """Returns X_A, Y_A, Y_B11, Y_B21, Y_C11, Y_C12, Y_C22 (L 9-12, 15-18), with eta. They are taken at
+    xi = 2 h / (a_i + a_j), or at the inner gap if that is larger. The factors q = r / (a_i + a_j) of Y_B and
+    q^2 of Y_C leave rigid motion without resistance."""
     a_i, a_j = pairs.radius_i, pairs.radius_j
     b, c = a_j / a_i, a_i / a_j
     xi = np.maximum(2 * pairs.surface_distance / (a_i + a_j), inner_gap)
@@ -26,7 +25,7 @@ def resistances(pairs, viscosity, inner_gap):
 
 
 def projectors(normal):
-    """N = nn, T = 1 - nn, and the matrix X of v -> v x n."""
+    """Returns N = nn, T = 1 - nn, and the matrix X of v -> v x n."""
     x, y, z = normal.T
     zero = np.zeros_like(x)
     turn = np.array([[zero, z, -y], [-z, zero, x], [y, -x, zero]]).transpose(2, 0, 1)
@@ -35,12 +34,12 @@ def projectors(normal):
 
 
 def blocks(rows):
-    """Matrices of a row of blocks of 3 x 3 for each pair, and a scalar in front of each."""
+    """Returns matrices of rows of 3 x 3 blocks for each pair."""
     return np.concatenate([np.concatenate(row, axis=2) for row in rows], axis=1)
 
 
 def resistance_matrix(pairs, viscosity, inner_gap):
-    """R of (F_i, F_j, T_i, T_j) = -R (U_i, U_j, Omega_i, Omega_j), 12 x 12 for each pair (L 8, 13, 14, 29)."""
+    """Returns R of (F_i, F_j, T_i, T_j) = -R (U_i, U_j, Omega_i, Omega_j), 12 x 12 each (L 8, 13, 14, 29)."""
     XA, YA, B1, B2, C11, C12, C22 = (v[:, None, None] for v in resistances(pairs, viscosity, inner_gap))
     N, T, X = projectors(pairs.normal)
     A = XA * N + YA * T
@@ -55,29 +54,29 @@ def resistance_matrix(pairs, viscosity, inner_gap):
 
 
 def noise_matrix(pairs, viscosity, inner_gap):
-    """B of (F_i, F_j, T_i, T_j) = sqrt(2 kT / dt) B (theta, chi), 12 x 6 for each pair, B B' = R (L 22-28; the root in
-    T_j has a minus, without which that does not hold)."""
+    """Returns B of (F_i, F_j, T_i, T_j) = sqrt(2 kT / dt) B (theta, chi), 12 x 6 for each pair, B B' = R
+    (L 22-28). The root in T_j has a minus, which B B' = R requires."""
     XA, YA, B1, B2, C11, _, C22 = (v[:, None, None] for v in resistances(pairs, viscosity, inner_gap))
     N, T, X = projectors(pairs.normal)
     A, zero = np.sqrt(XA) * N + np.sqrt(YA) * T, np.zeros_like(N)
-    # Not negative in exact numbers: both are 6 pi eta a_i^3 b^3 L q^2 / ((1 + b) (2 + b + 2 b^2)).
+    # The exact values are not negative: both are 6 pi eta a_i^3 b^3 L q^2 / ((1 + b) (2 + b + 2 b^2)).
     spin_i, spin_j = (np.sqrt(np.maximum(C - B**2 / YA, 0)) for C, B in ((C11, B1), (C22, B2)))
     pump_i, pump_j = B1 / np.sqrt(YA), B2 / np.sqrt(YA)
     return blocks([[A, zero], [-A, zero], [pump_i * X, spin_i * T], [pump_j * X, -spin_j * T]])
 
 
 def parts_of(load):
-    """Force on i and both torques of a column of twelve; the force on j is known."""
+    """Returns the force on i and both torques of a column of twelve; the force on j is opposite."""
     return load[:, 0:3], load[:, 6:9], load[:, 9:12]
 
 
 def lubrication(pairs, viscosity, inner_gap):
-    """Of velocities in the laboratory's frame (L 8, 13, 14)."""
+    """Returns the loads of velocities in the laboratory frame (L 8, 13, 14)."""
     motion = np.concatenate((pairs.velocity_i, pairs.velocity_j, pairs.spin_i, pairs.spin_j), axis=1)
     return parts_of(-np.einsum("pab,pb->pa", resistance_matrix(pairs, viscosity, inner_gap), motion))
 
 
 def lubrication_noise(pairs, viscosity, inner_gap, amplitude, theta, chi):
-    """`amplitude` is sqrt(2 kT / dt); theta and chi are normal vectors of the pair."""
+    """Returns the noise; `amplitude` is sqrt(2 kT / dt), theta and chi are normal vectors of the pair."""
     normals = np.concatenate((theta, chi), axis=1)
     return parts_of(amplitude * np.einsum("pab,pb->pa", noise_matrix(pairs, viscosity, inner_gap), normals))

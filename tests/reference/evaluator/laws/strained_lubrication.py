@@ -1,4 +1,4 @@
-"""Lubrication in a flow of any shape, by velocities relative to it and its rate of strain (M 3 and A.1 to A.7)."""
+"""Lubrication in any flow, by velocities relative to it and its strain rates (M 3 and A.1 to A.7)."""
 import numpy as np
 
 from evaluator.geometry import across, along, column
@@ -8,8 +8,8 @@ PI = np.pi
 
 
 def mari_coefficients(a_i, a_j):
-    """g of X_A, Y_A, Y_B, Y_C, X_G, Y_G, Y_H for ii, ij, ji, jj; X = 6 pi eta g / d and Y = 6 pi eta g ln(1/d). With b
-    the ratio of the sizes; those of j follow by exchanging the spheres, which turns b into 1/b."""
+    """Returns g of X_A, Y_A, Y_B, Y_C, X_G, Y_G, Y_H for ii, ij, ji, jj, with X = 6 pi eta g / d and
+    Y = 6 pi eta g ln(1/d). b is the size ratio; those of j follow by exchanging the spheres, b to 1/b."""
     b, c, s = a_j / a_i, a_i / a_j, a_i + a_j
 
     def own(power, shape):
@@ -52,12 +52,14 @@ def mari_coefficients(a_i, a_j):
 
 
 def mari_lubrication(pairs, viscosity, regularisation, flow):
-    """With u and w relative to the flow, P = n.E.n, Q = 2 E.n - 2 (n.E.n) n, H = 2 n x (E.n):
+    """Returns F_i, T_i and T_j. With u and w relative to the flow and P = n.E.n, Q = 2 E.n - 2 (n.E.n) n,
+    H = 2 n x (E.n):
 
-    F_i = -A_ii u_i - A_ij u_j - n x (YB_ii w_i + YB_ji w_j) + (XG_ii P_i + XG_ji P_j) n + YG_ii Q_i + YG_ji Q_j
+    F_i = -A_ii u_i - A_ij u_j - n x (YB_ii w_i + YB_ji w_j)
+          + (XG_ii P_i + XG_ji P_j) n + YG_ii Q_i + YG_ji Q_j
     T_i = n x (YB_ii u_i + YB_ij u_j) - (1 - nn).(YC_ii w_i + YC_ij w_j) + YH_ii H_i + YH_ji H_j
 
-    and T_j with i and j exchanged in the indices. d = max(xi, 0) + regularisation. The print has H twice as large."""
+    T_j has i and j exchanged in the indices. d = max(xi, 0) + regularisation. The print has 2 H."""
     n = pairs.normal
     d = np.maximum(2 * pairs.surface_distance / (pairs.radius_i + pairs.radius_j), 0) + regularisation
     size = {"X": 6 * PI * viscosity / d, "Y": 6 * PI * viscosity * np.log(1 / d)}
