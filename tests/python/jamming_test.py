@@ -449,7 +449,7 @@ class Answers(unittest.TestCase):
         self.assertEqual(lines[0], "jam: relative_viscosity over /volume_fraction, 1 curve")
         self.assertRegex(lines[3], r"^ +6   0.62  0.66 jammed  0.6500 ± 0.00\d+  0.6\d+ to 0.6\d+  1.600 ± 0.0\d+ ")
         self.assertRegex(lines[3], r"0.00/2 +0.640 ± 0.012 \*$")
-        self.assertEqual(lines[-1], "can tell: sweep the stiffness.")
+        self.assertEqual(lines[-1], "does: sweep the stiffness.")
         self.assertNotIn("steepest", self.text([curve(law_and_jam())], by="law"))
 
     def test_what_is_true_of_many_curves_is_told_once(self):

@@ -121,7 +121,7 @@ TEST_F(Checkpoint, AnyFlippedBitOfThePayloadIsNoticed) {
 
 // The payloads are intact but have the wrong length.
 TEST_F(Checkpoint, PayloadsOfTheWrongLengthAreRefused) {
-  expect_refused(with_payload(payload() + "x"), "more than belongs there");
+  expect_refused(with_payload(payload() + "x"), "unexpected bytes at its end");
   expect_refused(with_payload(payload().substr(0, payload().size() - 8)), "ends too early");
   expect_refused(with_payload(""), "ends too early");
 }

@@ -232,7 +232,7 @@ TEST_F(StartedJob, OfAGsdFileWithoutDiametersSaysSo) {
   frames.add("particles/position", std::vector<float>(180), 3);
   frames.end_frame();
   write_durably(path("bare.gsd"), frames.head() + frames.pending() + frames.tail());
-  EXPECT_NE(refusal(scene(start("bare.gsd"))).find("must have particles/diameter, and has none"),
+  EXPECT_NE(refusal(scene(start("bare.gsd"))).find("must have particles/diameter, which is absent"),
             std::string::npos)
       << refusal(scene(start("bare.gsd")));
 }
