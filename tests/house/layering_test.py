@@ -26,9 +26,10 @@ class Layering(unittest.TestCase):
                 os.makedirs(os.path.join(folder, os.path.dirname(path)), exist_ok=True)
                 with open(os.path.join(folder, path), "w", encoding="utf-8") as f:
                     f.write(text)
-            done = subprocess.run(
-                [sys.executable, SCRIPT, "--source", folder], capture_output=True, text=True, check=False
-            )
+            command = [sys.executable, SCRIPT, "--source", folder]
+            if layering.PICTURE not in files:
+                subprocess.run([*command, "--picture"], check=True)
+            done = subprocess.run(command, capture_output=True, text=True, check=False)
         return done.returncode, done.stdout
 
     def test_downward_is_allowed(self):
@@ -48,6 +49,11 @@ class Layering(unittest.TestCase):
         code, text = self.said({"runner/attic/a.cpp": '#include "contract/json.h"\n'})
         self.assertEqual(code, 1)
         self.assertIn("runner/attic/a.cpp: its folder is no room", text)
+
+    def test_a_picture_of_other_rooms(self):
+        code, text = self.said({layering.PICTURE: "<svg/>"})
+        self.assertEqual(code, 1)
+        self.assertIn(f"{layering.PICTURE}: shows other rooms or includes", text)
 
     def test_a_layer_without_files(self):
         code, text = self.said({}, {path: text for path, text in EVERY_LAYER.items() if "terms" not in path})
