@@ -11,11 +11,11 @@ sys.path.insert(0, str(ROOT / "results"))
 from studies.verdicts import rows_of, verdict_of_statements, with_failed_checks
 
 PAGE = ROOT / "docs" / "statements.md"
-LINES, WIDTH = 45, 130  # as read: without the targets of links
-# | where in print | what it says | verdict | statements that hold | study |
+LINES, CELL = 45, 130  # as read: without the targets of links
+# | where in print | what it says | what was found | verdict | statements that hold | study |
 ROW = re.compile(
-    r"\| (?P<sources>[^|]+?) \| (?P<says>[^|]+?) \| (?P<verdict>[^|]+?) \| (?P<holding>\d+) of (?P<count>\d+) "
-    r"\| \[(?P<study>[\w-]+)\]\(\.\./results/(?P=study)/README\.md\) \|"
+    r"\| (?P<sources>[^|]+?) \| (?P<says>[^|]+?) \| (?P<found>[^|]+?) \| (?P<verdict>[^|]+?) "
+    r"\| (?P<holding>\d+) of (?P<count>\d+) \| \[(?P<study>[\w-]+)\]\(\.\./results/(?P=study)/README\.md\) \|"
 )
 
 
@@ -80,7 +80,8 @@ class Statements(unittest.TestCase):
         lines = PAGE.read_text().rstrip("\n").split("\n")
         self.assertLessEqual(len(lines), LINES)
         read = [re.sub(r"\]\([^)]*\)", "]", line) for line in lines]
-        self.assertEqual([line for line in read if len(line) > WIDTH], [])
+        cells = [cell.strip() for line in read for cell in line.split("|")]
+        self.assertEqual([cell for cell in cells if len(cell) > CELL], [])
 
 
 if __name__ == "__main__":
