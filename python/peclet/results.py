@@ -161,7 +161,7 @@ class Results:
             row["provisional"] = row["mean"] is None
             row["jammed"] = row.get("jammed") == 1
             if row["provisional"]:
-                row |= {name: row.get(f"so_far_{name}") for name in ("count", "mean", "standard_error")}
+                row |= {name: row.get(f"all_seeds_{name}") for name in ("count", "mean", "standard_error")}
         if quantity not in (None, self.target["observable"]):
             self._replace_by(quantity, rows)
         return Table.of_rows([*axes, *OF_POINTS], rows)
