@@ -10,7 +10,7 @@ sys.path.insert(0, str(HERE.parent))
 from studies.driver import BLUE, Check, Figure, Finding, GREEN, ORANGE, RED, REFERENCE_SCENE, difference, entries
 from studies.driver import estimate, groups, main, merged, number, over, quotient, read_rows, where, write_rows
 
-TITLE = "Shear to and fro beside linear response"
+TITLE = "Oscillating shear beside linear response"
 AT_REST = HERE.parent / "at-rest" / "curves.csv"
 VISCOSITY, THERMAL_ENERGY, FRACTION = 0.1, 0.017, 0.45
 BROWNIAN_TIME = VISCOSITY / THERMAL_ENERGY
