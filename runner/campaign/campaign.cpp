@@ -13,11 +13,11 @@
 namespace peclet::runner {
 namespace {
 
-// With fewer, intervals of a rule with several stop tests hold the mean less often than 94 %
+// With a smaller minimum and several stop tests, intervals hold the mean in less than 94 % of the cases
 // (results/coverage).
 constexpr int smallest_minimum = 8;
 
-// What goes into headings and names of files.
+// A name is used in headings and names of files.
 constexpr std::size_t longest_name = 100;
 
 std::vector<Criterion> also_of(const Json& target, const std::string& leading, const std::string& file) {
@@ -36,7 +36,7 @@ std::vector<Criterion> also_of(const Json& target, const std::string& leading, c
   return also;
 }
 
-// What a campaign of a fixed number of realisations shows.
+// Returns the target of a campaign with a fixed number of realisations: the observables that it shows.
 Target shown(const Json& document, const std::string& file) {
   if (document.contains("target")) {
     throw InputError(file, "/target", shortened(document["target"]),
@@ -75,7 +75,7 @@ int seeds_with_files(const Json& document) {
   return rule == "all" ? most_realisations : rule == "none" ? 0 : rule.get<int>();
 }
 
-// Throws InputError for a file that has a scene alone, as many begin with, and says what belongs around it.
+// Throws InputError if the file is a scene without a campaign, a common first mistake, and says what to add.
 void refuse_bare_scene(const Json& written, const std::string& file) {
   if (!written.is_object() || written.contains("scene") || !written.contains("particles")) return;
   throw InputError(
@@ -198,13 +198,13 @@ Campaign parse_campaign(const Json& written, const std::string& file) {
   return campaign;
 }
 
-// The table of a campaign's keys: what schema/campaign.schema.json and the manual are printed from.
+// The table of keys, from which schema/campaign.schema.json and the manual are generated.
 
 namespace {
 
 constexpr std::size_t most_further_targets = 100;
 
-// Rows of a tolerance; {0} is the target.
+// Rows of a tolerance: {0} is the place of its target, {1} the meaning of relative_to.
 constexpr const char* tolerance_rows = R"(
 /target{0}/relative_tolerance | number > 0 and < 1 | Half-width of the confidence interval over |mean| that is
     good enough; 0.05 is 5 %.

@@ -63,7 +63,7 @@ std::vector<std::vector<Json>> read_rows(const Json& entry, std::size_t pointers
   return rows;
 }
 
-// One names a part of what the other names, or the same.
+// Returns true if both pointers name the same value, or one a part of the other.
 bool overlap(const std::string& one, const std::string& other) {
   const auto [shorter, longer] = one.size() < other.size() ? std::pair(one, other) : std::pair(other, one);
   return longer.starts_with(shorter) && (longer.size() == shorter.size() || longer[shorter.size()] == '/');
@@ -109,8 +109,8 @@ bool is_number(const std::string& step) { return step.find_first_not_of("0123456
 
 constexpr std::size_t longest_label = 100;
 
-// A value that is too long to be read in a table, or that a terminal would obey, is called by its place among
-// the values, from 1.
+// Returns the value for a label. A value that is too long for a table, or has control characters, becomes its
+// place among the values, from 1: "#1".
 std::string value_text(const Json& value, std::size_t row) {
   constexpr std::size_t longest = 24;
   const std::string text = value.is_string() ? value.get<std::string>() : canonical_json(value);
@@ -145,13 +145,12 @@ std::string SweepLabels::of(const std::vector<std::size_t>& row_of_entry) const 
   return label;
 }
 
-// The grid of a sweep: which scenes there are, and what they are called.
-
 namespace {
 
 constexpr std::size_t most_points = 100'000;
 
-// The element of an array that a step of a pointer names; RFC 6901 allows no leading zeros.
+// Returns the index of the element that a step of a pointer names; nothing if the array lacks it. RFC 6901
+// allows no leading zeros.
 std::optional<std::size_t> element(const Json& array, const std::string& step) {
   std::size_t index = 0;
   const char* const end = step.data() + step.size();
@@ -172,7 +171,7 @@ std::vector<std::string> steps_of(const std::string& pointer) {
   return steps;
 }
 
-// About the bytes of memory that a document takes: its text, and each of its values.
+// Returns roughly the memory of a document [bytes]: its text, and a constant for each of its values.
 std::size_t weight_of(const Json& document) {
   constexpr std::size_t of_a_value = 50;
   if (!document.is_structured()) {
@@ -185,7 +184,7 @@ std::size_t weight_of(const Json& document) {
   return weight;
 }
 
-// Each point has a scene of its own. 100 000 ordinary ones are far from this.
+// Throws InputError if the scenes of all points need too much memory. 100 000 ordinary ones need far less.
 void refuse_heavy_scenes(const Json& scene, std::size_t points, const std::string& file) {
   constexpr std::size_t most = 2'000'000'000;
   if (points <= 1 || weight_of(scene) <= most / points) return;
@@ -194,7 +193,7 @@ void refuse_heavy_scenes(const Json& scene, std::size_t points, const std::strin
       fmt::format("must be small enough for scenes of all points together to take {} bytes", most));
 }
 
-// Which row of each entry makes up a point.
+// The row of each entry that makes up a point.
 using GridIndex = std::vector<std::size_t>;
 
 std::size_t count_points(const std::vector<SweepEntry>& sweep, const std::string& file) {
@@ -254,7 +253,7 @@ StatePoint make_point(const Json& scene, const std::vector<SweepEntry>& sweep, c
 void set_at(Json& scene, const std::string& pointer, const Json& value) {
   Json* place = &scene;
   for (const std::string& step : steps_of(pointer)) {
-    if (place->is_null()) *place = Json::object();  // made by the step before
+    if (place->is_null()) *place = Json::object();  // created by the step before
     if (place->is_array()) {
       const auto index = element(*place, step);
       if (!index)
