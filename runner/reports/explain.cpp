@@ -25,11 +25,11 @@ std::vector<PointSummary> selected(std::vector<PointSummary> points, const std::
   return {std::move(points[find_point(records, name)])};
 }
 
-// An observable of the last stop test, and how well it is to be known.
+// An observable at the last stop test, with its criterion.
 struct Known {
   ObservableStopTest stop_test;
   Criterion criterion;
-  ObservableStopTest measure;  // of the mean that the tolerance is a share of
+  ObservableStopTest measure;  // the observable to which the tolerance is relative
 };
 
 std::vector<Known> known_of(const StopTest& stop_test, const Target& target) {
@@ -60,8 +60,8 @@ std::string widths_text(const std::vector<Known>& all) {
   return fmt::format("{}", fmt::join(widths, ", "));
 }
 
-// "5 %"; of several "5 % for relative_viscosity, 0.2 for pressure": those on whose observable the stop test
-// said `verdict`, or all of them.
+// Returns "5 %", or for several criteria "5 % for relative_viscosity, 0.2 for pressure": those with this
+// verdict, or all.
 std::string tolerances_text(const std::vector<Known>& all, std::optional<Verdict> verdict = {}) {
   if (all.size() == 1) return to_string(all.front().criterion.tolerance);
   std::vector<std::string> tolerances;
@@ -72,16 +72,15 @@ std::string tolerances_text(const std::vector<Known>& all, std::optional<Verdict
   return fmt::format("{}", fmt::join(tolerances, ", "));
 }
 
-// Seeds that the tolerances would take, as half-widths fall with 1 / sqrt(n).
+// Returns the seeds that the tolerances need, because half-widths fall with 1 / sqrt(n).
 std::string seeds_for(const StopTest& stop_test, const Target& target) {
   const double ratio = largest_share(stop_test, target);
   return std::isfinite(ratio) ? fmt::format("about {}", rough(std::ceil(stop_test.seeds * ratio * ratio)))
                               : "more";
 }
 
-// The first observable of which a tolerance is a share although it may be zero; null where there is none. A
-// share of such a mean is no measure of accuracy: whatever number of seeds it led to would be of the mean's
-// own noise.
+// Returns the first criterion whose tolerance is a share of a mean that may be zero, or null. The number of
+// seeds that such a tolerance needs depends only on the noise of the mean.
 const Known* that_may_be_zero(const std::vector<Known>& all) {
   const auto found = std::find_if(all.begin(), all.end(), [](const Known& known) {
     const ObservableStopTest& of = known.measure;
@@ -90,7 +89,7 @@ const Known* that_may_be_zero(const std::vector<Known>& all) {
   return found == all.end() ? nullptr : &*found;
 }
 
-// "/target/also/0/"
+// Returns the place of a criterion in a campaign: "/target/also/0/".
 std::string place_of(const Target& target, const Criterion& criterion) {
   const std::string observable = pointer_of(target, criterion.observable);
   return observable.substr(0, observable.rfind('/') + 1);
@@ -112,7 +111,7 @@ std::string advice_when_capped(const StopTest& stop_test, const Target& target) 
                      key_of(worst->criterion.tolerance));
 }
 
-// Why observables of the last stop test have no interval; nothing where all have one.
+// Returns the reason why observables of the last stop test have no interval; "" if all have one.
 std::string missing_interval_text(const PointSummary& point) {
   if (point.without_interval.empty()) return "";
   const StopTest& stop_test = point.stop_tests.back();
@@ -125,7 +124,7 @@ std::string missing_interval_text(const PointSummary& point) {
                      fmt::join(point.without_interval, ", "));
 }
 
-// What makes a share of another observable's mean less sure.
+// Returns the reason why a sufficient share of another mean is not enough: that mean is uncertain itself.
 std::string measure_text(const std::vector<Known>& all) {
   for (const Known& known : all) {
     const bool is_its_own = known.measure.observable == known.stop_test.observable;
@@ -283,7 +282,7 @@ std::string stop_tests_table(const std::vector<StopTest>& stop_tests, const Targ
   return table.text("  ");
 }
 
-// Of a target of several observables, each at the last stop test.
+// Returns the table of all observables at the last stop test; "" for a target of one observable.
 std::string observables_table(const std::vector<StopTest>& stop_tests, const Target& target) {
   if (stop_tests.empty() || stop_tests.back().each.empty()) return "";
   TextTable table;
@@ -320,7 +319,7 @@ Json blamed_attempts_json(Database& database, std::int64_t point) {
   return blamed;
 }
 
-// What the realisations of a point have left.
+// Returns the files that the realisations of a point have left.
 Json files_json(Database& database, const CampaignDirectory& directory, std::int64_t point) {
   int kept = 0, thrown_away = 0;
   std::uint64_t bytes = 0;  // of those that are kept

@@ -13,7 +13,7 @@
 namespace peclet::runner {
 namespace {
 
-// The degrees of freedom of what the open points cost together; NaN if nothing is open.
+// Returns the degrees of freedom of the summed cost of the open points; NaN if none is open.
 double common_degrees(const Plan& plan) {
   double sum = 0, squares = 0;
   for (const PointPlan& point : plan.points) {
@@ -65,13 +65,13 @@ Totals totals_of(const Plan& plan, const Target& target) {
     }
     return std::max(work / plan.workers, longest);
   });
-  // The machine may be faster or slower than it was for the seeds that the costs come from.
+  // The machine may become faster or slower than it was for the measured seeds.
   totals.wall_seconds_to_come.lower /= machine_allowance;
   totals.wall_seconds_to_come.upper *= machine_allowance;
   return totals;
 }
 
-// Looks at what is known as a run for the campaign's target would.
+// Sets the deciding stop test of a point, or else its prediction, from the known outcomes.
 void predict_point(PointPlan& point, const Campaign& campaign,
                    const std::vector<std::optional<Outcome>>& outcomes) {
   const std::vector<StopTest> stop_tests = replay_stop_tests(
@@ -128,7 +128,7 @@ Plan make_plan(const Campaign& campaign, const std::vector<double>& particle_ste
   return plan;
 }
 
-// How a plan looks to a person, and to a program.
+// Texts and JSON of a plan.
 
 namespace {
 
@@ -140,7 +140,7 @@ double total_hours(const Plan& plan, int seeds) {
   return total;
 }
 
-// Some point is, or could have been, predicted.
+// Returns true if some point is decided, predicted, or has two pilot seeds.
 bool has_values(const Plan& plan) {
   return std::any_of(plan.points.begin(), plan.points.end(), [](const PointPlan& point) {
     return point.decided || point.prediction.pilot >= 2 || point.is_predicted();
@@ -160,7 +160,7 @@ std::string with_range(const Expected<Number>& value, double unit) {
                      rough(value.upper / unit));
 }
 
-// Seeds, hours and what else is to be said of a point.
+// Returns the cells of seeds, hours and remark of a point.
 std::vector<std::string> predicted_cells(const PointPlan& point) {
   if (point.decided) {
     return {fmt::format("{}", point.decided->seeds), rough(hours(point, point.decided->seeds)),
@@ -268,7 +268,7 @@ std::string ending_text(const Plan& plan) {
                      fmt::localtime(plan.made_at + std::llround(totals.wall_seconds_to_come.likely)));
 }
 
-// A way that people may not know of; which one is taken is theirs to say.
+// Returns the points for which linear_response at rest may be cheaper. The choice is the user's.
 std::string rest_text(const Plan& plan) {
   std::string text;
   for (const PointPlan& point : plan.points) {
