@@ -29,7 +29,7 @@ std::vector<Criterion> also_of(const Json& target, const std::string& leading, c
     const auto is_it = [&](const Criterion& other) { return other.observable == criterion.observable; };
     if (criterion.observable == leading || std::any_of(also.begin(), also.end(), is_it)) {
       throw InputError(file, pointer + "/observable", criterion.observable,
-                       "must be another one than those before it");
+                       "must differ from the observables before it");
     }
     also.push_back(std::move(criterion));
   }
@@ -40,8 +40,8 @@ std::vector<Criterion> also_of(const Json& target, const std::string& leading, c
 Target shown(const Json& document, const std::string& file) {
   if (document.contains("target")) {
     throw InputError(file, "/target", shortened(document["target"]),
-                     "must not be given beside a fixed number of realisations; with a target these are { "
-                     "\"minimum\": ..., \"maximum\": ... }");
+                     "must not be given beside a fixed number of realisations; with a target, /realisations "
+                     "is { \"minimum\": ..., \"maximum\": ... }");
   }
   const std::vector<std::string> names = document.value("show", std::vector<std::string>{usual_observable});
   Target target{names.front(), Tolerance::none(), usual_confidence};
@@ -49,7 +49,7 @@ Target shown(const Json& document, const std::string& file) {
     if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(place), names[place]) !=
         names.begin() + static_cast<std::ptrdiff_t>(place)) {
       throw InputError(file, fmt::format("/show/{}", place), names[place],
-                       "must be another one than those before it");
+                       "must differ from the observables before it");
     }
     target.also.push_back({names[place], Tolerance::none()});
   }
@@ -59,7 +59,7 @@ Target shown(const Json& document, const std::string& file) {
 Target aimed_at(const Json& document, const std::string& file) {
   if (!document.contains("target")) {
     throw InputError(file, "/target", "missing",
-                     "must be an object, or /realisations the number of seeds of every point");
+                     "must be an object, unless /realisations is the number of seeds of every point");
   }
   if (document.contains("show")) {
     throw InputError(file, "/show", shortened(document["show"]),
@@ -80,9 +80,9 @@ void refuse_bare_scene(const Json& written, const std::string& file) {
   if (!written.is_object() || written.contains("scene") || !written.contains("particles")) return;
   throw InputError(
       file, "", "",
-      "is a scene, and a campaign is asked for: { \"name\": ..., \"scene\": this, \"target\": { "
+      "is a scene, but must be a campaign: { \"name\": ..., \"scene\": this, \"target\": { "
       "\"relative_tolerance\": 0.05 }, \"realisations\": { \"minimum\": 10, \"maximum\": 200 } }; "
-      "`peclet init NEW.json` writes one to begin with, `peclet-engine run` runs a scene once");
+      "`peclet init NEW.json` writes an example, and `peclet-engine run` runs a scene once");
 }
 
 }  // namespace
@@ -158,7 +158,7 @@ void check_campaign_name(const std::string& name, const std::string& file) {
   if (name.empty() || name.size() > longest_name || name.find_first_not_of(allowed) != std::string::npos) {
     throw InputError(
         file, "/name", shortened(name),
-        fmt::format("must be 1 to {} letters, digits, dots, underscores and hyphens", longest_name));
+        fmt::format("must have 1 to {} letters, digits, dots, underscores and hyphens", longest_name));
   }
 }
 
@@ -189,7 +189,7 @@ Campaign parse_campaign(const Json& written, const std::string& file) {
     throw InputError(
         file, "/realisations/minimum", fmt::format("{}", campaign.minimum_realisations),
         fmt::format("must be an integer >= {}, or equal to maximum: the spread of fewer seeds is too "
-                    "uncertain to stop by",
+                    "uncertain for a stop test",
                     smallest_minimum));
   }
   campaign.engine = document["engine"].get<std::vector<std::string>>();

@@ -56,8 +56,8 @@ void require_campaign_file(const fs::path& given) {
     const fs::path file = campaign_file_of(given);
     throw InputError(given.string(), "", "",
                      fs::is_regular_file(file)
-                         ? fmt::format("is a folder, and the campaign's file is asked for: {}", file.string())
-                         : "is a folder, and a campaign's file is asked for");
+                         ? fmt::format("is a folder, but must be the campaign file: {}", file.string())
+                         : "is a folder, but must be a campaign file");
   }
   std::error_code impossible;
   if (!fs::exists(given, impossible) && !impossible) {

@@ -55,8 +55,9 @@ std::vector<std::vector<Json>> read_rows(const Json& entry, std::size_t pointers
       continue;
     }
     if (!value.is_array() || value.size() != pointers) {
-      throw InputError(file, fmt::format("{}/{}", where, rows.size()), shortened(value),
-                       fmt::format("must be an array of {}, one for every pointer of set", pointers));
+      throw InputError(
+          file, fmt::format("{}/{}", where, rows.size()), shortened(value),
+          fmt::format("must be an array with one value for each pointer of set, {} in all", pointers));
     }
     rows.emplace_back(value.begin(), value.end());
   }
@@ -79,7 +80,7 @@ void refuse_conflicts(const std::vector<SweepEntry>& sweep, const std::string& f
         throw InputError(file, fmt::format("/sweep/{}/set", entry), pointer,
                          *other == pointer
                              ? "must be set once only"
-                             : fmt::format("must not overlap with {}, which is set too", *other));
+                             : fmt::format("must not overlap with {}, which the sweep sets, too", *other));
       }
       seen.push_back(pointer);
     }
@@ -190,7 +191,7 @@ void refuse_heavy_scenes(const Json& scene, std::size_t points, const std::strin
   if (points <= 1 || weight_of(scene) <= most / points) return;
   throw InputError(
       file, "/scene", fmt::format("{} points of about {} bytes", points, weight_of(scene)),
-      fmt::format("must be small enough for scenes of all points together to take {} bytes", most));
+      fmt::format("must be so small that the scenes of all points together take at most {} bytes", most));
 }
 
 // The row of each entry that makes up a point.
@@ -243,9 +244,10 @@ StatePoint make_point(const Json& scene, const std::vector<SweepEntry>& sweep, c
                                const std::string& file) {
   const GridIndex one = grid_index(sweep, first), other = grid_index(sweep, second);
   const auto [a, b] = std::mismatch(one.begin(), one.end(), other.begin());
-  throw InputError(file, fmt::format("/sweep/{}/values/{}", a - one.begin(), *b), label,
-                   fmt::format("must differ from the other points: the scene is that of {}, value {} there",
-                               points[first].label, *a));
+  throw InputError(
+      file, fmt::format("/sweep/{}/values/{}", a - one.begin(), *b), label,
+      fmt::format("must differ from the other points: the scene equals that of {}, from value {}",
+                  points[first].label, *a));
 }
 
 }  // namespace
@@ -257,12 +259,12 @@ void set_at(Json& scene, const std::string& pointer, const Json& value) {
     if (place->is_array()) {
       const auto index = element(*place, step);
       if (!index)
-        refuse_pointer(pointer, fmt::format("there is no {} in an array of {}", step, place->size()));
+        refuse_pointer(pointer, fmt::format("an array of length {} has no element {}", place->size(), step));
       place = &(*place)[*index];
     } else if (place->is_object()) {
       place = &(*place)[step];
     } else {
-      refuse_pointer(pointer, fmt::format("nothing can be below {}", shortened(*place)));
+      refuse_pointer(pointer, fmt::format("{} is neither an object nor an array", shortened(*place)));
     }
   }
   *place = value;

@@ -51,13 +51,13 @@ std::string width_text(const Known& known) {
   return width_text(known.criterion.tolerance, known.stop_test.half_width, known.measure.estimate.mean);
 }
 
-// "2 %"; of several "relative_viscosity 2 %, pressure 0.1".
+// Returns "a half-width of 2 %", or "half-widths of 2 % for relative_viscosity, 0.1 for pressure".
 std::string widths_text(const std::vector<Known>& all) {
-  if (all.size() == 1) return width_text(all.front());
+  if (all.size() == 1) return "a half-width of " + width_text(all.front());
   std::vector<std::string> widths;
   widths.reserve(all.size());
-  for (const Known& known : all) widths.push_back(known.stop_test.observable + ' ' + width_text(known));
-  return fmt::format("{}", fmt::join(widths, ", "));
+  for (const Known& known : all) widths.push_back(width_text(known) + " for " + known.stop_test.observable);
+  return fmt::format("half-widths of {}", fmt::join(widths, ", "));
 }
 
 // Returns "5 %", or for several criteria "5 % for relative_viscosity, 0.2 for pressure": those with this
@@ -99,14 +99,14 @@ std::string advice_when_capped(const StopTest& stop_test, const Target& target) 
   const std::vector<Known> all = known_of(stop_test, target);
   if (const Known* const zero = that_may_be_zero(all)) {
     return fmt::format(
-        "{0}absolute_tolerance, or another {0}observable: the interval contains zero, and as long as it does "
-        "no {0}relative_tolerance below 100 % can be met, whatever the number of seeds",
+        "set {0}absolute_tolerance, or another {0}observable: while the interval contains zero, no number of "
+        "seeds can meet a {0}relative_tolerance below 100 %",
         place_of(target, zero->criterion));
   }
   const auto worst = std::max_element(all.begin(), all.end(), [](const Known& one, const Known& other) {
     return one.stop_test.share < other.stop_test.share;
   });
-  return fmt::format("a larger /realisations/maximum ({} seeds) or {}{} (`peclet set`), and run again",
+  return fmt::format("set a larger /realisations/maximum ({} seeds) or {}{} (`peclet set`), and run again",
                      seeds_for(stop_test, target), place_of(target, worst->criterion),
                      key_of(worst->criterion.tolerance));
 }
@@ -131,7 +131,7 @@ std::string measure_text(const std::vector<Known>& all) {
     const double mean = known.measure.estimate.mean;
     if (is_its_own || known.criterion.tolerance.share(known.stop_test.half_width, mean) > 1) continue;
     if (!(known.stop_test.share <= 1)) {
-      return fmt::format(", because {} itself is known to {} only", known.measure.observable,
+      return fmt::format(", because {} itself is known only to {}", known.measure.observable,
                          percent(known.measure.half_width / std::abs(mean)));
     }
   }
@@ -140,16 +140,15 @@ std::string measure_text(const std::vector<Known>& all) {
 
 std::string luck_text(const StopTest& stop_test) {
   if (!stop_test.near_maximum) return "";
-  return "; perhaps by luck: with a spread as large as these values leave open it would need more seeds than "
-         "are allowed, and intervals of such points hold the mean less often";
+  return "; perhaps by luck: the true spread may be so large that the point needs more seeds than are "
+         "allowed, and intervals of such points hold the mean less often than they say";
 }
 
 std::string earlier_stop_test_text(const PointSummary& point) {
   if (point.earlier_stop_test == 0) return "";
   return fmt::format(
-      ": the first stop test that is; it decides as if the target had always been this one, and leaves out "
-      "later "
-      "seeds; all {} with a value give {} (± standard error)",
+      "; this is the first stop test within it: it decides as if the target had always been this one, and "
+      "leaves out later seeds; all {} seeds with a value give {} (± standard error)",
       point.all_seeds.count, with_error(point.all_seeds.mean, point.all_seeds.standard_error));
 }
 
@@ -159,14 +158,14 @@ std::string reason(const PointSummary& point, const Target& target) {
     return fmt::format(
         "{} of the {} seeds{} have ended, {}{}", point.wanted_ended, point.wanted,
         target.has_tolerance() ? " of the next stop test" : "",
-        point.point.cancelled ? "and it gets no more" : fmt::format("{} run", point.counts.running),
+        point.point.cancelled ? "and the point gets no more" : fmt::format("{} run", point.counts.running),
         missing.empty() ? "" : "; " + missing);
   }
   const StopTest& stop_test = point.stop_tests.back();
   const std::vector<Known> all = known_of(stop_test, target);
   const auto lost_to = [&](const Known& known) { return stop_test.seeds - known.stop_test.estimate.count; };
   const auto name_of = [&](const Known& known) {
-    return all.size() == 1 ? "" : " to " + known.stop_test.observable;
+    return all.size() == 1 ? "" : " (no value of " + known.stop_test.observable + ')';
   };
   switch (stop_test.verdict) {
     case Verdict::converged:
@@ -204,47 +203,49 @@ std::string reason(const PointSummary& point, const Target& target) {
 std::string next_step(const PointSummary& point, const TargetRecord& target,
                       const CampaignDirectory& directory) {
   if (point.point.suspect) {
-    return "find out why one seed gave two results (see the events and spool/rejected/) before trusting any";
+    return "find out why one seed gave two results (see the events and spool/rejected/); trust none until "
+           "then";
   }
-  if (point.point.cancelled && !point.decided) return "nothing; `peclet cancel --undo` takes it up again";
+  if (point.point.cancelled && !point.decided) return "nothing; `peclet cancel --undo` resumes the point";
   if (!point.decided) {
-    if (!target.target.has_tolerance()) return fmt::format("the other seeds of {}", point.wanted);
+    if (!target.target.has_tolerance()) return fmt::format("the remaining ones of {} seeds", point.wanted);
     if (point.stop_tests.empty()) return fmt::format("the first stop test, at {} seeds", point.wanted);
     if (!point.without_interval.empty()) {
       return fmt::format(
-          "the stop test at {} seeds; how many will be enough cannot be told without an interval",
+          "the stop test at {} seeds; without an interval, the number of seeds needed cannot be predicted",
           point.wanted);
     }
     return fmt::format(
         "the stop test at {} seeds; {}", point.wanted,
         that_may_be_zero(known_of(point.stop_tests.back(), target.target)) != nullptr
-            ? "how many will be enough cannot be told while the interval contains zero"
-            : fmt::format("{} are expected to be enough",
+            ? "the number of seeds needed cannot be predicted while the interval contains zero"
+            : fmt::format("{} seeds are expected to be enough",
                           expected_seeds(point.stop_tests, target.target, target.minimum, target.maximum)));
   }
   const StopTest& stop_test = point.stop_tests.back();
   switch (stop_test.verdict) {
     case Verdict::complete:
     case Verdict::converged:
-      if (stop_test.transient) return "a longer /scene/duration/equilibration: see transient above";
+      if (stop_test.transient) return "set a longer /scene/duration/equilibration: see transient above";
       if (stop_test.verdict == Verdict::complete)
-        return "nothing; more realisations (`peclet set --realisations`) reopen it";
+        return "nothing; more realisations (`peclet set --realisations`) reopen the point";
       if (stop_test.near_maximum) {
-        return "a larger /realisations/maximum and a smaller tolerance (`peclet set`), or nothing";
+        return "set a larger /realisations/maximum and a smaller tolerance (`peclet set`), or nothing";
       }
-      return "nothing; a smaller tolerance (`peclet set`) reopens it";
+      return "nothing; a smaller tolerance (`peclet set`) reopens the point";
     case Verdict::converged_with_losses:
     case Verdict::complete_with_losses:
       return fmt::format(
-          "see why seeds are lost: the mean leaves them out (states in {}){}", directory.failures().string(),
-          point.counts.quarantined > 0 ? "; `peclet retry` runs those again that were given up" : "");
+          "find out why seeds are lost, because the mean leaves them out (states in {}){}",
+          directory.failures().string(),
+          point.counts.quarantined > 0 ? "; `peclet retry` runs the seeds again that were given up" : "");
     case Verdict::capped:
       if (!stop_test.repeated.empty()) {
-        return "find out why seeds give the same: a start list with one file twice, or an engine without "
-               "noise";
+        return "find out why seeds end in the same state: a start list with one file twice, or an engine "
+               "without noise";
       }
       if (!point.without_interval.empty()) {
-        return fmt::format("a larger /realisations/maximum than {} (`peclet set`), or another observable",
+        return fmt::format("set a larger /realisations/maximum than {} (`peclet set`), or another observable",
                            target.maximum);
       }
       return advice_when_capped(stop_test, target.target);
@@ -266,7 +267,7 @@ std::string stop_tests_table(const std::vector<StopTest>& stop_tests, const Targ
     table.add_column(target.tolerance.is_relative() ? "relative" : "half-width");
     table.add_column("tolerance");
   }
-  if (with_control) table.add_column("plain");
+  if (with_control) table.add_column("without control variate");
   table.add_column("verdict", TextTable::Align::left);
   for (const StopTest& stop_test : stop_tests) {
     std::vector<std::string> row{fmt::format("{}", stop_test.seeds), fmt::format("{}", stop_test.lost),

@@ -68,7 +68,7 @@ std::string contrasts_text(const std::vector<Outcome>& outcomes, std::size_t pla
   const Estimate quarter = estimate(quarters), half = estimate(halves);
   return fmt::format(
       "  transient: the first quarter of the windows differs from the whole by {}, the first half by {} (± "
-      "standard error){}:\n    the window begins too early, which more seeds never mend; lengthen "
+      "standard error){}:\n    the window begins too early, and more seeds do not help; lengthen "
       "/scene/duration/equilibration\n",
       with_error(quarter.mean, quarter.standard_error), with_error(half.mean, half.standard_error), name);
 }
@@ -84,8 +84,8 @@ std::string transient_text(const StopTest& stop_test, const std::vector<Outcome>
   }
   if (untested.empty()) return text;
   return text + fmt::format(
-                    "  transient: no test was possible, because the results have no blocks of {}: nothing "
-                    "tells whether the\n    windows begin before the equilibration is over\n",
+                    "  transient: no test was possible, because the results have no blocks of {}: it is "
+                    "unknown whether the\n    windows begin before the equilibration is over\n",
                     untested);
 }
 
@@ -108,8 +108,8 @@ std::string control_text(const std::vector<Outcome>& outcomes) {
   const double best = -vc / cc;
   const double error = std::sqrt(std::max(0.0, vv - vc * vc / cc) / (count - 2) / cc);
   return fmt::format(
-      "  control variate: variance {} of that without it; its coefficient is 1, the best for these seeds "
-      "{}\n",
+      "  control variate: the variance is {} times that without it; its coefficient is 1, and the best one "
+      "for these seeds is {}\n",
       rough((vv + 2 * vc + cc) / vv), with_error(best, error));
 }
 

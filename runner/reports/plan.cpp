@@ -94,7 +94,7 @@ bool PointPlan::is_predicted() const { return !decided && obstacle().empty(); }
 std::string PointPlan::obstacle() const {
   if (decided) return "";
   if (prediction.obstacle != Obstacle::none) return obstacle_text(prediction);
-  return std::isfinite(cost.cpu_seconds) ? "" : "its seeds do not say what they cost";
+  return std::isfinite(cost.cpu_seconds) ? "" : "the cost of its seeds is unknown";
 }
 
 Plan make_plan(const Campaign& campaign, const std::vector<double>& particle_steps,
@@ -171,8 +171,8 @@ std::vector<std::string> predicted_cells(const PointPlan& point) {
   std::string remark;
   if (prediction.lost > 0) remark = fmt::format("{} of {} seeds are lost", prediction.lost, prediction.pilot);
   if (prediction.capped >= 0.05) {
-    remark += fmt::format("{}not converged by the maximum: {:.0f} %", remark.empty() ? "" : "; ",
-                          100 * prediction.capped);
+    remark += fmt::format("{}probability of no convergence by the maximum: {:.0f} %",
+                          remark.empty() ? "" : "; ", 100 * prediction.capped);
   }
   return {with_range(prediction.seeds, 1),
           with_range(prediction.seeds, seconds_per_hour / point.cost.cpu_seconds), remark};
@@ -223,20 +223,19 @@ std::string table_text(const Plan& plan, bool predicted) {
 std::string legend(const Plan& plan, bool predicted) {
   const bool unknown = std::isnan(total_hours(plan, 1));
   std::string text =
-      unknown
-          ? "-: not known before a seed has ended\n"
-          : "CPU seconds per seed: mean (of so many seeds); ~: scaled from other points by particle-steps\n";
+      unknown ? "-: not known before a seed has ended\n"
+              : "CPU s/seed: mean (number of ended seeds); ~: scaled from other points by particle-steps\n";
   if (!plan.guessed_from.empty()) {
     text = fmt::format(
         "~: a guess, from the first two seconds of one realisation of {} and the particle-steps of the "
-        "others; --pilot measures\n",
+        "others; --pilot measures the costs\n",
         plan.guessed_from);
   }
   for (const std::string& trial : plan.broke_off) text += fmt::format("the trial of {}\n", trial);
   if (predicted && plan.minimum < plan.maximum) {
     text +=
-        "seeds: of the stop test that will decide, expected (range that holds it 95 % of the time)\n"
-        "CPU h: of these seeds; all: expected and range of the sum, which are not the sums of those above\n";
+        "seeds: expected at the deciding stop test (range that holds their number 95 % of the time)\n"
+        "CPU h: of these seeds; all: expected value and range of the sum, not the sums of the ranges above\n";
   }
   return text;
 }
@@ -251,12 +250,11 @@ std::string ending_text(const Plan& plan) {
   if (totals.predicted == 0) {
     const bool all_decided = std::all_of(plan.points.begin(), plan.points.end(),
                                          [](const PointPlan& point) { return point.decided.has_value(); });
-    return all_decided ? "every point is decided\n"
-                       : "nothing can be predicted of the points that are open\n";
+    return all_decided ? "every point is decided\n" : "no prediction is possible for the open points\n";
   }
   const auto others = static_cast<int>(plan.points.size()) - totals.points;
   std::string text;
-  if (others > 0) text += fmt::format("points without a prediction, {}, are not in these sums\n", others);
+  if (others > 0) text += fmt::format("these sums leave out the points without a prediction: {}\n", others);
   if (totals.likely_capped > 0) {
     text += fmt::format("{} of {} points {} not expected to converge within {} seeds\n", totals.likely_capped,
                         plan.points.size(), totals.likely_capped == 1 ? "is" : "are", plan.maximum);
@@ -275,8 +273,8 @@ std::string rest_text(const Plan& plan) {
     if (point.flow_over_rest) text += fmt::format("  {}: {}\n", point.label, rough(*point.flow_over_rest));
   }
   if (text.empty()) return text;
-  return "\nNearly at rest. Processor time over that of the same error at rest, by linear_response (a "
-         "guess):\n" +
+  return "\nThese points are nearly at rest. Processor time over that for the same error at rest, with "
+         "linear_response (a guess):\n" +
          text;
 }
 

@@ -267,7 +267,8 @@ std::string legend(const CampaignStatus& status, const std::vector<std::string>&
     }
   }
   std::string text = fmt::format("{}\n", fmt::join(parts, "; "));
-  if (!left_out.empty()) text += fmt::format("too narrow for: {}\n", fmt::join(left_out, ", "));
+  if (!left_out.empty())
+    text += fmt::format("the terminal is too narrow for: {}\n", fmt::join(left_out, ", "));
   return folded(text, width);
 }
 
@@ -278,9 +279,8 @@ std::string earlier_stop_test_text(const CampaignStatus& status) {
   for (const PointSummary& point : status.points) {
     if (point.earlier_stop_test == 0) continue;
     text += fmt::format(
-        "{}: the stop test at {} seeds decides, the first within the present target; \"all seeds\" has all "
-        "{} "
-        "that have ended\n",
+        "{}: the stop test at {} seeds decides, because it is the first within the present target; \"all "
+        "seeds\" has all {} that have ended\n",
         point.point.label, point.stop_tests.back().seeds, point.counts.terminal());
   }
   return text;
@@ -345,7 +345,7 @@ std::string losses_text(const CampaignStatus& status) {
       text += fmt::format("{}: {} lost, {}: {}\n", point.point.label, point.losses.at(cause), cause, reason);
     }
   }
-  if (lines > most_lines) text += fmt::format("and {} more: `peclet explain` has them\n", lines - most_lines);
+  if (lines > most_lines) text += fmt::format("and {} more: see `peclet explain`\n", lines - most_lines);
   return text;
 }
 
@@ -396,8 +396,9 @@ std::string workers_text(const CampaignStatus& status, std::size_t width) {
   if (!to_go.empty()) to_go = ": " + to_go;
   if (!status.owner) {
     if (exit_code_of(status) != 4) return "";
-    return status.handed_over.empty() ? fmt::format("\nnobody runs it now; `peclet run` goes on{}\n", to_go)
-                                      : "\nnobody takes results in now; `peclet ingest` does\n";
+    return status.handed_over.empty()
+               ? fmt::format("\nno process runs the campaign now; `peclet run` continues it{}\n", to_go)
+               : "\nno process takes results in now; `peclet ingest` does\n";
   }
   TextTable table;
   table.add_column("worker", TextTable::Align::right, 2);
@@ -416,9 +417,9 @@ std::string workers_text(const CampaignStatus& status, std::size_t width) {
                      std::isnan(done) ? "-" : fmt::format("{:.0f} %", 100 * done), rough(lease.strain)});
     }
   }
-  std::string text = fmt::format("\nprocess {} runs it{}\n", *status.owner, to_go);
+  std::string text = fmt::format("\nprocess {} runs the campaign{}\n", *status.owner, to_go);
   if (workers > 0) text += table.text_within(width);
-  if (workers > most_lines) text += fmt::format("and {} more\n", workers - most_lines);
+  if (workers > most_lines) text += fmt::format("and {} more workers\n", workers - most_lines);
   return text;
 }
 
@@ -452,13 +453,14 @@ std::string predictions_text(const std::vector<PointSummary>& points) {
   std::string text;
   if (decided > 0) {
     text = fmt::format(
-        "predictions: {} of {} within {} range; {} seeds ({} expected), processor time {} ({} expected)\n",
+        "predictions: {} of {} points within {} range; {} seeds ({} expected), processor time {} ({} "
+        "expected)\n",
         within, decided, decided == 1 ? "its" : "their", seeds, expected_seeds, duration_text(seconds),
         duration_text(expected_seconds));
   }
   if (open > 0) {
-    text += fmt::format("predicted for {} open: {} seeds and {} of processor time to come\n", open, to_come,
-                        duration_text(seconds_to_come));
+    text += fmt::format("predicted for the open points ({}): {} seeds and {} of processor time to come\n",
+                        open, to_come, duration_text(seconds_to_come));
   }
   return text;
 }
@@ -470,7 +472,7 @@ std::string prediction_text(const PointSummary& point) {
                                            made.pilot, made.seeds.likely, made.seeds.lower, made.seeds.upper,
                                            duration_text(made.likely_cpu_seconds()));
   if (!point.decided) {
-    return expected + fmt::format("; {} and {} to come\n", seeds_to_come(point),
+    return expected + fmt::format("; {} seeds and {} to come\n", seeds_to_come(point),
                                   duration_text(seeds_to_come(point) * made.cpu_seconds));
   }
   return expected + fmt::format("; it took {}, {} that range, and {}\n", point.wanted,

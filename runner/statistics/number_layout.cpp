@@ -109,7 +109,8 @@ NumberLayout NumberLayout::of_text(const std::string& text) {
     return NumberLayout(quantities_of({{"quantities", layout.at("quantities")}, {"mean", nullptr}}),
                         layout.at("observables").get<std::vector<std::string>>());
   } catch (const Json::exception&) {
-    throw IntegrityError("the database holds a layout of numbers that is none: " + text.substr(0, 100));
+    throw IntegrityError("the database holds a layout of numbers that cannot be read; it begins with " +
+                         text.substr(0, 100));
   }
 }
 

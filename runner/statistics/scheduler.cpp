@@ -56,7 +56,7 @@ Scheduler::Scheduler(std::vector<std::vector<std::optional<Outcome>>> outcomes, 
 }
 
 Scheduler::Phase& Scheduler::phase_of(SeedId id) {
-  if (id.seed < 0 || id.seed >= maximum_) throw std::out_of_range("no seed below the maximum");
+  if (id.seed < 0 || id.seed >= maximum_) throw std::out_of_range("the seed is not below the maximum");
   Point& point = point_at(id.point);
   const auto seed = static_cast<std::size_t>(id.seed);
   if (seed >= point.phases.size()) {
@@ -272,9 +272,8 @@ std::string budget_text(double spent_seconds, double budget_seconds, const Summe
                   rough(budget_seconds / seconds_per_hour));
   if (after.points == 0) return spent + '\n';
   return fmt::format(
-      "{}; relative half-widths of the {}{} last stop tests sum to {},\n        before to {}\n", spent,
-      counted(static_cast<std::size_t>(after.points), "point"), after.points == 1 ? "'s" : "'",
-      sum_text(after), sum_text(before));
+      "{}; at the last stop tests the relative half-widths of {} sum to {},\n        before the run to {}\n",
+      spent, counted(static_cast<std::size_t>(after.points), "point"), sum_text(after), sum_text(before));
 }
 
 }  // namespace peclet::runner

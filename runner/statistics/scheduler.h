@@ -171,8 +171,7 @@ struct SummedError {
 };
 SummedError summed_error(const Scheduler& scheduler);
 
-// Returns "budget: 1.98 of 2 h of processor time spent; the relative half-widths ...", with the sums before
-// and after the run.
+// Returns "budget: 1.98 of 2 h of processor time spent; ...", with the sums after and before the run.
 std::string budget_text(double spent_seconds, double budget_seconds, const SummedError& before,
                         const SummedError& after);
 

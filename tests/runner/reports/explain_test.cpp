@@ -53,7 +53,10 @@ TEST(Explain, ACappedPointIsToldHowManySeedsItWouldTake) {
   for (int seed = 0; seed < 4; ++seed) campaign.complete(0, seed, values[seed]);
   const std::string text = explain(campaign.database(), campaign.directory(), "");
   // Half-width 3.182 * 0.408 = 1.299 of 10 + 0.25; 4 * (0.1267 / 0.05)^2 = 25.7 seeds.
-  EXPECT_TRUE(says(text, "all 4 seeds that are allowed give 13 %, not within the tolerance of 5 %")) << text;
+  EXPECT_TRUE(says(text,
+                   "all 4 seeds that are allowed give a half-width of 13 %, not within the tolerance "
+                   "of 5 %"))
+      << text;
   EXPECT_TRUE(says(text, "/realisations/maximum (about 26 seeds)")) << text;
 }
 
@@ -65,8 +68,8 @@ TEST(Explain, OfSeveralTargetsEachIsToldWithItsTolerance) {
   for (int seed = 0; seed < 4; ++seed) campaign.complete(0, seed, values[seed]);
   const std::string text = explain(campaign.database(), campaign.directory(), "");
   EXPECT_TRUE(says(text,
-                   "all 4 seeds that are allowed give relative_viscosity 13 %, pressure 2.6, not within the "
-                   "tolerance of 5 % for relative_viscosity, 1 for pressure"))
+                   "all 4 seeds that are allowed give half-widths of 13 % for relative_viscosity, 2.6 for "
+                   "pressure, not within the tolerance of 5 % for relative_viscosity, 1 for pressure"))
       << text;
   EXPECT_TRUE(says(text, "/realisations/maximum (about 28 seeds) or /target/also/0/absolute_tolerance"))
       << text;
@@ -107,11 +110,13 @@ TEST(Explain, AMeanThatMayBeZeroIsNotAdvisedToTakeMillionsOfSeeds) {
     open.complete(0, seed, seed % 2 == 0 ? -10 : 10);
   }
   const std::string text = explain(campaign.database(), campaign.directory(), "");
-  EXPECT_TRUE(says(text, "the interval contains zero, and as long as it does no /target/relative_tolerance"))
+  EXPECT_TRUE(says(text,
+                   "while the interval contains zero, no number of seeds can meet a "
+                   "/target/relative_tolerance"))
       << text;
   EXPECT_FALSE(says(text, "/realisations/maximum")) << text;
   const std::string ahead = explain(open.database(), open.directory(), "");
-  EXPECT_TRUE(says(ahead, "cannot be told while the interval contains zero")) << ahead;
+  EXPECT_TRUE(says(ahead, "cannot be predicted while the interval contains zero")) << ahead;
 }
 
 TEST(Explain, AWindowThatBeginsTooEarlyIsATransient) {
@@ -125,7 +130,7 @@ TEST(Explain, AWindowThatBeginsTooEarlyIsATransient) {
   EXPECT_TRUE(says(drifting, "converged, transient")) << drifting;
   EXPECT_TRUE(says(drifting, "the first half by 0.1000 ± 0.0057"))
       << drifting;  // 0.1 +- 1.5 * 0.01 / sqrt(7)
-  EXPECT_TRUE(says(drifting, "next: a longer /scene/duration/equilibration")) << drifting;
+  EXPECT_TRUE(says(drifting, "next: set a longer /scene/duration/equilibration")) << drifting;
   const std::string steady = explain(campaign.database(), campaign.directory(), "point=1");
   EXPECT_FALSE(says(steady, "transient")) << steady;
   EXPECT_TRUE(status_json(read_status(campaign.database()))["points"][0]["stop_test"]["transient"]);
@@ -176,8 +181,9 @@ TEST(Explain, TheStopTestWithoutTheControlVariateIsShownOnlyWhereThereIsOne) {
     campaign.complete(0, seed, 10 + 0.01 * seed);
     campaign.complete_in_halves(1, seed, 10 + 0.01 * seed, 10 + 0.01 * seed);
   }
-  EXPECT_TRUE(says(explain(campaign.database(), campaign.directory(), "point=0"), "plain"));
-  EXPECT_FALSE(says(explain(campaign.database(), campaign.directory(), "point=1"), "plain"));
+  EXPECT_TRUE(says(explain(campaign.database(), campaign.directory(), "point=0"), "without control variate"));
+  EXPECT_FALSE(
+      says(explain(campaign.database(), campaign.directory(), "point=1"), "without control variate"));
 }
 
 TEST(Explain, AnOpenPointSaysWhatItWaitsFor) {

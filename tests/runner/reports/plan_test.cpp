@@ -24,7 +24,7 @@ TEST(Plan, SaysWhatRestWouldSaveOfThePointsThatAreNearIt) {
   Plan plan = make_plan(plain_campaign(2, 10, 800, 0.05), {1e6, 2e6}, {}, 1);
   EXPECT_EQ(plan_text(plan).find("at rest"), std::string::npos);
   plan.points[1].flow_over_rest = 250;
-  EXPECT_NE(plan_text(plan).find("Nearly at rest. Processor time over that of the same error at rest, by "
+  EXPECT_NE(plan_text(plan).find("nearly at rest. Processor time over that for the same error at rest, with "
                                  "linear_response (a guess):\n  point=1: 250\n"),
             std::string::npos)
       << plan_text(plan);
@@ -88,7 +88,8 @@ TEST(Plan, WhatIsToComeFollowsFromThePilot) {
   EXPECT_TRUE(json["points"][2]["prediction"].is_null());
   EXPECT_EQ(json["prediction"]["workers"], 4);
   const std::string text = plan_text(plan);
-  EXPECT_NE(text.find("points without a prediction, 1, are not in these sums"), std::string::npos) << text;
+  EXPECT_NE(text.find("these sums leave out the points without a prediction: 1\n"), std::string::npos)
+      << text;
   EXPECT_NE(text.find("with 4 workers 3 min"), std::string::npos) << text;
 }
 

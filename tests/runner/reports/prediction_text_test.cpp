@@ -24,16 +24,16 @@ PointSummary predicted(PointSummary point) {
 TEST(PredictionText, ComparesDecidedPointsWithWhatWasExpected) {
   EXPECT_EQ(predictions_text({predicted(summary(true, 20, 20, 48)), predicted(summary(true, 44, 44, 100)),
                               summary(true, 1000, 1000, 1000)}),
-            "predictions: 1 of 2 within their range; 64 seeds (32 expected), processor time 2 min (80 s "
-            "expected)\n");
+            "predictions: 1 of 2 points within their range; 64 seeds (32 expected), processor time 2 min (80 "
+            "s expected)\n");
 }
 
 TEST(PredictionText, OpenPointsHaveSeedsToCome) {
   EXPECT_EQ(predictions_text({predicted(summary(false, 10, 4, 10))}),
-            "predicted for 1 open: 12 seeds and 30 s of processor time to come\n");
+            "predicted for the open points (1): 12 seeds and 30 s of processor time to come\n");
   // More than was expected: as many as the next stop test lacks.
   EXPECT_EQ(predictions_text({predicted(summary(false, 22, 18, 45))}),
-            "predicted for 1 open: 4 seeds and 10 s of processor time to come\n");
+            "predicted for the open points (1): 4 seeds and 10 s of processor time to come\n");
 }
 
 TEST(PredictionText, IsNothingWithoutPredictions) {

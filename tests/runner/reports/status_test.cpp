@@ -71,9 +71,10 @@ TEST(Status, TheForecastKnowsOfSeedsThatRun) {
   ASSERT_TRUE(status.to_go);
   EXPECT_NEAR(status.to_go->likely, 3.5 * mean / 2, 1e-6);  // four seeds of two workers, half of one is done
   EXPECT_EQ(status_json(status)["seconds_to_go"], to_json(status.to_go));
-  EXPECT_TRUE(says(workers_text(status), "process 4711 runs it: " + to_string(*status.to_go) + "\n"));
+  EXPECT_TRUE(
+      says(workers_text(status), "process 4711 runs the campaign: " + to_string(*status.to_go) + "\n"));
   status.owner.reset();
-  EXPECT_TRUE(says(workers_text(status), "`peclet run` goes on: " + to_string(*status.to_go) + "\n"));
+  EXPECT_TRUE(says(workers_text(status), "`peclet run` continues it: " + to_string(*status.to_go) + "\n"));
 }
 
 TEST(Status, SeedsOfARunThatWasKilledAreNotCalledRunning) {
@@ -146,9 +147,8 @@ TEST(Status, ALoosenedToleranceSaysThatAnEarlierStopTestDecides) {
   ASSERT_EQ(status.points.at(0).stop_tests.back().seeds, 8);
   EXPECT_EQ(verdict_text(status.points.at(0)), "converged, earlier-stop-test");
   EXPECT_TRUE(says(status_table(status),
-                   "point=0: the stop test at 8 seeds decides, the first within the present target; \"all "
-                   "seeds\" has all 13 "
-                   "that have ended\n"))
+                   "point=0: the stop test at 8 seeds decides, because it is the first within the present "
+                   "target; \"all seeds\" has all 13 that have ended\n"))
       << status_table(status);
   EXPECT_TRUE(
       says(explain(campaign.database(), campaign.directory(), ""),

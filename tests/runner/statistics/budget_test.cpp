@@ -93,9 +93,9 @@ TEST(Budget, SaysWhatItBought) {
   EXPECT_EQ(after.unknown, 1);
   EXPECT_EQ(
       budget_text(1800, 3600, before, after),
-      "budget: 0.5 of 1 h of processor time spent; relative half-widths of the 2 points' last stop tests sum "
-      "to 1.02 (1 of them without an interval, each counted as 1),\n        before to 2 (2 of them without "
-      "an interval, each counted as 1)\n");
+      "budget: 0.5 of 1 h of processor time spent; at the last stop tests the relative half-widths of 2 "
+      "points sum to 1.02 (1 of them without an interval, each counted as 1),\n        before the run to 2 "
+      "(2 of them without an interval, each counted as 1)\n");
 }
 
 TEST(Budget, SumsNoRelativeErrorsWhereTheToleranceIsAbsolute) {
