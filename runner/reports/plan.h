@@ -68,8 +68,8 @@ struct Plan {
   std::string guessed_from{};            // label of the point whose guess all costs come from; "" without one
 };
 
-// Returns the plan. A point without ended realisations costs as much time per particle-step as all others
-// together, or as much as the guess if no point has any. `known` has the points by hash.
+// Returns the plan. A point without ended realisations has the time per particle-step of all others together,
+// or that of the guess if no point has any. `known` has the points by hash.
 Plan make_plan(const Campaign& campaign, const std::vector<double>& particle_steps,
                const std::map<std::string, PointHistory>& known, int workers,
                const std::optional<CostGuess>& guess = {});

@@ -154,7 +154,7 @@ double Scheduler::expected_fall(const Point& point) const {
   if (!std::isfinite(width)) {  // as if the half-width were 100 % of the mean
     return target_.tolerance.is_relative() ? 1 / target_.tolerance.value : of_unknown;
   }
-  // Student's factor counts: from 4 to 10 seeds it falls about as much as 1 / sqrt(n).
+  // Student's factor counts: from 4 to 10 seeds it falls nearly like 1 / sqrt(n).
   const double confidence = adjusted_confidence(target_.confidence, minimum_, maximum_);
   const double share = static_cast<double>(stop_test_ahead(point, 0)) / last.seeds;
   const int count = last.controlled.count, later = static_cast<int>(std::lround(count * share));

@@ -1,4 +1,4 @@
-// Every fault of a campaign has one message: where, what, and what is allowed.
+// Tests that every fault of a campaign has one message: where, what, and what is allowed.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -17,7 +17,7 @@ const char* const whole_campaign = R"({
   "target": {"observable": "relative_viscosity", "relative_tolerance": 0.05},
   "realisations": {"minimum": 10, "maximum": 100}})";
 
-// One edit of the campaign (RFC 7396: null removes), and the complaint about it.
+// An edit of the campaign as a merge patch (RFC 7396: null removes a key), and the complaint about it.
 struct Fault {
   const char* edit;
   const char* pointer;

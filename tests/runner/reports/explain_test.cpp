@@ -1,4 +1,4 @@
-// Why points are where they are.
+// Tests the explanation of verdicts.
 #include "runner/reports/explain.h"
 
 #include <gtest/gtest.h>
@@ -52,7 +52,7 @@ TEST(Explain, ACappedPointIsToldHowManySeedsItWouldTake) {
   const double values[] = {9, 10, 11, 10};
   for (int seed = 0; seed < 4; ++seed) campaign.complete(0, seed, values[seed]);
   const std::string text = explain(campaign.database(), campaign.directory(), "");
-  // Half-width 3.182 * 0.408 = 1.299 of 10 + 0.25; 4 * (0.1267 / 0.05)^2 = 25.7 seeds.
+  // The half-width 3.182 * 0.408 = 1.299 around 10 + 0.25 needs 4 * (0.1267 / 0.05)^2 = 25.7 seeds.
   EXPECT_TRUE(says(text,
                    "all 4 seeds that are allowed give a half-width of 13 %, not within the tolerance "
                    "of 5 %"))
@@ -60,8 +60,8 @@ TEST(Explain, ACappedPointIsToldHowManySeedsItWouldTake) {
   EXPECT_TRUE(says(text, "/realisations/maximum (about 26 seeds)")) << text;
 }
 
-// The pressure is twice the viscosity and has no control variate: 20 +- 3.1824 * 0.8165 = 2.5985, for which
-// 4 * 2.5985^2 = 27.01 seeds would do.
+// The pressure is twice the viscosity and has no control variate: 20 +- 3.1824 * 0.8165 = 2.5985, which needs
+// 4 * 2.5985^2 = 27.01 seeds.
 TEST(Explain, OfSeveralTargetsEachIsToldWithItsTolerance) {
   StoredCampaign campaign(1, 4, 4, {{"pressure", Tolerance::absolute(1)}});
   const double values[] = {9, 10, 11, 10};
@@ -102,7 +102,7 @@ TEST(Explain, WhereOneOfSeveralTargetsMayBeZeroItsToleranceIsToBecomeAbsolute) {
   EXPECT_TRUE(says(text, "/target/also/0/absolute_tolerance, or another /target/also/0/observable")) << text;
 }
 
-// Values +- 10 around 0.25: any number of seeds for a share of such a mean would be an accident.
+// The values are +- 10 around 0.25. A number of seeds for a share of such a mean would be accidental.
 TEST(Explain, AMeanThatMayBeZeroIsNotAdvisedToTakeMillionsOfSeeds) {
   StoredCampaign campaign(1, 8, 8), open(1, 8, 20);
   for (int seed = 0; seed < 8; ++seed) {
@@ -136,7 +136,7 @@ TEST(Explain, AWindowThatBeginsTooEarlyIsATransient) {
   EXPECT_TRUE(status_json(read_status(campaign.database()))["points"][0]["stop_test"]["transient"]);
 }
 
-// Results whose blocks are gone: the verdict stands, and says what could not be looked at.
+// Without blocks the verdict stands, and the explanation says that transients could not be tested.
 TEST(Explain, WithoutBlocksNoTransientTestIsSaidNotToHaveBeenPossible) {
   StoredCampaign campaign(1, 4, 20);
   for (int seed = 0; seed < 4; ++seed) {
@@ -155,7 +155,7 @@ TEST(Explain, WithoutBlocksNoTransientTestIsSaidNotToHaveBeenPossible) {
 
 TEST(Explain, AnEstimateHasABootstrapIntervalAndAdviceOnItsWindow) {
   StoredCampaign campaign(1, 16, 20);
-  for (int seed = 0; seed < 16; ++seed) {  // halves that know nothing of each other
+  for (int seed = 0; seed < 16; ++seed) {  // uncorrelated halves
     campaign.complete_in_halves(0, seed, 10 + (seed % 2 == 0 ? 0.1 : -0.1), 10 + (seed % 4 < 2 ? 0.1 : -0.1));
   }
   const std::string text = explain(campaign.database(), campaign.directory(), "");
