@@ -101,7 +101,7 @@ Plan make_plan(const Campaign& campaign, const std::vector<double>& particle_ste
                const std::map<std::string, PointHistory>& known, int workers,
                const std::optional<CostGuess>& guess) {
   Plan plan{campaign.name, campaign.minimum_realisations, campaign.maximum_realisations, workers};
-  MeasuredCost all;  // per particle-step
+  MeasuredCost all;  // summed over all ended realisations
   double known_steps = 0;
   for (std::size_t i = 0; i < campaign.points.size(); ++i) {
     PointPlan point{campaign.points[i].label, particle_steps[i], {}};

@@ -20,7 +20,7 @@ struct CampaignStatus {
   std::vector<PointForecast> forecasts{};  // of each point
   std::vector<HandedOver> handed_over;     // seeds that a batch system has, by job
   std::optional<std::int64_t> owner;       // process that runs the campaign now
-  // With the workers of the last run. None before a seed has ended, or while a batch system has seeds.
+  // The time with the workers of the last run; none before a seed has ended, or if a batch system has seeds.
   std::optional<TimeToGo> to_go{};
 };
 

@@ -110,7 +110,7 @@ void add_undescribed(const Json& mean, const Json& value, const std::string& nam
   }
 }
 
-// Returns null if the result does not describe its numbers.
+// Returns the descriptions of a result's numbers, or null if there are none.
 const Json* descriptions(const Json& result) {
   const auto found = result.find("quantities");
   return found == result.end() || found->empty() ? nullptr : &*found;

@@ -38,7 +38,7 @@ enum class Allocation {
   //   w (1 - t(n' - 1) sqrt(n) / (t(n - 1) sqrt(n'))) / (seeds still to be begun * seconds of each)
   // with n values now, n' then, and Student's quantile t. Seeds count only at their stop test, so one that
   // has begun is completed first. Points before their first stop test precede all others, the cheapest first.
-  // For a budget too small for all points to converge.
+  // This is for a budget that is too small for all points to converge.
   steepest_first
 };
 
