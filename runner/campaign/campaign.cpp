@@ -13,11 +13,11 @@
 namespace peclet::runner {
 namespace {
 
-// With fewer, intervals of a rule with several stop tests hold the mean less often than 94 %
+// With a smaller minimum and several stop tests, intervals hold the mean in less than 94 % of the cases
 // (results/coverage).
 constexpr int smallest_minimum = 8;
 
-// What goes into headings and names of files.
+// A name is used in headings and names of files.
 constexpr std::size_t longest_name = 100;
 
 std::vector<Criterion> also_of(const Json& target, const std::string& leading, const std::string& file) {
@@ -29,19 +29,19 @@ std::vector<Criterion> also_of(const Json& target, const std::string& leading, c
     const auto is_it = [&](const Criterion& other) { return other.observable == criterion.observable; };
     if (criterion.observable == leading || std::any_of(also.begin(), also.end(), is_it)) {
       throw InputError(file, pointer + "/observable", criterion.observable,
-                       "must be another one than those before it");
+                       "must differ from the observables before it");
     }
     also.push_back(std::move(criterion));
   }
   return also;
 }
 
-// What a campaign of a fixed number of realisations shows.
+// Returns the target of a campaign with a fixed number of realisations: the observables that it shows.
 Target shown(const Json& document, const std::string& file) {
   if (document.contains("target")) {
     throw InputError(file, "/target", shortened(document["target"]),
-                     "must not be given beside a fixed number of realisations; with a target these are { "
-                     "\"minimum\": ..., \"maximum\": ... }");
+                     "must not be given beside a fixed number of realisations; with a target, /realisations "
+                     "is { \"minimum\": ..., \"maximum\": ... }");
   }
   const std::vector<std::string> names = document.value("show", std::vector<std::string>{usual_observable});
   Target target{names.front(), Tolerance::none(), usual_confidence};
@@ -49,7 +49,7 @@ Target shown(const Json& document, const std::string& file) {
     if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(place), names[place]) !=
         names.begin() + static_cast<std::ptrdiff_t>(place)) {
       throw InputError(file, fmt::format("/show/{}", place), names[place],
-                       "must be another one than those before it");
+                       "must differ from the observables before it");
     }
     target.also.push_back({names[place], Tolerance::none()});
   }
@@ -59,7 +59,7 @@ Target shown(const Json& document, const std::string& file) {
 Target aimed_at(const Json& document, const std::string& file) {
   if (!document.contains("target")) {
     throw InputError(file, "/target", "missing",
-                     "must be an object, or /realisations the number of seeds of every point");
+                     "must be an object, unless /realisations is the number of seeds of every point");
   }
   if (document.contains("show")) {
     throw InputError(file, "/show", shortened(document["show"]),
@@ -75,14 +75,14 @@ int seeds_with_files(const Json& document) {
   return rule == "all" ? most_realisations : rule == "none" ? 0 : rule.get<int>();
 }
 
-// Throws InputError for a file that has a scene alone, as many begin with, and says what belongs around it.
+// Throws InputError if the file is a scene without a campaign, a common first mistake, and says what to add.
 void refuse_bare_scene(const Json& written, const std::string& file) {
   if (!written.is_object() || written.contains("scene") || !written.contains("particles")) return;
   throw InputError(
       file, "", "",
-      "is a scene, and a campaign is asked for: { \"name\": ..., \"scene\": this, \"target\": { "
+      "is a scene, but must be a campaign: { \"name\": ..., \"scene\": this, \"target\": { "
       "\"relative_tolerance\": 0.05 }, \"realisations\": { \"minimum\": 10, \"maximum\": 200 } }; "
-      "`peclet init NEW.json` writes one to begin with, `peclet-engine run` runs a scene once");
+      "`peclet init NEW.json` writes an example, and `peclet-engine run` runs a scene once");
 }
 
 }  // namespace
@@ -158,7 +158,7 @@ void check_campaign_name(const std::string& name, const std::string& file) {
   if (name.empty() || name.size() > longest_name || name.find_first_not_of(allowed) != std::string::npos) {
     throw InputError(
         file, "/name", shortened(name),
-        fmt::format("must be 1 to {} letters, digits, dots, underscores and hyphens", longest_name));
+        fmt::format("must have 1 to {} letters, digits, dots, underscores and hyphens", longest_name));
   }
 }
 
@@ -189,7 +189,7 @@ Campaign parse_campaign(const Json& written, const std::string& file) {
     throw InputError(
         file, "/realisations/minimum", fmt::format("{}", campaign.minimum_realisations),
         fmt::format("must be an integer >= {}, or equal to maximum: the spread of fewer seeds is too "
-                    "uncertain to stop by",
+                    "uncertain for a stop test",
                     smallest_minimum));
   }
   campaign.engine = document["engine"].get<std::vector<std::string>>();
@@ -198,59 +198,58 @@ Campaign parse_campaign(const Json& written, const std::string& file) {
   return campaign;
 }
 
-// The table of a campaign's keys: what schema/campaign.schema.json and the manual are printed from.
+// The table of keys, from which schema/campaign.schema.json and the manual are generated.
 
 namespace {
 
 constexpr std::size_t most_further_targets = 100;
 
-// Rows of a tolerance; {0} is the target.
+// Rows of a tolerance: {0} is the place of its target, {1} the meaning of relative_to.
 constexpr const char* tolerance_rows = R"(
-/target{0}/relative_tolerance | number > 0 and < 1 | Half-width of the confidence interval over |mean| that is
-    good enough; 0.05 is 5 %.
-/target{0}/absolute_tolerance | number > 0 and <= 1e100; instead of relative_tolerance | Half-width that is
-    good enough, in the observable's own unit; for what may be zero.
+/target{0}/relative_tolerance | number > 0 and < 1 | Largest allowed half-width of the confidence interval over
+    |mean|; 0.05 is 5 %.
+/target{0}/absolute_tolerance | number > 0 and <= 1e100; instead of relative_tolerance | Largest allowed
+    half-width in the observable's own unit; for observables that may be zero.
 /target{0}/relative_to? | string; if relative_tolerance | {1}
-/target{0}/absolute_floor? | number > 0 and <= 1e100; if relative_tolerance | Half-width that is good enough
-    however small the mean is that relative_tolerance is a share of.
+/target{0}/absolute_floor? | number > 0 and <= 1e100; if relative_tolerance | Half-width that is always allowed,
+    however small the mean to which relative_tolerance refers.
 )";
 
 constexpr const char* campaign_rows = R"(
-/name | string | What people call it: at most 100 letters, digits, dots, underscores and hyphens.
-/scene | object | The scene that all points share; the engine is its judge.
-/sweep | array; default [] | What differs between the points. Several entries make a grid; the last varies
-    fastest.
-/sweep/* | object | One direction of the grid.
-/sweep/*/set | anything | JSON pointer into the scene, or an array of pointers that are set in step.
-/sweep/*/values | array of 1 or more | One per point; with several pointers each is an array with a value for
-    every pointer.
-/target? | object | When a point is done. Required, unless the number of realisations is fixed.
-/target/observable | string; default "{observable}" | A number in the result's mean.
+/name | string | Name of the campaign: at most 100 letters, digits, dots, underscores and hyphens.
+/scene | object | The scene that all points share; the engine checks it.
+/sweep | array; default [] | Parameters that differ between the points. Several entries make a grid; the last
+    varies fastest.
+/sweep/* | object | One axis of the grid.
+/sweep/*/set | anything | JSON pointer into the scene, or an array of pointers that are set together.
+/sweep/*/values | array of 1 or more | The values along this axis; with several pointers, each is an array with
+    one value for every pointer.
+/target? | object | The accuracy at which a point is done. Required, unless the number of realisations is fixed.
+/target/observable | string; default "{observable}" | Path of a number in the result's mean.
 {target}
-/target/also? | array of 0 to {targets} | Further observables; a point is done when all of them are known well
-    enough.
-/target/also/* | object | One of them.
-/target/also/*/observable | string | A number in the result's mean.
+/target/also? | array of 0 to {targets} | Further observables; a point is done when all observables meet their
+    tolerances.
+/target/also/* | object | One further observable.
+/target/also/*/observable | string | Path of a number in the result's mean.
 {also}
-/target/confidence | number > 0.5 and < 1; default {confidence} | Of the two-sided interval: Student's t, and
-    of shares Clopper and Pearson's.
-/realisations | integer >= 1 and <= {realisations} or object | How many seeds a point may take; a number
-    without a target: how many every point gets.
-/realisations/minimum | integer >= 2 and <= {realisations} | Seeds before the first stop test: 8 or more, because
-    the spread of fewer is itself too uncertain to stop by; 2 or more where it equals maximum, so that there
-    is only one stop test.
-/realisations/maximum | integer >= 2 and <= {realisations} | Seeds after which a point is capped; not below
-    the minimum.
-/show? | array of 1 to {shown} | Where the number of realisations is fixed: numbers in the result's mean that
-    tables show, the first one also charts; relative_viscosity unless given.
-/show/* | string | One of them.
-/keep_files? | integer >= 0 and <= {realisations} or one of all, none | Which of the files are kept that
-    realisations leave beside their results: all (unless given), none, or those of this many first seeds of
-    each point.
-/engine | array of 1 or more; default ["peclet-engine","serve"] | Program and arguments. Without a slash it is
-    looked for beside peclet, then on PATH, then among peclet's own adapters (lammps_engine.py); a relative
-    path starts at the campaign file, in whose folder it runs.
-/engine/* | string | A word of the command.
+/target/confidence | number > 0.5 and < 1; default {confidence} | Confidence of the two-sided interval:
+    Student's t, or Clopper and Pearson's for shares.
+/realisations | integer >= 1 and <= {realisations} or object | Range of the number of seeds of a point; a single
+    number without a target: the seeds of every point.
+/realisations/minimum | integer >= 2 and <= {realisations} | Seeds at the first stop test: 8 or more, because
+    the spread of fewer is too uncertain to stop a point; 2 or more if it equals maximum, so that there is only
+    one stop test.
+/realisations/maximum | integer >= 2 and <= {realisations} | Seeds at the last stop test; a point that has not
+    converged then is capped. Not below the minimum.
+/show? | array of 1 to {shown} | For a fixed number of realisations: paths of the numbers in the result's mean
+    that tables show. Charts show the first one. relative_viscosity unless given.
+/show/* | string | One path.
+/keep_files? | integer >= 0 and <= {realisations} or one of all, none | Seeds of each point whose files beside
+    the result are kept: all (unless given), none, or a number of first seeds.
+/engine | array of 1 or more; default ["peclet-engine","serve"] | Program and arguments. A program without a
+    slash is searched for beside peclet, then on PATH, then among peclet's own adapters (lammps_engine.py). A
+    relative path starts at the folder of the campaign file, in which the engine runs.
+/engine/* | string | The program or an argument.
 )";
 
 }  // namespace
@@ -263,8 +262,8 @@ const KeyTable& campaign_keys() {
                   arg("realisations", most_realisations), arg("targets", most_further_targets),
                   arg("shown", 1 + most_further_targets),
                   arg("target", fmt::format(tolerance_rows, "",
-                                            "Another number in the result's mean, of whose |mean| "
-                                            "relative_tolerance is a share.")),
+                                            "Path of another number in the result's mean; "
+                                            "relative_tolerance is then a share of its |mean|.")),
                   arg("also", fmt::format(tolerance_rows, "/also/*", "As for the target."))));
   return table;
 }

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// A name that cannot be followed, because it is a loop or too long, is no folder; whoever reads it says why.
+// Returns false for a name that cannot be followed (a loop, too long); reading it reports the reason.
 bool is_folder(const fs::path& given) {
   std::error_code impossible;
   return fs::is_directory(given, impossible);
@@ -39,7 +39,7 @@ std::string words_for(const fs::path& campaign_file, const fs::path& chosen) {
 
 std::string similar_name(const fs::path& given) {
   const fs::path folder = given.has_parent_path() ? given.parent_path() : ".";
-  std::error_code unreadable;  // then there is nothing to offer
+  std::error_code unreadable;  // no name is offered then
   std::vector<std::string> names;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, unreadable)) {
     const fs::path extension = entry.path().extension();
@@ -56,8 +56,8 @@ void require_campaign_file(const fs::path& given) {
     const fs::path file = campaign_file_of(given);
     throw InputError(given.string(), "", "",
                      fs::is_regular_file(file)
-                         ? fmt::format("is a folder, and the campaign's file is asked for: {}", file.string())
-                         : "is a folder, and a campaign's file is asked for");
+                         ? fmt::format("is a folder, but must be the campaign file: {}", file.string())
+                         : "is a folder, but must be a campaign file");
   }
   std::error_code impossible;
   if (!fs::exists(given, impossible) && !impossible) {
@@ -81,7 +81,7 @@ struct Member {
   Span key, value;  // the key with its quotes
 };
 
-// Walks over a text that is known to be JSON.
+// Finds tokens in a text that is known to be JSON.
 class Walker {
  public:
   explicit Walker(const std::string& text) : text_(text) {}
@@ -113,7 +113,7 @@ class Walker {
     return at;
   }
 
-  // Of the object that begins at `at`, in their order.
+  // Returns the members of the object that begins at `at`, in their order.
   std::vector<Member> members(std::size_t at) const {
     std::vector<Member> found;
     at = skip_blanks(at + 1);
@@ -156,7 +156,7 @@ std::string with_new_member(const std::string& text, std::size_t object, const s
   const std::string before_key = walker.part(object + 1, known.front().key.begin);
   const std::string colon = walker.part(known.front().key.end, known.front().value.begin);
   std::string edited = text;
-  // Members in one line have a blank between them, whatever stands behind the brace.
+  // Members on one line are separated by one blank, whatever follows the brace.
   const bool in_lines = before_key.find('\n') != std::string::npos;
   return edited.insert(known.back().value.end,
                        (in_lines ? "," + before_key : ", ") + quoted + colon + value.dump());

@@ -1,4 +1,4 @@
-// Campaign files: which one a person means, and one value of it replaced.
+// Finds the campaign file that a user means, and replaces single values in it.
 #pragma once
 
 #include <filesystem>
@@ -9,30 +9,26 @@
 
 namespace peclet::runner {
 
-// Finding the campaign file that a person means.
-//
-// The campaign file beside a campaign's folder, as it is spelt from here; a file is itself.
+// Returns the campaign file beside a campaign's folder, NAME.json for NAME.peclet; returns a file as it is.
 std::filesystem::path campaign_file_of(const std::filesystem::path& given);
 
-// Throws InputError when there is no such file, or a folder, and says which file may have been meant.
+// Throws InputError if the file does not exist or is a folder, and names the file that may have been meant.
 void require_campaign_file(const std::filesystem::path& given);
 
-// The folder at which relative paths of a campaign start and in which its engine runs: the file's, or the
-// present one where a pipe has been given.
+// Returns the folder at which relative paths of a campaign start and in which its engine runs: the file's, or
+// the current one if the campaign comes from a pipe.
 std::filesystem::path home_of(const std::filesystem::path& campaign_file);
 
-// What names the campaign in a command that a person is to type, quoted for the shell where it must be:
-// "flow-curve.json", and "flow-curve.json --directory FOLDER" where a folder has been chosen.
+// Returns the words that name the campaign in a command, quoted for the shell: "flow-curve.json", or
+// "flow-curve.json --directory FOLDER" if the user chose a folder.
 std::string words_for(const std::filesystem::path& campaign_file, const std::filesystem::path& chosen);
 
-// "; did you mean FILE?" for a name like that of a campaign file or folder beside it, or nothing.
+// Returns "; did you mean FILE?" if a campaign file or folder beside it has a similar name, or "".
 std::string similar_name(const std::filesystem::path& given);
 
-// One value of a JSON text replaced, and nothing else: the author's order, blanks and spelling stay.
-//
-// The text in which the value at `path` (keys of nested objects, all but the last of which must exist) is
-// `value`: its token is replaced, or the key is put behind the last one of its object, spaced as the first
-// one is. Requires a text that parse_json() has read.
+// Returns the text with `value` at `path`, the keys of nested objects. Only this token changes: the author's
+// order, blanks and spelling stay. An absent last key is added behind the others of its object, spaced as the
+// first one. Throws std::invalid_argument if another key is absent. Requires a text that is valid JSON.
 std::string with_value(const std::string& text, const std::vector<std::string>& path, const Json& value);
 
 }  // namespace peclet::runner

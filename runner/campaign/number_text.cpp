@@ -10,13 +10,13 @@
 namespace peclet::runner {
 namespace {
 
-// Power of ten of the leading digit after rounding to two: 0.0996 is 1.0e-01.
+// Returns the power of ten of a number that is rounded to two digits: -1 for 0.0996, which is 1.0e-01.
 int exponent(double number) {
   const std::string text = fmt::format("{:.1e}", number);
   return std::atoi(text.c_str() + text.find('e') + 1);
 }
 
-// To the place of 10^-decimals, also left of the point.
+// Returns the number rounded to a multiple of 10^-decimals; `decimals` may be negative.
 std::string rounded(double number, int decimals) {
   if (decimals >= 0) return fmt::format("{:.{}f}", number, decimals);
   const double unit = std::pow(10.0, -decimals);

@@ -1,4 +1,4 @@
-// Paths have a short name in the runner.
+// Abbreviates the namespace std::filesystem in the runner.
 #pragma once
 
 #include <filesystem>

@@ -13,7 +13,7 @@ bool is_control(char c) {
   return byte < 0x20 || byte == 0x7f;
 }
 
-// Bytes of letters beyond ASCII are plain: no shell gives them a meaning.
+// Returns true for bytes of letters beyond ASCII, too: no shell gives them a meaning.
 bool is_plain_character(char c) {
   constexpr std::string_view signs = "_@+=:,./-";
   const auto byte = static_cast<unsigned char>(c);

@@ -1,4 +1,4 @@
-// Texts put where somebody else reads them: people, a shell, a batch system, HTML, CSV.
+// Quotes texts for their readers: people, a shell, a batch system, HTML, CSV.
 #pragma once
 
 #include <cmath>
@@ -12,46 +12,40 @@
 
 namespace peclet::runner {
 
-// Words of strangers (an engine, a file) as they may be shown to people.
+// The usual length of foreign text (of an engine, a file) that is shown to people.
 constexpr std::size_t longest_plain_text = 240;
 
-// One line that no terminal obeys, of no more than `most` characters: see printable().
+// Returns the text on one line of at most `most` characters, without control characters: see printable().
 inline std::string plain(std::string_view text, std::size_t most = longest_plain_text) {
   return printable(text, most);
 }
 
-// The last part of a file's name, as plain(), shorter.
+// Returns the last part of a path as plain(), with at most 80 characters.
 inline std::string plain_name(const std::filesystem::path& path) {
   constexpr std::size_t longest = 80;
   return plain(path.filename().string(), longest);
 }
 
-// Values put where somebody else parses them: one function for each reader.
-//
-// Consists of characters that shells and batch systems take as they are.
+// Returns true if shells and batch systems take all characters of the text as they are; false for "".
 bool is_plain(const std::string& text);
 
-// Some character below space, or DEL: nothing that a path in a line of text may have.
+// Returns true if the text has a character below space, or DEL. A path on a line of text must not have one.
 bool has_control_characters(const std::string& text);
 
-// One word of a shell; plain text stays as it is. Control characters become $'...', which bash, zsh and ksh
-// know.
+// Returns the text as one word of a shell; plain text stays as it is. A text with control characters becomes
+// $'...', which bash, zsh and ksh know.
 std::string shell_word(const std::string& text);
 
-// The value of an option in a line `#SBATCH ...`, or a part of it, in which % begins a pattern (%a) of
-// Slurm's. (sbatch keeps a blank between double quotes, and not behind a backslash.) Requires neither control
-// characters nor a backslash, after which Slurm replaces no pattern at all.
+// Returns the value of an option on a line `#SBATCH ...`, or a part of it. A % is doubled, because it begins
+// one of Slurm's patterns (%a). Double quotes keep a blank for sbatch; a backslash does not. Requires a text
+// without control characters and backslashes: after a backslash Slurm replaces no pattern.
 std::string sbatch_word(const std::string& text);
 
-// Text in HTML.
-//
-// `text` as it is to be read, inside an element or an attribute in quotes. Control characters that HTML does
-// not allow become U+FFFD.
+// Returns the text for HTML, inside an element or a quoted attribute. Control characters that HTML does not
+// allow become U+FFFD.
 std::string escaped(std::string_view text);
 
-// Lines of the tables that `peclet export` prints for spreadsheets.
-//
-// As RFC 4180 quotes.
+// Returns the text as a field of CSV, quoted as in RFC 4180.
 inline std::string csv_quoted(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string field = "\"";
@@ -59,7 +53,7 @@ inline std::string csv_quoted(const std::string& text) {
   return field + '"';
 }
 
-// A spreadsheet takes a cell that begins so for a formula and would run it; behind an apostrophe it is text.
+// Returns the text with an apostrophe before it if a spreadsheet would run it as a formula.
 inline std::string csv_text(const std::string& text) {
   const bool is_formula =
       !text.empty() && std::string_view("=+-@\t\r").find(text.front()) != std::string_view::npos;

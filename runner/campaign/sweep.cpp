@@ -55,15 +55,16 @@ std::vector<std::vector<Json>> read_rows(const Json& entry, std::size_t pointers
       continue;
     }
     if (!value.is_array() || value.size() != pointers) {
-      throw InputError(file, fmt::format("{}/{}", where, rows.size()), shortened(value),
-                       fmt::format("must be an array of {}, one for every pointer of set", pointers));
+      throw InputError(
+          file, fmt::format("{}/{}", where, rows.size()), shortened(value),
+          fmt::format("must be an array with one value for each pointer of set, {} in all", pointers));
     }
     rows.emplace_back(value.begin(), value.end());
   }
   return rows;
 }
 
-// One names a part of what the other names, or the same.
+// Returns true if both pointers name the same value, or one a part of the other.
 bool overlap(const std::string& one, const std::string& other) {
   const auto [shorter, longer] = one.size() < other.size() ? std::pair(one, other) : std::pair(other, one);
   return longer.starts_with(shorter) && (longer.size() == shorter.size() || longer[shorter.size()] == '/');
@@ -79,7 +80,7 @@ void refuse_conflicts(const std::vector<SweepEntry>& sweep, const std::string& f
         throw InputError(file, fmt::format("/sweep/{}/set", entry), pointer,
                          *other == pointer
                              ? "must be set once only"
-                             : fmt::format("must not overlap with {}, which is set too", *other));
+                             : fmt::format("must not overlap with {}, which the sweep sets, too", *other));
       }
       seen.push_back(pointer);
     }
@@ -109,8 +110,8 @@ bool is_number(const std::string& step) { return step.find_first_not_of("0123456
 
 constexpr std::size_t longest_label = 100;
 
-// A value that is too long to be read in a table, or that a terminal would obey, is called by its place among
-// the values, from 1.
+// Returns the value for a label. A value that is too long for a table, or has control characters, becomes its
+// place among the values, from 1: "#1".
 std::string value_text(const Json& value, std::size_t row) {
   constexpr std::size_t longest = 24;
   const std::string text = value.is_string() ? value.get<std::string>() : canonical_json(value);
@@ -145,13 +146,12 @@ std::string SweepLabels::of(const std::vector<std::size_t>& row_of_entry) const 
   return label;
 }
 
-// The grid of a sweep: which scenes there are, and what they are called.
-
 namespace {
 
 constexpr std::size_t most_points = 100'000;
 
-// The element of an array that a step of a pointer names; RFC 6901 allows no leading zeros.
+// Returns the index of the element that a step of a pointer names; nothing if the array lacks it. RFC 6901
+// allows no leading zeros.
 std::optional<std::size_t> element(const Json& array, const std::string& step) {
   std::size_t index = 0;
   const char* const end = step.data() + step.size();
@@ -172,7 +172,7 @@ std::vector<std::string> steps_of(const std::string& pointer) {
   return steps;
 }
 
-// About the bytes of memory that a document takes: its text, and each of its values.
+// Returns roughly the memory of a document [bytes]: its text, and a constant for each of its values.
 std::size_t weight_of(const Json& document) {
   constexpr std::size_t of_a_value = 50;
   if (!document.is_structured()) {
@@ -185,16 +185,16 @@ std::size_t weight_of(const Json& document) {
   return weight;
 }
 
-// Each point has a scene of its own. 100 000 ordinary ones are far from this.
+// Throws InputError if the scenes of all points need too much memory. 100 000 ordinary ones need far less.
 void refuse_heavy_scenes(const Json& scene, std::size_t points, const std::string& file) {
   constexpr std::size_t most = 2'000'000'000;
   if (points <= 1 || weight_of(scene) <= most / points) return;
   throw InputError(
       file, "/scene", fmt::format("{} points of about {} bytes", points, weight_of(scene)),
-      fmt::format("must be small enough for scenes of all points together to take {} bytes", most));
+      fmt::format("must be so small that the scenes of all points together take at most {} bytes", most));
 }
 
-// Which row of each entry makes up a point.
+// The row of each entry that makes up a point.
 using GridIndex = std::vector<std::size_t>;
 
 std::size_t count_points(const std::vector<SweepEntry>& sweep, const std::string& file) {
@@ -244,9 +244,10 @@ StatePoint make_point(const Json& scene, const std::vector<SweepEntry>& sweep, c
                                const std::string& file) {
   const GridIndex one = grid_index(sweep, first), other = grid_index(sweep, second);
   const auto [a, b] = std::mismatch(one.begin(), one.end(), other.begin());
-  throw InputError(file, fmt::format("/sweep/{}/values/{}", a - one.begin(), *b), label,
-                   fmt::format("must differ from the other points: the scene is that of {}, value {} there",
-                               points[first].label, *a));
+  throw InputError(
+      file, fmt::format("/sweep/{}/values/{}", a - one.begin(), *b), label,
+      fmt::format("must differ from the other points: the scene equals that of {}, from value {}",
+                  points[first].label, *a));
 }
 
 }  // namespace
@@ -254,16 +255,16 @@ StatePoint make_point(const Json& scene, const std::vector<SweepEntry>& sweep, c
 void set_at(Json& scene, const std::string& pointer, const Json& value) {
   Json* place = &scene;
   for (const std::string& step : steps_of(pointer)) {
-    if (place->is_null()) *place = Json::object();  // made by the step before
+    if (place->is_null()) *place = Json::object();  // created by the step before
     if (place->is_array()) {
       const auto index = element(*place, step);
       if (!index)
-        refuse_pointer(pointer, fmt::format("there is no {} in an array of {}", step, place->size()));
+        refuse_pointer(pointer, fmt::format("an array of length {} has no element {}", place->size(), step));
       place = &(*place)[*index];
     } else if (place->is_object()) {
       place = &(*place)[step];
     } else {
-      refuse_pointer(pointer, fmt::format("nothing can be below {}", shortened(*place)));
+      refuse_pointer(pointer, fmt::format("{} is neither an object nor an array", shortened(*place)));
     }
   }
   *place = value;

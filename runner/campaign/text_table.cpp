@@ -8,7 +8,7 @@
 namespace peclet::runner {
 namespace {
 
-// The next line's worth of `rest`, which loses it and the blank behind it.
+// Returns the next line of at most `width` characters and removes it, with the blank after it, from `rest`.
 std::string_view taken_line(std::string_view& rest, std::size_t width) {
   std::size_t end = std::min(rest.find(' '), rest.size());
   while (end < rest.size()) {
@@ -132,7 +132,7 @@ std::string TextTable::text_within(std::size_t width) const {
   for (const std::vector<std::string>& row : rows_) {
     least_width = std::max(least_width, longest_word(row[columns.back()]));
   }
-  // Below the row where not every word has room beside it.
+  // The last column goes below the row if its longest word has no room beside it.
   const bool beside = least_width <= width && before_last <= width - least_width;
   const std::size_t room = beside ? width - before_last : width - std::min(width, gap);
   std::string text;
@@ -167,7 +167,7 @@ struct Parts {
   std::vector<std::string> names, values;
 };
 
-// Nothing where the label is not made of name=value.
+// Returns the names and values of a label; nothing if a word of it is not name=value.
 Parts split(const std::string& label) {
   Parts parts;
   std::istringstream words(label);

@@ -1,4 +1,4 @@
-// How narrow an interval has to be, if it has to be narrow at all.
+// Defines the largest half-width that an interval may have.
 #pragma once
 
 #include <string>
@@ -12,45 +12,44 @@ struct Tolerance {
 
   double value = 0;
   Kind kind = Kind::relative;
-  // Of a relative one: the observable whose |mean| it is a share of; "" for its own.
+  // For a relative tolerance: the observable of whose |mean| it is a share; "" for its own.
   std::string relative_to{};
-  // Of a relative one: the half-width that is good enough however small the mean.
+  // For a relative tolerance: the half-width that is always allowed, however small the mean.
   double floor = 0;
 
-  // A share of |mean|, unless it says otherwise.
   Tolerance() = default;
-  Tolerance(double share) : value(share) {}  // NOLINT: a number is what people mean by a tolerance
+  // Creates a relative tolerance: a share of |mean|.
+  Tolerance(double share) : value(share) {}  // NOLINT: the usual kind of tolerance
   static Tolerance absolute(double value);
-  // Any half-width is good enough: a campaign of a fixed number of realisations asks for none.
+  // Returns the tolerance for a fixed number of realisations, which allows any half-width.
   static Tolerance none();
 
   bool is_relative() const { return kind == Kind::relative; }
-  // Whether the half-width that is good enough around this mean is a share of it, and no number of its own.
+  // Returns true if the half-width allowed at this mean is a share of it, not the floor or an absolute one.
   bool is_share_of(double mean) const;
-  // Whether no half-width is good enough for a mean of 0.
+  // Returns true if a mean of 0 allows no half-width.
   bool needs_a_mean() const { return is_relative() && floor == 0; }
-  // The half-width that is good enough, for the mean that it is a share of; infinite without a tolerance.
+  // Returns the allowed half-width, for the mean to which the tolerance is relative; infinite for none().
   double half_width(double mean) const;
-  // Half-width over the one that is good enough: converged at 1. Infinite or NaN where there is no measure,
-  // NaN without a tolerance.
+  // Returns half-width over the allowed one: converged at 1 or less. Infinite or NaN if the mean is 0 or
+  // unknown; NaN for none().
   double share(double half_width, double mean) const;
 
   bool operator==(const Tolerance&) const = default;
 };
 
-// "5 %", "5 % of relative_viscosity", "5 % or 0.01", "0.1"; "none"
+// Returns "5 %", "5 % of relative_viscosity", "5 % or 0.01", "0.1" or "none".
 std::string to_string(const Tolerance& tolerance);
 
-// A half-width as the tolerance measures it, beside the mean that it is a share of: "2.3 %", "0.012"; "-"
-// where there is none.
+// Returns a half-width as the tolerance measures it at this mean: "2.3 %", "0.012"; "-" if it is not finite.
 std::string width_text(const Tolerance& tolerance, double half_width, double mean);
 
-// {"relative_tolerance": 0.05}, with "relative_to" where it has one, or {"absolute_tolerance": 0.1}: the keys
-// of a target, as the campaign file has them. {} for none.
+// Returns the keys of a target in a campaign file: {"relative_tolerance": 0.05}, with "relative_to" and
+// "absolute_floor" if set, or {"absolute_tolerance": 0.1}; {} for none().
 Json to_json(const Tolerance& tolerance);
-// Requires a tolerance.
+// Returns the key of a tolerance, which must not be none().
 const char* key_of(const Tolerance& tolerance);
-// Reads a tolerance from the keys of to_json(), of campaign_keys(). Throws Json::exception for other values.
+// Reads a tolerance from the keys of to_json(). Throws Json::exception for values of another type.
 Tolerance tolerance_of(const Json& target);
 
 }  // namespace peclet::runner

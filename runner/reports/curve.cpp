@@ -14,7 +14,7 @@
 namespace peclet::runner {
 namespace {
 
-// Of the parameters that are numbers at every point the one with the most values; "" without one.
+// Returns the parameter with the most values, of those that are numbers at every point; "" without one.
 std::string swept_most(const CampaignStatus& status) {
   std::map<std::string, std::set<double>> values;
   for (const auto& [pointer, value] : status.points.front().point.settings.items()) {
@@ -34,7 +34,7 @@ std::string swept_most(const CampaignStatus& status) {
 
 std::string last_step(const std::string& pointer) { return pointer.substr(pointer.rfind('/') + 1); }
 
-// What a point is beside `axis`, as in its label.
+// Returns the parameters of a point except `axis`, as in its label.
 std::string name_beside(const PointSummary& point, const std::string& axis) {
   std::string name;
   for (const auto& [pointer, value] : point.point.settings.items()) {
@@ -45,7 +45,7 @@ std::string name_beside(const PointSummary& point, const std::string& axis) {
   return name;
 }
 
-// How high a mean stands between the least and the greatest, from 0 to 1.
+// The height of a mean between the smallest and the largest one, from 0 to 1.
 class Scale {
  public:
   explicit Scale(const std::vector<double>& means) {
@@ -63,7 +63,7 @@ class Scale {
   double low_ = 0, width_ = 0;
 };
 
-// Means over the axis; NaN where there is none, infinite where the point has jammed.
+// The means over the axis; NaN without a mean, infinite if the point has jammed.
 using Points = std::map<double, double>;
 constexpr double jammed = std::numeric_limits<double>::infinity();
 
@@ -74,7 +74,7 @@ const char* sign(double mean, const Scale& scale) {
   return bars[static_cast<std::size_t>(std::lround(7 * scale.height(mean)))];
 }
 
-// "5.39 to 8.52", of the first and the last mean.
+// Returns the first and the last mean as "5.39 to 8.52".
 std::string ends(const Points& curve) {
   std::vector<double> means;
   for (const auto& [x, mean] : curve) {

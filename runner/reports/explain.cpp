@@ -25,11 +25,11 @@ std::vector<PointSummary> selected(std::vector<PointSummary> points, const std::
   return {std::move(points[find_point(records, name)])};
 }
 
-// An observable of the last stop test, and how well it is to be known.
+// An observable at the last stop test, with its criterion.
 struct Known {
   ObservableStopTest stop_test;
   Criterion criterion;
-  ObservableStopTest measure;  // of the mean that the tolerance is a share of
+  ObservableStopTest measure;  // the observable to which the tolerance is relative
 };
 
 std::vector<Known> known_of(const StopTest& stop_test, const Target& target) {
@@ -51,17 +51,17 @@ std::string width_text(const Known& known) {
   return width_text(known.criterion.tolerance, known.stop_test.half_width, known.measure.estimate.mean);
 }
 
-// "2 %"; of several "relative_viscosity 2 %, pressure 0.1".
+// Returns "a half-width of 2 %", or "half-widths of 2 % for relative_viscosity, 0.1 for pressure".
 std::string widths_text(const std::vector<Known>& all) {
-  if (all.size() == 1) return width_text(all.front());
+  if (all.size() == 1) return "a half-width of " + width_text(all.front());
   std::vector<std::string> widths;
   widths.reserve(all.size());
-  for (const Known& known : all) widths.push_back(known.stop_test.observable + ' ' + width_text(known));
-  return fmt::format("{}", fmt::join(widths, ", "));
+  for (const Known& known : all) widths.push_back(width_text(known) + " for " + known.stop_test.observable);
+  return fmt::format("half-widths of {}", fmt::join(widths, ", "));
 }
 
-// "5 %"; of several "5 % for relative_viscosity, 0.2 for pressure": those on whose observable the stop test
-// said `verdict`, or all of them.
+// Returns "5 %", or for several criteria "5 % for relative_viscosity, 0.2 for pressure": those with this
+// verdict, or all.
 std::string tolerances_text(const std::vector<Known>& all, std::optional<Verdict> verdict = {}) {
   if (all.size() == 1) return to_string(all.front().criterion.tolerance);
   std::vector<std::string> tolerances;
@@ -72,16 +72,15 @@ std::string tolerances_text(const std::vector<Known>& all, std::optional<Verdict
   return fmt::format("{}", fmt::join(tolerances, ", "));
 }
 
-// Seeds that the tolerances would take, as half-widths fall with 1 / sqrt(n).
+// Returns the seeds that the tolerances need, because half-widths fall with 1 / sqrt(n).
 std::string seeds_for(const StopTest& stop_test, const Target& target) {
   const double ratio = largest_share(stop_test, target);
   return std::isfinite(ratio) ? fmt::format("about {}", rough(std::ceil(stop_test.seeds * ratio * ratio)))
                               : "more";
 }
 
-// The first observable of which a tolerance is a share although it may be zero; null where there is none. A
-// share of such a mean is no measure of accuracy: whatever number of seeds it led to would be of the mean's
-// own noise.
+// Returns the first criterion whose tolerance is a share of a mean that may be zero, or null. The number of
+// seeds that such a tolerance needs depends only on the noise of the mean.
 const Known* that_may_be_zero(const std::vector<Known>& all) {
   const auto found = std::find_if(all.begin(), all.end(), [](const Known& known) {
     const ObservableStopTest& of = known.measure;
@@ -90,7 +89,7 @@ const Known* that_may_be_zero(const std::vector<Known>& all) {
   return found == all.end() ? nullptr : &*found;
 }
 
-// "/target/also/0/"
+// Returns the place of a criterion in a campaign: "/target/also/0/".
 std::string place_of(const Target& target, const Criterion& criterion) {
   const std::string observable = pointer_of(target, criterion.observable);
   return observable.substr(0, observable.rfind('/') + 1);
@@ -100,19 +99,19 @@ std::string advice_when_capped(const StopTest& stop_test, const Target& target) 
   const std::vector<Known> all = known_of(stop_test, target);
   if (const Known* const zero = that_may_be_zero(all)) {
     return fmt::format(
-        "{0}absolute_tolerance, or another {0}observable: the interval contains zero, and as long as it does "
-        "no {0}relative_tolerance below 100 % can be met, whatever the number of seeds",
+        "set {0}absolute_tolerance, or another {0}observable: while the interval contains zero, no number of "
+        "seeds can meet a {0}relative_tolerance below 100 %",
         place_of(target, zero->criterion));
   }
   const auto worst = std::max_element(all.begin(), all.end(), [](const Known& one, const Known& other) {
     return one.stop_test.share < other.stop_test.share;
   });
-  return fmt::format("a larger /realisations/maximum ({} seeds) or {}{} (`peclet set`), and run again",
+  return fmt::format("set a larger /realisations/maximum ({} seeds) or {}{} (`peclet set`), and run again",
                      seeds_for(stop_test, target), place_of(target, worst->criterion),
                      key_of(worst->criterion.tolerance));
 }
 
-// Why observables of the last stop test have no interval; nothing where all have one.
+// Returns the reason why observables of the last stop test have no interval; "" if all have one.
 std::string missing_interval_text(const PointSummary& point) {
   if (point.without_interval.empty()) return "";
   const StopTest& stop_test = point.stop_tests.back();
@@ -125,14 +124,14 @@ std::string missing_interval_text(const PointSummary& point) {
                      fmt::join(point.without_interval, ", "));
 }
 
-// What makes a share of another observable's mean less sure.
+// Returns the reason why a sufficient share of another mean is not enough: that mean is uncertain itself.
 std::string measure_text(const std::vector<Known>& all) {
   for (const Known& known : all) {
     const bool is_its_own = known.measure.observable == known.stop_test.observable;
     const double mean = known.measure.estimate.mean;
     if (is_its_own || known.criterion.tolerance.share(known.stop_test.half_width, mean) > 1) continue;
     if (!(known.stop_test.share <= 1)) {
-      return fmt::format(", because {} itself is known to {} only", known.measure.observable,
+      return fmt::format(", because {} itself is known only to {}", known.measure.observable,
                          percent(known.measure.half_width / std::abs(mean)));
     }
   }
@@ -141,16 +140,15 @@ std::string measure_text(const std::vector<Known>& all) {
 
 std::string luck_text(const StopTest& stop_test) {
   if (!stop_test.near_maximum) return "";
-  return "; perhaps by luck: with a spread as large as these values leave open it would need more seeds than "
-         "are allowed, and intervals of such points hold the mean less often";
+  return "; perhaps by luck: the true spread may be so large that the point needs more seeds than are "
+         "allowed, and intervals of such points hold the mean less often than they say";
 }
 
 std::string earlier_stop_test_text(const PointSummary& point) {
   if (point.earlier_stop_test == 0) return "";
   return fmt::format(
-      ": the first stop test that is; it decides as if the target had always been this one, and leaves out "
-      "later "
-      "seeds; all {} with a value give {} (± standard error)",
+      "; this is the first stop test within it: it decides as if the target had always been this one, and "
+      "leaves out later seeds; all {} seeds with a value give {} (± standard error)",
       point.all_seeds.count, with_error(point.all_seeds.mean, point.all_seeds.standard_error));
 }
 
@@ -160,14 +158,14 @@ std::string reason(const PointSummary& point, const Target& target) {
     return fmt::format(
         "{} of the {} seeds{} have ended, {}{}", point.wanted_ended, point.wanted,
         target.has_tolerance() ? " of the next stop test" : "",
-        point.point.cancelled ? "and it gets no more" : fmt::format("{} run", point.counts.running),
+        point.point.cancelled ? "and the point gets no more" : fmt::format("{} run", point.counts.running),
         missing.empty() ? "" : "; " + missing);
   }
   const StopTest& stop_test = point.stop_tests.back();
   const std::vector<Known> all = known_of(stop_test, target);
   const auto lost_to = [&](const Known& known) { return stop_test.seeds - known.stop_test.estimate.count; };
   const auto name_of = [&](const Known& known) {
-    return all.size() == 1 ? "" : " to " + known.stop_test.observable;
+    return all.size() == 1 ? "" : " (no value of " + known.stop_test.observable + ')';
   };
   switch (stop_test.verdict) {
     case Verdict::converged:
@@ -205,47 +203,49 @@ std::string reason(const PointSummary& point, const Target& target) {
 std::string next_step(const PointSummary& point, const TargetRecord& target,
                       const CampaignDirectory& directory) {
   if (point.point.suspect) {
-    return "find out why one seed gave two results (see the events and spool/rejected/) before trusting any";
+    return "find out why one seed gave two results (see the events and spool/rejected/); trust none until "
+           "then";
   }
-  if (point.point.cancelled && !point.decided) return "nothing; `peclet cancel --undo` takes it up again";
+  if (point.point.cancelled && !point.decided) return "nothing; `peclet cancel --undo` resumes the point";
   if (!point.decided) {
-    if (!target.target.has_tolerance()) return fmt::format("the other seeds of {}", point.wanted);
+    if (!target.target.has_tolerance()) return fmt::format("the remaining ones of {} seeds", point.wanted);
     if (point.stop_tests.empty()) return fmt::format("the first stop test, at {} seeds", point.wanted);
     if (!point.without_interval.empty()) {
       return fmt::format(
-          "the stop test at {} seeds; how many will be enough cannot be told without an interval",
+          "the stop test at {} seeds; without an interval, the number of seeds needed cannot be predicted",
           point.wanted);
     }
     return fmt::format(
         "the stop test at {} seeds; {}", point.wanted,
         that_may_be_zero(known_of(point.stop_tests.back(), target.target)) != nullptr
-            ? "how many will be enough cannot be told while the interval contains zero"
-            : fmt::format("{} are expected to be enough",
+            ? "the number of seeds needed cannot be predicted while the interval contains zero"
+            : fmt::format("{} seeds are expected to be enough",
                           expected_seeds(point.stop_tests, target.target, target.minimum, target.maximum)));
   }
   const StopTest& stop_test = point.stop_tests.back();
   switch (stop_test.verdict) {
     case Verdict::complete:
     case Verdict::converged:
-      if (stop_test.transient) return "a longer /scene/duration/equilibration: see transient above";
+      if (stop_test.transient) return "set a longer /scene/duration/equilibration: see transient above";
       if (stop_test.verdict == Verdict::complete)
-        return "nothing; more realisations (`peclet set --realisations`) reopen it";
+        return "nothing; more realisations (`peclet set --realisations`) reopen the point";
       if (stop_test.near_maximum) {
-        return "a larger /realisations/maximum and a smaller tolerance (`peclet set`), or nothing";
+        return "set a larger /realisations/maximum and a smaller tolerance (`peclet set`), or nothing";
       }
-      return "nothing; a smaller tolerance (`peclet set`) reopens it";
+      return "nothing; a smaller tolerance (`peclet set`) reopens the point";
     case Verdict::converged_with_losses:
     case Verdict::complete_with_losses:
       return fmt::format(
-          "see why seeds are lost: the mean leaves them out (states in {}){}", directory.failures().string(),
-          point.counts.quarantined > 0 ? "; `peclet retry` runs those again that were given up" : "");
+          "find out why seeds are lost, because the mean leaves them out (states in {}){}",
+          directory.failures().string(),
+          point.counts.quarantined > 0 ? "; `peclet retry` runs the seeds again that were given up" : "");
     case Verdict::capped:
       if (!stop_test.repeated.empty()) {
-        return "find out why seeds give the same: a start list with one file twice, or an engine without "
-               "noise";
+        return "find out why seeds end in the same state: a start list with one file twice, or an engine "
+               "without noise";
       }
       if (!point.without_interval.empty()) {
-        return fmt::format("a larger /realisations/maximum than {} (`peclet set`), or another observable",
+        return fmt::format("set a larger /realisations/maximum than {} (`peclet set`), or another observable",
                            target.maximum);
       }
       return advice_when_capped(stop_test, target.target);
@@ -267,7 +267,7 @@ std::string stop_tests_table(const std::vector<StopTest>& stop_tests, const Targ
     table.add_column(target.tolerance.is_relative() ? "relative" : "half-width");
     table.add_column("tolerance");
   }
-  if (with_control) table.add_column("plain");
+  if (with_control) table.add_column("without control variate");
   table.add_column("verdict", TextTable::Align::left);
   for (const StopTest& stop_test : stop_tests) {
     std::vector<std::string> row{fmt::format("{}", stop_test.seeds), fmt::format("{}", stop_test.lost),
@@ -283,7 +283,7 @@ std::string stop_tests_table(const std::vector<StopTest>& stop_tests, const Targ
   return table.text("  ");
 }
 
-// Of a target of several observables, each at the last stop test.
+// Returns the table of all observables at the last stop test; "" for a target of one observable.
 std::string observables_table(const std::vector<StopTest>& stop_tests, const Target& target) {
   if (stop_tests.empty() || stop_tests.back().each.empty()) return "";
   TextTable table;
@@ -320,7 +320,7 @@ Json blamed_attempts_json(Database& database, std::int64_t point) {
   return blamed;
 }
 
-// What the realisations of a point have left.
+// Returns the files that the realisations of a point have left.
 Json files_json(Database& database, const CampaignDirectory& directory, std::int64_t point) {
   int kept = 0, thrown_away = 0;
   std::uint64_t bytes = 0;  // of those that are kept

@@ -1,4 +1,4 @@
-// The verb `peclet explain`: why a point is where it is, and what would bring it further.
+// Implements the verb `peclet explain`: why a point has its verdict, and what to do next.
 #pragma once
 
 #include <cstdint>
@@ -11,23 +11,22 @@
 
 namespace peclet::runner {
 
-// Throws InputError for a name that no point, or more than one, has.
+// Returns the explanation of a point as named in find_point(), or of all points if `point` is "". Throws
+// InputError if no point, or more than one, has the name.
 std::string explain(Database& database, const CampaignDirectory& directory, const std::string& point);
-// The same as schema/README.md describes it.
+// Returns the explanation as schema/README.md describes it.
 Json explain_json(Database& database, const CampaignDirectory& directory, const std::string& point);
 
-// What it says of an estimate: how far its interval can be trusted, what the control variate does for it, and
-// whether longer windows would be cheaper than more seeds.
-//
-// Lines of the last stop test at a point; nothing before the first one.
+// Returns lines on the estimate of the last stop test: how far its interval can be trusted, the effect of the
+// control variate, and whether longer windows are cheaper than more seeds. Empty before the first stop test.
 std::string estimate_text(Database& database, const PointSummary& point, const TargetRecord& target);
 
-// Seeds that are lost, by cause.
+// Returns the lost seeds by cause.
 std::map<std::string, std::vector<int>> lost_seeds(Database& database, std::int64_t point);
-// "  lost: 2 overlap (seeds 3, 17)" for every cause, and why in the line below; nothing when no seed is lost.
+// Returns "  lost: 2 overlap (seeds 3, 17)" for every cause, and the reason on the next line.
 std::string losses_text(Database& database, const PointSummary& point);
 
-// How many attempts ended how, and the latest ones that count against their seed.
+// Returns the number of attempts by outcome, and the latest ones that count against their seed.
 std::string attempts_text(Database& database, std::int64_t point);
 
 }  // namespace peclet::runner

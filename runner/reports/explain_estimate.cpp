@@ -16,7 +16,7 @@
 namespace peclet::runner {
 namespace {
 
-// The values of the last stop test that completed, in order of their seeds.
+// Returns the outcomes of the last stop test that have a value, in the order of their seeds.
 std::vector<Outcome> completed(Database& database, const PointSummary& point) {
   const std::vector<std::optional<Outcome>> outcomes = database.outcomes(point.point.id);
   const auto seeds = std::min(outcomes.size(), static_cast<std::size_t>(point.stop_tests.back().seeds));
@@ -56,7 +56,7 @@ std::string interval_text(const StopTest& stop_test, const std::vector<Outcome>&
   return text;
 }
 
-// Of an observable whose window begins too early.
+// Returns the line on the transient of an observable.
 std::string contrasts_text(const std::vector<Outcome>& outcomes, std::size_t place, const std::string& name) {
   std::vector<double> quarters, halves;
   for (const Outcome& outcome : outcomes) {
@@ -68,7 +68,7 @@ std::string contrasts_text(const std::vector<Outcome>& outcomes, std::size_t pla
   const Estimate quarter = estimate(quarters), half = estimate(halves);
   return fmt::format(
       "  transient: the first quarter of the windows differs from the whole by {}, the first half by {} (± "
-      "standard error){}:\n    the window begins too early, which more seeds never mend; lengthen "
+      "standard error){}:\n    the window begins too early, and more seeds do not help; lengthen "
       "/scene/duration/equilibration\n",
       with_error(quarter.mean, quarter.standard_error), with_error(half.mean, half.standard_error), name);
 }
@@ -84,12 +84,13 @@ std::string transient_text(const StopTest& stop_test, const std::vector<Outcome>
   }
   if (untested.empty()) return text;
   return text + fmt::format(
-                    "  transient: no test was possible, because the results have no blocks of {}: nothing "
-                    "tells whether the\n    windows begin before the equilibration is over\n",
+                    "  transient: no test was possible, because the results have no blocks of {}: it is "
+                    "unknown whether the\n    windows begin before the equilibration is over\n",
                     untested);
 }
 
-// beta of value + beta * control that would have the least variance, and what the fixed 1 gives.
+// Returns the line on the variance of value + control, and on the beta for which value + beta * control has
+// the smallest variance.
 std::string control_text(const std::vector<Outcome>& outcomes) {
   double value = 0, control = 0;
   const auto count = static_cast<double>(outcomes.size());
@@ -107,8 +108,8 @@ std::string control_text(const std::vector<Outcome>& outcomes) {
   const double best = -vc / cc;
   const double error = std::sqrt(std::max(0.0, vv - vc * vc / cc) / (count - 2) / cc);
   return fmt::format(
-      "  control variate: variance {} of that without it; its coefficient is 1, the best for these seeds "
-      "{}\n",
+      "  control variate: the variance is {} times that without it; its coefficient is 1, and the best one "
+      "for these seeds is {}\n",
       rough((vv + 2 * vc + cc) / vv), with_error(best, error));
 }
 
@@ -121,7 +122,7 @@ std::string window_text(Database& database, const PointSummary& point, const std
   const MeanSteps cost = database.mean_steps(point.point.id);
   const std::optional<WindowAdvice> advice = advise_window(halves, cost.equilibration, cost.production);
   if (!advice) return "";
-  // What is advised must be true at the end of the correlation's interval that speaks most against it.
+  // The advice must hold at the end of the correlation's interval that is least favourable to it.
   std::string conclusion = "its length is about right, as far as these seeds can tell";
   if (advice->half_as_long * (1 + advice->correlation) / (1 + advice->low) < 0.9) {
     conclusion = "shorter windows and more seeds are cheaper";
@@ -152,7 +153,7 @@ std::string estimate_text(Database& database, const PointSummary& point, const T
 
 namespace {
 
-// What the runner wrote down, or how the process ended.
+// Returns the recorded message, or how the process ended.
 std::string account(const AttemptRecord& attempt) {
   if (!attempt.message.empty()) return ": " + attempt.message;
   if (!attempt.exit_status && !attempt.signal) return "";

@@ -23,14 +23,14 @@
 namespace peclet::runner {
 namespace {
 
-// Returns the point of that name; all points where it is empty.
+// Returns the point of that name, or all points if it is empty.
 std::vector<PointRecord> named_points(Database& database, const std::string& name) {
   std::vector<PointRecord> points = database.points();
   if (name.empty()) return points;
   return {points[find_point(points, name)]};
 }
 
-// Seeds that the last stop test counts.
+// Returns the number of seeds of the last stop test.
 int seeds_of_last_stop_test(Database& database, const PointRecord& point) {
   const std::vector<StopTestRecord> stop_tests = database.stop_tests(point.id);
   return stop_tests.empty() ? 0 : stop_tests.back().stop_test.seeds;
@@ -71,7 +71,7 @@ void for_each_result_line(Database& database, const std::string& name, std::opti
 
 namespace {
 
-// The path is null where the file was thrown away.
+// Returns the description of a file; its path is null if it was thrown away.
 Json file_json(const FileRecord& record, const CampaignDirectory& directory) {
   return {{"name", record.file.name},
           {"bytes", record.file.bytes},
@@ -107,7 +107,7 @@ std::string list_files(Database& database, const CampaignDirectory& directory, c
 
 namespace {
 
-// What of a result depends on scene, seed and engine alone. Blocks stay in the database.
+// Returns the parts of a result that depend on scene, seed and engine alone, without its blocks.
 Json content(const Json& result) {
   Json kept = Json::object();
   for (const char* const key :
@@ -115,11 +115,11 @@ Json content(const Json& result) {
         "largest_overlap", "warnings", "gate", "final_state_sha256"}) {
     if (result.contains(key)) kept[key] = result[key];
   }
-  kept["ending"].erase("state");  // where this machine keeps it
+  kept["ending"].erase("state");  // a path on this machine
   return kept;
 }
 
-// A seed that was given up has no result of its own.
+// Returns the content for a seed that was given up, which has no result.
 Json content_without_result(const RealisationRecord& record) {
   return {{"seed", record.seed}, {"ending", {{"cause", record.cause}}}, {"mean", nullptr}};
 }
@@ -140,7 +140,7 @@ Json attempt_json(const AttemptRecord& attempt) {
           {"message", attempt.message}};
 }
 
-// The seeds of one point as they go into the document.
+// One point of the exported document, with its seeds.
 class PointExport {
  public:
   PointExport(Database& database, const PointRecord& point, const TargetRecord& target, bool canonical)
@@ -153,7 +153,7 @@ class PointExport {
       for (const AttemptRecord& attempt : database.attempts(point.id)) {
         attempts_[attempt.seed].push_back(attempt_json(attempt));
       }
-      const CampaignDirectory below("");  // paths are those below the campaign's folder
+      const CampaignDirectory below("");  // makes paths relative to the campaign's folder
       for (const FileRecord& record : files_of_point(database.connection(), point.id)) {
         files_[record.seed].push_back(file_json(record, below));
       }
@@ -251,7 +251,7 @@ Json heading(Database& database, const CampaignRecord& campaign, bool canonical)
 }  // namespace
 
 std::string export_json(Database& database, bool canonical) {
-  // Point by point, so that the memory is that of one point and the text.
+  // Point by point, because all points as JSON would need much more memory than the text.
   const CampaignRecord campaign = database.campaign();
   const Json outermost = heading(database, campaign, canonical);
   std::string text;
@@ -287,7 +287,7 @@ Fields mean_fields(const Estimate& estimate) {
   return {csv_number(estimate.mean), csv_number(estimate.standard_error)};
 }
 
-// Count, mean and standard error.
+// Returns count, mean and standard error.
 Fields estimate_fields(const Estimate& estimate) {
   Fields fields{fmt::format("{}", estimate.count)};
   append(fields, mean_fields(estimate));
@@ -299,8 +299,7 @@ std::string value_field(const Json& value) {
   return value.is_string() ? csv_text(value.get<std::string>()) : canonical_json(value);
 }
 
-// The columns that say which point a row is about: label, hash, and one for each pointer that the sweep has
-// set at any point.
+// The columns that name the point of a row: label, hash, and one for each pointer that the sweep sets.
 class SettingColumns {
  public:
   explicit SettingColumns(const std::vector<PointRecord>& points) {
@@ -326,7 +325,7 @@ class SettingColumns {
   std::set<std::string> pointers_;
 };
 
-// Returns the estimates of every quantity over the seeds of the stop test; nothing before the first one.
+// Returns the estimates of every quantity over the seeds of the stop test; empty before the first one.
 std::vector<QuantityEstimate> point_estimates(Database& database, const PointRecord& point,
                                               const std::optional<StopTest>& stop_test) {
   QuantityEstimates estimates;
@@ -337,7 +336,7 @@ std::vector<QuantityEstimate> point_estimates(Database& database, const PointRec
   return estimates.estimates();
 }
 
-// Returns those of scalars alone, for which no result is read.
+// Returns the estimates of scalars alone, without reading results.
 std::vector<QuantityEstimate> scalar_estimates(NumberStore& numbers, const PointRecord& point,
                                                const std::optional<StopTest>& stop_test) {
   QuantityEstimates estimates(QuantityEstimates::Wanted::scalars);
@@ -368,12 +367,13 @@ Fields full_fields(const PointSummary& point) {
   return fields;
 }
 
-// Three columns for each scalar quantity of any point; one that has another unit elsewhere has others there.
+// Three columns for each scalar quantity of any point. A quantity with different units at different points
+// has columns for each unit.
 class ScalarColumns {
  public:
   void add(std::size_t row, const std::vector<QuantityEstimate>& estimates) {
     for (const QuantityEstimate& found : estimates) {
-      // What is not described has no unit, and shares its column with what is described as a number.
+      // A quantity without description has no unit. It shares its column with pure numbers.
       const std::string unit = found.quantity.unit.empty() ? "1" : found.quantity.unit;
       columns_[{found.quantity.name, unit}][row] = found.estimates.front();
     }
@@ -405,7 +405,7 @@ class ScalarColumns {
     return csv_text(unit == "1" ? unambiguous : fmt::format("{} [{}]", unambiguous, unit));
   }
 
-  // By name and unit.
+  // Estimates of each row by name and unit of the quantity.
   std::map<std::pair<std::string, std::string>, std::map<std::size_t, Estimate>> columns_;
 };
 
@@ -453,7 +453,7 @@ struct Point {
   std::vector<QuantityEstimate> estimates;
 };
 
-// Name, unit and value of each axis at an element, the last axis running fastest; empty beyond the last axis.
+// Returns name, unit and value of each axis at an element, the last axis running fastest; "" beyond the last.
 Fields place_fields(const Quantity& quantity, std::size_t element, std::size_t most_axes) {
   Fields fields(3 * most_axes);
   for (std::size_t axis = quantity.axes.size(); axis-- > 0;) {

@@ -13,7 +13,7 @@
 namespace peclet::runner {
 namespace {
 
-// The degrees of freedom of what the open points cost together; NaN if nothing is open.
+// Returns the degrees of freedom of the summed cost of the open points; NaN if none is open.
 double common_degrees(const Plan& plan) {
   double sum = 0, squares = 0;
   for (const PointPlan& point : plan.points) {
@@ -65,13 +65,13 @@ Totals totals_of(const Plan& plan, const Target& target) {
     }
     return std::max(work / plan.workers, longest);
   });
-  // The machine may be faster or slower than it was for the seeds that the costs come from.
+  // The machine may become faster or slower than it was for the measured seeds.
   totals.wall_seconds_to_come.lower /= machine_allowance;
   totals.wall_seconds_to_come.upper *= machine_allowance;
   return totals;
 }
 
-// Looks at what is known as a run for the campaign's target would.
+// Sets the deciding stop test of a point, or else its prediction, from the known outcomes.
 void predict_point(PointPlan& point, const Campaign& campaign,
                    const std::vector<std::optional<Outcome>>& outcomes) {
   const std::vector<StopTest> stop_tests = replay_stop_tests(
@@ -94,14 +94,14 @@ bool PointPlan::is_predicted() const { return !decided && obstacle().empty(); }
 std::string PointPlan::obstacle() const {
   if (decided) return "";
   if (prediction.obstacle != Obstacle::none) return obstacle_text(prediction);
-  return std::isfinite(cost.cpu_seconds) ? "" : "its seeds do not say what they cost";
+  return std::isfinite(cost.cpu_seconds) ? "" : "the cost of its seeds is unknown";
 }
 
 Plan make_plan(const Campaign& campaign, const std::vector<double>& particle_steps,
                const std::map<std::string, PointHistory>& known, int workers,
                const std::optional<CostGuess>& guess) {
   Plan plan{campaign.name, campaign.minimum_realisations, campaign.maximum_realisations, workers};
-  MeasuredCost all;  // per particle-step
+  MeasuredCost all;  // summed over all ended realisations
   double known_steps = 0;
   for (std::size_t i = 0; i < campaign.points.size(); ++i) {
     PointPlan point{campaign.points[i].label, particle_steps[i], {}};
@@ -128,7 +128,7 @@ Plan make_plan(const Campaign& campaign, const std::vector<double>& particle_ste
   return plan;
 }
 
-// How a plan looks to a person, and to a program.
+// Texts and JSON of a plan.
 
 namespace {
 
@@ -140,7 +140,7 @@ double total_hours(const Plan& plan, int seeds) {
   return total;
 }
 
-// Some point is, or could have been, predicted.
+// Returns true if some point is decided, predicted, or has two pilot seeds.
 bool has_values(const Plan& plan) {
   return std::any_of(plan.points.begin(), plan.points.end(), [](const PointPlan& point) {
     return point.decided || point.prediction.pilot >= 2 || point.is_predicted();
@@ -160,7 +160,7 @@ std::string with_range(const Expected<Number>& value, double unit) {
                      rough(value.upper / unit));
 }
 
-// Seeds, hours and what else is to be said of a point.
+// Returns the cells of seeds, hours and remark of a point.
 std::vector<std::string> predicted_cells(const PointPlan& point) {
   if (point.decided) {
     return {fmt::format("{}", point.decided->seeds), rough(hours(point, point.decided->seeds)),
@@ -171,8 +171,8 @@ std::vector<std::string> predicted_cells(const PointPlan& point) {
   std::string remark;
   if (prediction.lost > 0) remark = fmt::format("{} of {} seeds are lost", prediction.lost, prediction.pilot);
   if (prediction.capped >= 0.05) {
-    remark += fmt::format("{}not converged by the maximum: {:.0f} %", remark.empty() ? "" : "; ",
-                          100 * prediction.capped);
+    remark += fmt::format("{}probability of no convergence by the maximum: {:.0f} %",
+                          remark.empty() ? "" : "; ", 100 * prediction.capped);
   }
   return {with_range(prediction.seeds, 1),
           with_range(prediction.seeds, seconds_per_hour / point.cost.cpu_seconds), remark};
@@ -223,20 +223,19 @@ std::string table_text(const Plan& plan, bool predicted) {
 std::string legend(const Plan& plan, bool predicted) {
   const bool unknown = std::isnan(total_hours(plan, 1));
   std::string text =
-      unknown
-          ? "-: not known before a seed has ended\n"
-          : "CPU seconds per seed: mean (of so many seeds); ~: scaled from other points by particle-steps\n";
+      unknown ? "-: not known before a seed has ended\n"
+              : "CPU s/seed: mean (number of ended seeds); ~: scaled from other points by particle-steps\n";
   if (!plan.guessed_from.empty()) {
     text = fmt::format(
         "~: a guess, from the first two seconds of one realisation of {} and the particle-steps of the "
-        "others; --pilot measures\n",
+        "others; --pilot measures the costs\n",
         plan.guessed_from);
   }
   for (const std::string& trial : plan.broke_off) text += fmt::format("the trial of {}\n", trial);
   if (predicted && plan.minimum < plan.maximum) {
     text +=
-        "seeds: of the stop test that will decide, expected (range that holds it 95 % of the time)\n"
-        "CPU h: of these seeds; all: expected and range of the sum, which are not the sums of those above\n";
+        "seeds: expected at the deciding stop test (range that holds their number 95 % of the time)\n"
+        "CPU h: of these seeds; all: expected value and range of the sum, not the sums of the ranges above\n";
   }
   return text;
 }
@@ -251,12 +250,11 @@ std::string ending_text(const Plan& plan) {
   if (totals.predicted == 0) {
     const bool all_decided = std::all_of(plan.points.begin(), plan.points.end(),
                                          [](const PointPlan& point) { return point.decided.has_value(); });
-    return all_decided ? "every point is decided\n"
-                       : "nothing can be predicted of the points that are open\n";
+    return all_decided ? "every point is decided\n" : "no prediction is possible for the open points\n";
   }
   const auto others = static_cast<int>(plan.points.size()) - totals.points;
   std::string text;
-  if (others > 0) text += fmt::format("points without a prediction, {}, are not in these sums\n", others);
+  if (others > 0) text += fmt::format("these sums leave out the points without a prediction: {}\n", others);
   if (totals.likely_capped > 0) {
     text += fmt::format("{} of {} points {} not expected to converge within {} seeds\n", totals.likely_capped,
                         plan.points.size(), totals.likely_capped == 1 ? "is" : "are", plan.maximum);
@@ -268,15 +266,15 @@ std::string ending_text(const Plan& plan) {
                      fmt::localtime(plan.made_at + std::llround(totals.wall_seconds_to_come.likely)));
 }
 
-// A way that people may not know of; which one is taken is theirs to say.
+// Returns the points for which linear_response at rest may be cheaper. The choice is the user's.
 std::string rest_text(const Plan& plan) {
   std::string text;
   for (const PointPlan& point : plan.points) {
     if (point.flow_over_rest) text += fmt::format("  {}: {}\n", point.label, rough(*point.flow_over_rest));
   }
   if (text.empty()) return text;
-  return "\nNearly at rest. Processor time over that of the same error at rest, by linear_response (a "
-         "guess):\n" +
+  return "\nThese points are nearly at rest. Processor time over that for the same error at rest, with "
+         "linear_response (a guess):\n" +
          text;
 }
 

@@ -1,4 +1,4 @@
-// What a campaign may cost, and with a pilot what it will.
+// Estimates what a campaign may cost, and predicts its cost from pilot seeds.
 #pragma once
 
 #include <ctime>
@@ -13,48 +13,45 @@
 
 namespace peclet::runner {
 
-// What realisations of a point that have ended took, on the average.
+// The mean cost of the ended realisations of a point.
 struct MeasuredCost {
   int count = 0;
-  double cpu_seconds = 0;  // of one
+  double cpu_seconds = 0;  // of one realisation
   double wall_seconds = 0;
 };
 
-// What the database knows of a point.
+// The costs and outcomes of a point in the database.
 struct PointHistory {
   MeasuredCost cost;
-  std::vector<std::optional<Outcome>> outcomes{};  // of the campaign's observable, else none
+  std::vector<std::optional<Outcome>> outcomes{};  // empty if they are of another observable
 };
 
 struct PointPlan {
   std::string label;
   double particle_steps = 0;  // of one realisation
-  MeasuredCost cost;          // cpu_seconds is NaN when nothing is known; count 0: scaled from other points
-  int ended = 0;              // seeds of the stop tests up to the deciding one, or so far
+  MeasuredCost cost;          // cpu_seconds is NaN if unknown; with count 0 it is scaled from other points
+  int ended = 0;              // seeds of the deciding stop test, or all ended ones
   std::optional<StopTest> decided{};
-  Prediction prediction{};  // of a point that is not decided
-  // Processor time over that of the same error at rest, where the engine says so (its derived
-  // flow_over_rest).
+  Prediction prediction{};  // of an undecided point
+  // Processor time in flow over that for the same error at rest, if the engine derives flow_over_rest.
   std::optional<double> flow_over_rest{};
 
-  // Nothing is expected of a point that is decided, and nothing is known of one with an obstacle.
+  // Returns false for a point that is decided or has an obstacle.
   bool is_predicted() const;
-  // Why there is no prediction, in words; nothing for one that has it or needs none.
+  // Returns the reason why there is no prediction; "" for a point that has one or is decided.
   std::string obstacle() const;
 };
 
-// Of the points that are predicted or decided, in seconds. What is still to come takes
-//   max(sum over the points of seeds to come * wall time of one / workers,
-//       the largest sum over the stop tests to come of a point of ceil(seeds of the stop test / workers) *
-//       wall time)
-// with the workers, since a stop test waits for all its seeds; its range leaves room for a machine whose
-// speed changes (machine_allowance).
+/// The sums over the points that are predicted or decided. The wall time to come is
+///   max(sum over the points of (seeds to come * wall time of a seed) / workers,
+///       max over the points of (rounds_until() the last stop test * wall time of a seed)),
+/// because a stop test waits for all its seeds. Its range includes machine_allowance.
 struct Totals {
   int points = 0, predicted = 0, likely_capped = 0;
   Expected<double> seeds, cpu_seconds, cpu_seconds_to_come, wall_seconds_to_come;
 };
 
-// What a realisation of one point may cost where none has ended: see scene_check.h.
+// The guessed cost of a realisation of one point, if none has ended: see scene_check.h.
 struct CostGuess {
   std::size_t point = 0;  // place in the sweep
   double seconds = 0;
@@ -68,11 +65,11 @@ struct Plan {
   std::vector<PointPlan> points{};
   Totals totals{};
   std::vector<std::string> broke_off{};  // trials that ended early: "peclet=10 broke off: packing: ..."
-  std::string guessed_from{};  // label of the point of the guess that all costs come from; "": none does
+  std::string guessed_from{};            // label of the point whose guess all costs come from; "" without one
 };
 
-// A point without a realisation of its own is taken to need as much time per particle-step as all the others
-// together; without any, as much as the guess says. Points are matched with `known` by hash.
+// Returns the plan. A point without ended realisations has the time per particle-step of all others together,
+// or that of the guess if no point has any. `known` has the points by hash.
 Plan make_plan(const Campaign& campaign, const std::vector<double>& particle_steps,
                const std::map<std::string, PointHistory>& known, int workers,
                const std::optional<CostGuess>& guess = {});

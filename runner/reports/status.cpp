@@ -174,11 +174,9 @@ Json status_json(const CampaignStatus& status) {
           {"points", points}};
 }
 
-// How `status` looks to a person.
-
 namespace {
 
-// With its share of the mean, where the tolerance is one.
+// Returns mean ± half-width, with the relative half-width if the tolerance is relative.
 std::string interval(const StopTest& stop_test, const Tolerance& tolerance) {
   const bool has_interval = std::isfinite(stop_test.controlled_half_width);
   if (!has_interval && stop_test.controlled.count < 2) return "-";
@@ -188,7 +186,7 @@ std::string interval(const StopTest& stop_test, const Tolerance& tolerance) {
              : text;
 }
 
-// "pressure 2.6 x": the observable whose half-width is the largest multiple of what is good enough.
+// Returns "pressure 2.6 x": the observable with the largest half-width, as a multiple of the allowed one.
 std::string farthest(const StopTest& stop_test) {
   const ObservableStopTest* found = nullptr;
   for (const ObservableStopTest& one : stop_test.each) {
@@ -197,8 +195,8 @@ std::string farthest(const StopTest& stop_test) {
   return fmt::format("{} {} x", found->observable, rough(found->share));
 }
 
-// Of a fixed number of realisations: each observable that is shown, over the seeds of the stop test or those
-// so far.
+// Returns the cells for a fixed number of realisations: each observable over the seeds of the stop test, or
+// over all ended seeds before it.
 std::vector<std::string> shown_cells(const PointSummary& point, const std::vector<Estimate>& all_seeds,
                                      const Target& target) {
   std::vector<std::string> cells{fmt::format("{}/{}", point.wanted_ended, point.wanted)};
@@ -238,15 +236,15 @@ std::string heading(const CampaignStatus& status) {
                      confidence, range_text(target.minimum, target.maximum));
 }
 
-// Columns as a narrow terminal does without them; which point and which verdict are always there.
+// The importance of the columns that a narrow terminal may leave out.
 namespace importance {
 constexpr int all_seeds = 1, seeds = 2, stop_test = 3, farthest = 4;
 }
 
-// Of the columns that are shown.
+// Returns the legend of the columns that are shown.
 std::string legend(const CampaignStatus& status, const std::vector<std::string>& left_out,
                    std::size_t width) {
-  // Where both lines of it fit, it is broken so that neither is much longer.
+  // On a wide terminal the legend takes two lines of similar length.
   const char* const blank = width >= 100 ? "\n" : " ";
   const auto shows = [&](const char* title) {
     return std::find(left_out.begin(), left_out.end(), title) == left_out.end();
@@ -269,26 +267,26 @@ std::string legend(const CampaignStatus& status, const std::vector<std::string>&
     }
   }
   std::string text = fmt::format("{}\n", fmt::join(parts, "; "));
-  if (!left_out.empty()) text += fmt::format("too narrow for: {}\n", fmt::join(left_out, ", "));
+  if (!left_out.empty())
+    text += fmt::format("the terminal is too narrow for: {}\n", fmt::join(left_out, ", "));
   return folded(text, width);
 }
 
-// A loosened target is met by the stop test by which it would have been met from the beginning: whoever could
-// choose the stop test afterwards could choose the answer.
+// Returns a line for each point that an earlier stop test decides. A loosened target is met by the first stop
+// test within it, because a later choice of the stop test would be a choice of the answer.
 std::string earlier_stop_test_text(const CampaignStatus& status) {
   std::string text;
   for (const PointSummary& point : status.points) {
     if (point.earlier_stop_test == 0) continue;
     text += fmt::format(
-        "{}: the stop test at {} seeds decides, the first within the present target; \"all seeds\" has all "
-        "{} "
-        "that have ended\n",
+        "{}: the stop test at {} seeds decides, because it is the first within the present target; \"all "
+        "seeds\" has all {} that have ended\n",
         point.point.label, point.stop_tests.back().seeds, point.counts.terminal());
   }
   return text;
 }
 
-// "3 capped, 2 open"
+// Returns "3 capped, 2 open".
 std::string listed(const std::map<std::string, int>& counts) {
   std::vector<std::string> parts;
   parts.reserve(counts.size());
@@ -296,7 +294,7 @@ std::string listed(const std::map<std::string, int>& counts) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-// "; 40 handed over (jobs 12, 17)"
+// Returns "; 40 handed over (jobs 12, 17)", or "" if a batch system has no seeds.
 std::string handed_over_text(const CampaignStatus& status) {
   constexpr std::size_t most_jobs = 4;
   int seeds = 0;
@@ -336,7 +334,7 @@ std::string seed_totals(const CampaignStatus& status) {
   return text + fmt::format("; processor time {}\n", duration_text(totals.cpu_seconds));
 }
 
-// Why seeds were lost: one line for each cause at each point.
+// Returns the reasons why seeds were lost, one line for each cause at each point.
 std::string losses_text(const CampaignStatus& status) {
   constexpr int most_lines = 10;
   std::string text;
@@ -347,7 +345,7 @@ std::string losses_text(const CampaignStatus& status) {
       text += fmt::format("{}: {} lost, {}: {}\n", point.point.label, point.losses.at(cause), cause, reason);
     }
   }
-  if (lines > most_lines) text += fmt::format("and {} more: `peclet explain` has them\n", lines - most_lines);
+  if (lines > most_lines) text += fmt::format("and {} more: see `peclet explain`\n", lines - most_lines);
   return text;
 }
 
@@ -398,8 +396,9 @@ std::string workers_text(const CampaignStatus& status, std::size_t width) {
   if (!to_go.empty()) to_go = ": " + to_go;
   if (!status.owner) {
     if (exit_code_of(status) != 4) return "";
-    return status.handed_over.empty() ? fmt::format("\nnobody runs it now; `peclet run` goes on{}\n", to_go)
-                                      : "\nnobody takes results in now; `peclet ingest` does\n";
+    return status.handed_over.empty()
+               ? fmt::format("\nno process runs the campaign now; `peclet run` continues it{}\n", to_go)
+               : "\nno process takes results in now; `peclet ingest` does\n";
   }
   TextTable table;
   table.add_column("worker", TextTable::Align::right, 2);
@@ -418,17 +417,15 @@ std::string workers_text(const CampaignStatus& status, std::size_t width) {
                      std::isnan(done) ? "-" : fmt::format("{:.0f} %", 100 * done), rough(lease.strain)});
     }
   }
-  std::string text = fmt::format("\nprocess {} runs it{}\n", *status.owner, to_go);
+  std::string text = fmt::format("\nprocess {} runs the campaign{}\n", *status.owner, to_go);
   if (workers > 0) text += table.text_within(width);
-  if (workers > most_lines) text += fmt::format("and {} more\n", workers - most_lines);
+  if (workers > most_lines) text += fmt::format("and {} more workers\n", workers - most_lines);
   return text;
 }
 
-// How good the predictions of `peclet plan --pilot` were.
-
 namespace {
 
-// Seeds that an open point still needs, if it needs as many as expected; its next stop test in any case.
+// Returns the seeds to come of an open point: to the predicted number, or at least to its next stop test.
 int seeds_to_come(const PointSummary& point) {
   return std::max(point.wanted, point.prediction->seeds.likely) - point.wanted_ended;
 }
@@ -456,13 +453,14 @@ std::string predictions_text(const std::vector<PointSummary>& points) {
   std::string text;
   if (decided > 0) {
     text = fmt::format(
-        "predictions: {} of {} within {} range; {} seeds ({} expected), processor time {} ({} expected)\n",
+        "predictions: {} of {} points within {} range; {} seeds ({} expected), processor time {} ({} "
+        "expected)\n",
         within, decided, decided == 1 ? "its" : "their", seeds, expected_seeds, duration_text(seconds),
         duration_text(expected_seconds));
   }
   if (open > 0) {
-    text += fmt::format("predicted for {} open: {} seeds and {} of processor time to come\n", open, to_come,
-                        duration_text(seconds_to_come));
+    text += fmt::format("predicted for the open points ({}): {} seeds and {} of processor time to come\n",
+                        open, to_come, duration_text(seconds_to_come));
   }
   return text;
 }
@@ -474,7 +472,7 @@ std::string prediction_text(const PointSummary& point) {
                                            made.pilot, made.seeds.likely, made.seeds.lower, made.seeds.upper,
                                            duration_text(made.likely_cpu_seconds()));
   if (!point.decided) {
-    return expected + fmt::format("; {} and {} to come\n", seeds_to_come(point),
+    return expected + fmt::format("; {} seeds and {} to come\n", seeds_to_come(point),
                                   duration_text(seeds_to_come(point) * made.cpu_seconds));
   }
   return expected + fmt::format("; it took {}, {} that range, and {}\n", point.wanted,

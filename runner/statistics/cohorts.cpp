@@ -20,7 +20,7 @@ bool is_closed(const std::vector<std::optional<Outcome>>& outcomes, int seeds) {
                      [](const std::optional<Outcome>& outcome) { return outcome.has_value(); });
 }
 
-// Of one observable, in order of the seeds that have it.
+// Returns the observations of one observable that have a value, in the order of the seeds.
 std::vector<Observation> observed_in(std::span<const std::optional<Outcome>> cohort, std::size_t place) {
   std::vector<Observation> observed;
   observed.reserve(cohort.size());
@@ -37,7 +37,7 @@ Estimate estimate_of(const std::vector<Observation>& observed, const std::vector
   return estimate(values, are_shares);
 }
 
-// All but half-width, share and verdict, which are the rule's.
+// Returns the stop test of an observable without half-width, share and verdict, which the stop rule gives.
 ObservableStopTest stop_test_at(const std::vector<Observation>& observed) {
   std::vector<double> controlled;
   controlled.reserve(observed.size());
@@ -194,7 +194,7 @@ bool is_skewed(const StopTest& stop_test, double confidence) {
   const double n = stop_test.controlled.count;
   if (!std::isfinite(stop_test.skewness) || stop_test.controlled.values == Estimate::Values::share)
     return false;
-  const double chance = std::sqrt(6 * n * (n - 1) / ((n - 2) * (n + 1) * (n + 3)));  // of a normal population
+  const double chance = std::sqrt(6 * n * (n - 1) / ((n - 2) * (n + 1) * (n + 3)));  // for normal values
   const boost::math::normal standard;
   const double z = boost::math::quantile(standard, (1 + confidence) / 2);
   const double loss = 2 * boost::math::pdf(standard, z) * z * (std::pow(z, 4) + 2 * z * z - 3) *
@@ -233,7 +233,7 @@ Estimate::Values stored_values(const Estimate& estimate, double half_width) {
   if (std::isnan(half_width)) return Estimate::Values::equal;
   const double mean = estimate.mean, ones = estimate.count * mean;
   const double variance = estimate.standard_error * estimate.standard_error * (estimate.count - 1);
-  // The variance is compared relative to that of a share, which may be small itself.
+  // Both variances may be small, so they are compared relative to each other.
   constexpr double rounding = 1e-12, same = 1e-9;
   const bool is_share = half_width > 0 && mean >= 0 && mean <= 1 &&
                         std::abs(ones - std::round(ones)) <= rounding * estimate.count &&

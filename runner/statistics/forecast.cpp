@@ -11,9 +11,9 @@
 namespace peclet::runner {
 namespace {
 
-// With fewer costs the scatter is assumed.
+// The scatter of fewer costs is assumed.
 constexpr int fewest_costs = 3;
-constexpr double unknown_scatter = 0.5;  // over the mean
+constexpr double unknown_scatter = 0.5;  // standard deviation over mean
 
 int least_count(const std::vector<Estimate>& estimates) {
   const auto has_fewer = [](const Estimate& one, const Estimate& other) { return one.count < other.count; };
@@ -26,8 +26,7 @@ double share_at(const Estimate& known, double quantile) {
   return share_quantile(known.count, known.mean, known.mean < 0.5 ? quantile : 1 - quantile);
 }
 
-// Returns the estimates that are expected of `seeds` seeds: Student's factor and the standard error both
-// fall.
+// Returns the estimates that are expected from `seeds` seeds: with larger counts and smaller standard errors.
 std::vector<Estimate> expected_at(const std::vector<Estimate>& all_seeds, int ended, int seeds,
                                   const Truth& truth) {
   std::vector<Estimate> expected = all_seeds;
@@ -69,7 +68,7 @@ struct Spread {
 // Returns the spread of costs with this mean and mean square. `shares` is the sum of the squared shares that
 // the costs have in the mean, 1 / n for n equal ones.
 Spread spread_of(double mean, double mean_square, double shares) {
-  const double known = 1 / shares;  // number of equal shares that would say as much
+  const double known = 1 / shares;  // effective number of costs
   const double variance = std::max(0.0, mean_square - mean * mean) / (1 - shares);
   const double deviation = std::lround(known) < fewest_costs ? unknown_scatter * mean : std::sqrt(variance);
   return {mean, deviation, deviation / std::sqrt(known)};
@@ -82,13 +81,13 @@ Spread spread(const Cost& ended, std::vector<Unfinished> running) {
   for (const Unfinished& one : running) longest = std::max(longest, one.whole.value_or(0));
   const auto count = static_cast<double>(ended.count()) + static_cast<double>(running.size());
   double sum = 0, squares = 0, squared_shares = 0;
-  double share = 1;  // of 1 / count, with what those that run and have taken less have handed on
+  double share = 1;  // of a seed, over 1 / count: its own and those passed on by shorter running seeds
   const auto count_in = [&](double seconds) {
     sum += share * seconds;
     squares += share * seconds * seconds;
     squared_shares += share * share;
   };
-  auto later = count;  // seeds that follow
+  auto later = count;  // number of seeds that have taken longer
   auto next = running.begin();
   for (const double seconds : ended.ascending()) {
     for (; next != running.end() && next->taken < seconds; ++next) {
@@ -112,8 +111,8 @@ Spread spread(const std::vector<PointForecast>& points) {
   return spread_of(sum / count, squares / count, 1 / count);
 }
 
-// Returns what a seed of the point costs. If none has ended, it costs what the running ones are expected to,
-// or else what the others do, and no less than the running ones have taken.
+// Returns the cost of a seed of the point. If no seed has ended and no running one has a rate, the cost is
+// that of all points, and at least the longest time that a running seed has taken.
 Spread spread(const PointForecast& point, const Spread& of_all) {
   const auto is_known = [](const Unfinished& one) { return one.whole.has_value(); };
   if (point.cost.count() > 0 || std::any_of(point.unfinished.begin(), point.unfinished.end(), is_known))
@@ -123,8 +122,8 @@ Spread spread(const PointForecast& point, const Spread& of_all) {
   return guessed;
 }
 
-// Returns the seeds at which the point stops as the sample says, and with its variance at the quantiles of 10
-// and 90 % of what is open.
+// Returns the seeds at which the point is expected to stop: with the variance of the sample, and with the
+// true variance at the quantiles of 10 and 90 %.
 Expected<int> seeds_of(const PointForecast& point, StopRule& rule) {
   const int minimum = rule.schedule().front(), maximum = rule.schedule().back();
   const int values = least_count(point.all_seeds);
@@ -247,21 +246,21 @@ std::optional<TimeToGo> time_to_go(const std::vector<PointForecast>& points, con
   const Spread of_all = spread(points);
   StopRule rule(target, minimum, maximum);
   TimeToGo chains, work;
-  double above = 0, below = 0;  // squares of what the work may differ by
+  double above = 0, below = 0;  // squared deviations of the work, upwards and downwards
   bool any = false;
   for (const PointForecast& point : points) {
     if (point.decided) continue;
     any = true;
     const Spread cost = spread(point, of_all);
     const Expected<int> seeds = seeds_of(point, rule);
-    // Half of what runs is done, in the mean.
+    // Running seeds are half done on average.
     const auto to_come = [&](int stop) { return std::max(0.5, stop - point.ended - 0.5 * point.running); };
     const double left = to_come(seeds.likely);
     work.likely += left * cost.mean;
     const double scatter = 4 * (left * cost.deviation * cost.deviation + std::pow(left * cost.error, 2));
     above += scatter + std::pow((to_come(seeds.upper) - left) * cost.mean, 2);
     below += scatter + std::pow((left - to_come(seeds.lower)) * cost.mean, 2);
-    // Of the first round `done` is over where seeds run.
+    // If seeds run, the share `done` of the first round is over.
     const auto chain = [&](int stop, double done) {
       return rounds_until(point.ended, stop, rule.schedule(), workers) - (point.running > 0 ? done : 0);
     };

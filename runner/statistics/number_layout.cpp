@@ -21,7 +21,8 @@ void flatten(const Json& value, std::vector<double>& numbers) {
   }
 }
 
-// The numbers at a path of the means; one alone, or a null, stands for all `elements`.
+// Appends the numbers at a path of the means. A single one is repeated for all `elements`; another wrong
+// count gives NaN for all.
 void append_at(const Json& mean, const std::string& path, std::size_t elements,
                std::vector<double>& numbers) {
   const std::size_t before = numbers.size();
@@ -41,7 +42,7 @@ std::vector<Quantity> small_ones(const std::vector<Quantity>& quantities) {
   return small;
 }
 
-// Where the observation of the quantity, a single number, stands among the observables, if it does.
+// Returns the index among the observables of a quantity that is a single number; nothing if it is not one.
 std::optional<std::size_t> place_among(const std::vector<std::string>& observables,
                                        const Quantity& quantity) {
   if (!quantity.axes.empty() || quantity.ratio) return std::nullopt;
@@ -108,7 +109,8 @@ NumberLayout NumberLayout::of_text(const std::string& text) {
     return NumberLayout(quantities_of({{"quantities", layout.at("quantities")}, {"mean", nullptr}}),
                         layout.at("observables").get<std::vector<std::string>>());
   } catch (const Json::exception&) {
-    throw IntegrityError("the database holds a layout of numbers that is none: " + text.substr(0, 100));
+    throw IntegrityError("the database holds a layout of numbers that cannot be read; it begins with " +
+                         text.substr(0, 100));
   }
 }
 

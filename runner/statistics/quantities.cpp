@@ -14,7 +14,7 @@ std::string_view without_slash(std::string_view path) {
   return path.starts_with('/') ? path.substr(1) : path;
 }
 
-// Takes the part before the first slash off the path.
+// Removes the part before the first slash from the path and returns it.
 std::string_view take_part(std::string_view& path) {
   const std::size_t slash = path.find('/');
   const std::string_view part = path.substr(0, slash);
@@ -36,7 +36,7 @@ const Json* element_below(const Json& list, std::string_view path) {
   return index && *index < list.size() ? below(list[*index], path) : nullptr;
 }
 
-// Names may hold slashes: the longest one through which the path leads somewhere counts.
+// Returns the value below a member. Names may have slashes: the longest name that leads to a value is taken.
 const Json* member_below(const Json& object, std::string_view path) {
   for (std::string_view name = path;; name = name.substr(0, name.rfind('/'))) {
     if (const auto found = object.find(name); found != object.end()) {
@@ -67,8 +67,7 @@ Quantity described(const std::string& name, const Json& about) {
   return quantity;
 }
 
-// Numbers along each axis of lists within lists that are equally long; nothing where they are not, or hold
-// anything else.
+// Returns the axis lengths of nested lists of numbers; nothing if they are ragged or have other values.
 std::optional<std::vector<std::size_t>> shape_of(const Json& value) {
   if (value.is_number()) return std::vector<std::size_t>();
   if (!value.is_array() || value.empty()) return std::nullopt;
@@ -82,7 +81,7 @@ std::optional<std::vector<std::size_t>> shape_of(const Json& value) {
   return inner;
 }
 
-// Engines before descriptions had one control variate, and it belonged to the viscosities.
+// Returns the control variate of engines that do not describe their numbers: one, of the viscosities.
 std::optional<ControlVariate> undescribed_control(const Json& mean, std::string_view path) {
   constexpr const char* control = "control_variates/brownian_pairwise";
   if (!path.starts_with("relative_viscosity")) return std::nullopt;
@@ -111,7 +110,7 @@ void add_undescribed(const Json& mean, const Json& value, const std::string& nam
   }
 }
 
-// Null, or empty: the result says nothing of its numbers.
+// Returns the descriptions of a result's numbers, or null if there are none.
 const Json* descriptions(const Json& result) {
   const auto found = result.find("quantities");
   return found == result.end() || found->empty() ? nullptr : &*found;
@@ -125,7 +124,7 @@ std::optional<double> number_at(const Json& document, const std::string& path) {
   return value->get<double>();
 }
 
-// The list of blocks that has the number at a path in each of its elements, and the rest of the path there.
+// A list of blocks, and the path of a number within each block.
 struct Series {
   const Json* blocks = nullptr;
   std::string element;
@@ -140,7 +139,8 @@ Series series_of(const Json& blocks, const std::string& path) {
   }
 }
 
-// The mean of the first `parts` of 4 equal parts of a series of blocks; none where it is no such series.
+// Returns the mean over the first `parts` quarters of the blocks; nothing if a value is missing or the number
+// of blocks is not a multiple of 4.
 std::optional<double> mean_of_first(const Json& blocks, const std::string& path, int parts) {
   const Series series = series_of(blocks, path);
   if (series.blocks == nullptr || series.blocks->empty() || series.blocks->size() % 4 != 0) {
@@ -156,7 +156,7 @@ std::optional<double> mean_of_first(const Json& blocks, const std::string& path,
   return sum / static_cast<double>(count);
 }
 
-// value + control in the first `parts` of 4 parts of the window.
+// Returns value + control over the first `parts` quarters of the window.
 std::optional<double> beginning(const Json& blocks, const std::string& observable,
                                 const std::optional<ControlVariate>& control, int parts) {
   if (!blocks.is_object()) return std::nullopt;
@@ -193,7 +193,7 @@ std::optional<ControlVariate> control_of(const Json& result, std::string_view pa
   path = without_slash(path);
   const Json* const about = descriptions(result);
   if (about == nullptr) return undescribed_control(result.at("mean"), path);
-  // The quantity itself, or the list that the path is an element of.
+  // The path names the quantity itself, or an element of it.
   for (std::string_view name = path;; name = name.substr(0, name.rfind('/'))) {
     if (const auto found = about->find(name); found != about->end()) {
       const auto control = found->find("control");

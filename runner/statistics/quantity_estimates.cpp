@@ -26,7 +26,7 @@ void add_number(RunningEstimate& running, double value, bool is_share = false) {
   if (!std::isnan(value)) running.add(value, is_share);
 }
 
-// The list of numbers as lists over the axes from `axis` on.
+// Returns the numbers from `next` on as nested lists over the axes from `axis` on.
 Json over_axes(const std::vector<Json>& numbers, const std::vector<QuantityAxis>& axes, std::size_t axis,
                std::size_t& next) {
   if (axis == axes.size()) return numbers[next++];
@@ -71,7 +71,7 @@ Estimate ratio_of_means(const std::vector<double>& numerators, const std::vector
   double squares = 0;
   for (const double ratio : without) squares += (ratio - mean) * (ratio - mean);
   found.standard_error = std::sqrt((n - 1) / n * squares);
-  // Equal ratios of the seeds, whatever their parts.
+  // All seeds have the same ratio, although N and D may differ.
   if (estimate(without).values == Estimate::Values::equal) found.values = Estimate::Values::equal;
   return found;
 }
@@ -99,7 +99,7 @@ void QuantityEstimates::add_numbers(Sums& sums, std::span<const double> numbers,
   }
   for (std::size_t k = 0; k < elements; ++k) add_number(sums.plain[k], values[k], quantity.is_share);
   if (!quantity.control) return;
-  // As in a stop test: a value without its control counts as it is.
+  // A value without its control variate counts as it is, as in a stop test.
   for (std::size_t k = 0; k < elements; ++k) {
     add_number(sums.controlled[k], values[k] + (std::isnan(second[k]) ? 0 : second[k]));
   }
@@ -144,7 +144,7 @@ void QuantityEstimates::add(const NumberLayout& layout, std::span<const double> 
     const Quantity& quantity = layout.quantities()[place];
     if (!is_wanted(quantity)) continue;
     Sums& sums = sums_of(quantity);
-    // To compare every axis for every seed would take longer than all else.
+    // Each layout is compared once: a comparison for every seed would dominate the run time.
     if (sums.followed != &layout && is_like(sums.quantity, quantity)) sums.followed = &layout;
     if (sums.followed == &layout) {
       add_numbers(sums, layout.of_quantity(place, numbers), has_jammed);

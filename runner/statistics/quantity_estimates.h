@@ -1,16 +1,15 @@
-// What the results of a point say together: for every quantity, element by element, the mean over the seeds
-// and its standard error.
+// Estimates every quantity of a point, element by element: its mean over the seeds with the standard error.
 //
-// A mean is that of value + control variate - its known mean where the quantity has one, as in a stop test,
-// and beside it stands the one without. A ratio of means R = sum N / sum D has the standard error of the
+// A quantity with a control variate has the mean of value + control - known mean of the control, as in a stop
+// test, and the plain mean beside it. A ratio of means R = sum N / sum D has the standard error s of the
 // jackknife (Efron & Tibshirani, An Introduction to the Bootstrap, 1993, eq. 11.5),
 //   s^2 = (n - 1) / n sum_i (R_i - mean of R_i)^2,
-// R_i the ratio without seed i. Both errors are those of independent seeds; s of a constant D is the standard
-// error of a mean.
+// where R_i is the ratio without seed i. Both errors assume independent seeds. For constant D, s is the
+// standard error of a mean.
 //
-// Under a given stress a seed that has jammed has a stress and no rate: its own ratio is infinite. Where half
-// of the seeds or more have such a ratio, that of the means is that of a few seeds which happened to flow,
-// and has no value. A jammed seed whose N is 0 takes no part in the ratio.
+// Under a given stress a jammed seed has a stress but no rate: its own ratio is infinite. If half of the
+// seeds or more have such a ratio, the ratio of means has no value, because it would be that of the few seeds
+// that happened to flow. A jammed seed with N = 0 does not count as infinite.
 #pragma once
 
 #include <span>
@@ -23,12 +22,12 @@
 
 namespace peclet::runner {
 
-// Lists of as many as the quantity has elements, the last axis running fastest.
+// The estimates of a quantity, one for each element, the last axis running fastest.
 struct QuantityEstimate {
   Quantity quantity;
-  std::vector<Estimate> estimates;  // NaN where there are no values
-  std::vector<Estimate> plain;      // empty without a control variate
-  int unlike = 0;                   // results that describe it otherwise than the first one; left out
+  std::vector<Estimate> estimates;  // NaN without values
+  std::vector<Estimate> plain;      // without control variate; empty if the quantity has none
+  int unlike = 0;                   // results left out, because they describe it unlike the first one
 };
 
 class QuantityEstimates {
@@ -36,17 +35,17 @@ class QuantityEstimates {
   enum class Wanted { all, scalars };
   explicit QuantityEstimates(Wanted wanted = Wanted::all) : wanted_(wanted) {}
 
-  // One more result, in the order of the seeds; one that has not completed adds nothing. Memory: a few
-  // numbers for each element of a mean, two for each element and seed of a ratio.
+  // Adds a result; results come in the order of the seeds. One that has not completed adds nothing. Memory: a
+  // few numbers for each element of a mean, two for each element and seed of a ratio.
   void add(const Json& result);
-  // Adds numbers that were taken from a result before, with whether its realisation has jammed; quantities
-  // that the layout leaves out stay out. A layout must outlive the last call.
+  // Adds the stored numbers of a result instead, for the quantities of their layout. The layout must outlive
+  // the last call.
   void add(const NumberLayout& layout, std::span<const double> numbers, bool has_jammed);
 
-  // In the order of the names.
+  // Returns the estimates in the order of the names.
   std::vector<QuantityEstimate> estimates() const;
-  // {"NAME": {"symbol", "unit", "estimator", "axes", "count", "mean", "standard_error", "half_width",
-  // "plain"}}, the numbers as lists over the axes; half-widths as of half_width().
+  // Returns {"NAME": {"symbol", "unit", "estimator", "axes", "count", "mean", "standard_error", "half_width",
+  // "plain"}}. The numbers are lists over the axes; half-widths are those of half_width().
   Json json(double confidence) const;
 
  private:
@@ -54,9 +53,9 @@ class QuantityEstimates {
     Quantity quantity;
     std::vector<RunningEstimate> plain, controlled;
     std::vector<std::vector<double>> numerators, denominators;  // by seed
-    int infinite = 0;                                           // seeds whose ratio is
+    int infinite = 0;                                           // seeds with an infinite ratio
     int unlike = 0;
-    const NumberLayout* followed = nullptr;  // describes the quantity as it is described here
+    const NumberLayout* followed = nullptr;  // a layout that describes the quantity as `quantity` does
   };
 
   bool is_wanted(const Quantity& quantity) const;
@@ -65,11 +64,11 @@ class QuantityEstimates {
   static void add_numbers(Sums& sums, std::span<const double> numbers, bool has_jammed);
 
   Wanted wanted_;
-  Json descriptions_;       // of the first result, which the sums follow
+  Json descriptions_;       // of the first result; the sums follow it
   std::vector<Sums> sums_;  // in the order of the names
 };
 
-// Sum of N over sum of D with the jackknife's error; NaN where a sum of D is zero.
+// Returns sum of N over sum of D with the jackknife's standard error; NaN if a sum of D is zero.
 Estimate ratio_of_means(const std::vector<double>& numerators, const std::vector<double>& denominators);
 
 }  // namespace peclet::runner

@@ -41,8 +41,7 @@ Scheduler::Scheduler(std::vector<std::vector<std::optional<Outcome>>> outcomes, 
     Point point;
     point.all_seeds.resize(target_.observables().size());
     point.outcomes = std::move(known);
-    // Seeds beyond the maximum (it was larger once) are kept by the database and have no part in the stop
-    // tests.
+    // The database keeps seeds beyond a maximum that was lowered. The stop tests leave them out.
     if (std::ssize(point.outcomes) > maximum_) point.outcomes.resize(static_cast<std::size_t>(maximum_));
     for (const std::optional<Outcome>& outcome : point.outcomes) {
       point.phases.push_back(outcome ? Phase::ended : Phase::waiting);
@@ -57,7 +56,7 @@ Scheduler::Scheduler(std::vector<std::vector<std::optional<Outcome>>> outcomes, 
 }
 
 Scheduler::Phase& Scheduler::phase_of(SeedId id) {
-  if (id.seed < 0 || id.seed >= maximum_) throw std::out_of_range("no seed below the maximum");
+  if (id.seed < 0 || id.seed >= maximum_) throw std::out_of_range("the seed is not below the maximum");
   Point& point = point_at(id.point);
   const auto seed = static_cast<std::size_t>(id.seed);
   if (seed >= point.phases.size()) {
@@ -137,7 +136,7 @@ std::optional<double> Scheduler::seconds_per_work() const {
 }
 
 double Scheduler::expected_seconds(const std::vector<int>& running) const {
-  const double scale = seconds_per_work().value_or(0);  // a stop test at all points, once
+  const double scale = seconds_per_work().value_or(0);  // visits all points, so only once
   double seconds = 0;
   for (int number = 0; number < points(); ++number) {
     const Point& about = point_at(number);
@@ -147,7 +146,7 @@ double Scheduler::expected_seconds(const std::vector<int>& running) const {
 }
 
 double Scheduler::expected_fall(const Point& point) const {
-  // Before the first stop test nothing is known, and nothing tells more.
+  // Before the first stop test nothing is known, so its seeds are worth most.
   constexpr double of_unknown = 1e6;
   if (point.stop_tests.empty()) return of_unknown;
   const StopTest& last = point.stop_tests.back();
@@ -155,7 +154,7 @@ double Scheduler::expected_fall(const Point& point) const {
   if (!std::isfinite(width)) {  // as if the half-width were 100 % of the mean
     return target_.tolerance.is_relative() ? 1 / target_.tolerance.value : of_unknown;
   }
-  // Student's factor counts: it falls from 4 to 10 seeds by as much as the square root's.
+  // Student's factor counts: from 4 to 10 seeds it falls nearly like 1 / sqrt(n).
   const double confidence = adjusted_confidence(target_.confidence, minimum_, maximum_);
   const double share = static_cast<double>(stop_test_ahead(point, 0)) / last.seeds;
   const int count = last.controlled.count, later = static_cast<int>(std::lround(count * share));
@@ -168,7 +167,7 @@ Scheduler::Rank Scheduler::rank(const Point& point, double seconds) const {
     return {0, point.fall / (std::max(1, waiting(point)) * seconds)};
   }
   if (point.begun < seeds_of_pass) return {seeds_of_pass - point.begun, -seconds};
-  // A point may have begun more seeds than it was expected to need: it is not done for all that.
+  // An open point that has begun all seeds that it was expected to need still needs one.
   return {0, std::max(1, std::min(point.expected, ceiling_) - point.begun) * seconds};
 }
 
@@ -193,7 +192,7 @@ std::optional<int> Scheduler::waiting_seed(const Point& point, int steps) const 
 }
 
 std::optional<SeedId> Scheduler::most_urgent(int steps, double budget) const {
-  constexpr double shortest = 1e-9;  // a clock may have read nothing
+  constexpr double shortest = 1e-9;  // a clock may have measured 0 s
   const std::optional<double> known = seconds_per_work();
   const double scale = known.value_or(1);
   std::optional<SeedId> best;
@@ -236,7 +235,7 @@ bool Scheduler::end(SeedId id, const Outcome& outcome) {
   phase = Phase::ended;
   std::optional<Outcome>& known = point.outcomes[static_cast<std::size_t>(id.seed)];
   const bool again = known.has_value();
-  // A late result comes in place of a seed that was lost.
+  // A late result replaces the outcome of a lost seed.
   const bool had_value = again && !known->is_lost();
   if (!had_value) count_in(point, outcome);
   point.all_ended += again ? 0 : 1;
@@ -273,9 +272,8 @@ std::string budget_text(double spent_seconds, double budget_seconds, const Summe
                   rough(budget_seconds / seconds_per_hour));
   if (after.points == 0) return spent + '\n';
   return fmt::format(
-      "{}; relative half-widths of the {}{} last stop tests sum to {},\n        before to {}\n", spent,
-      counted(static_cast<std::size_t>(after.points), "point"), after.points == 1 ? "'s" : "'",
-      sum_text(after), sum_text(before));
+      "{}; at the last stop tests the relative half-widths of {} sum to {},\n        before the run to {}\n",
+      spent, counted(static_cast<std::size_t>(after.points), "point"), sum_text(after), sum_text(before));
 }
 
 }  // namespace peclet::runner

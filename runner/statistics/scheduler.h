@@ -1,15 +1,14 @@
-// Which seed runs next, and when a point is decided. Pure: no clock, no process, no database.
+// Chooses the seed that runs next, and decides when a point is done. Pure: no clock, no process, no database.
 //
-// A point that is neither decided nor cancelled needs the seeds of its next stop test. Among such points
-// those of the highest priority go first, and among these the one that the allocation ranks first (then the
-// order of the sweep, then the order of the seeds). When every needed seed is out, workers run ahead with the
-// seeds of the look after that: extra, which costs nothing when the point goes on, and which does not count
-// when it stops.
+// A point that is neither decided nor cancelled needs the seeds of its next stop test. Points of the highest
+// priority go first; among them the one that the allocation ranks first, then the order of the sweep and of
+// the seeds. If every needed seed runs, workers run ahead with seeds of the stop test after the next one. If
+// the next one decides the point, these are extra seeds and do not count.
 //
-// Under a budget no point runs ahead of its next stop test, and a seed is given out only while the expected
-// cost of what runs is within what is left. Under a ceiling only the first seeds of each point are given out.
+// Under a budget no point runs ahead of its next stop test, and a seed is given out only if its expected cost
+// is within the budget left. Under a ceiling only the first seeds of each point are given out.
 //
-// Priorities, costs and the allocation decide when a seed runs; what it counts for they cannot touch.
+// Priorities, costs and the allocation decide when a seed runs. They never affect the stop tests.
 #pragma once
 
 #include <optional>
@@ -21,7 +20,7 @@
 
 namespace peclet::runner {
 
-// `point` is the index in the order of the sweep.
+// A seed of a point; `point` is the index in the order of the sweep.
 struct SeedId {
   int point = 0;
   int seed = 0;
@@ -29,85 +28,82 @@ struct SeedId {
 };
 
 enum class Allocation {
-  // First a pass over all points: the one with fewest begun seeds goes first, and among these the cheapest,
-  // until each has seeds_of_pass, so that something is soon known of all. Then the point with the largest
-  // cost still to come, seeds that it is expected to need times seconds of each: a campaign is through the
-  // sooner the earlier its longest point is begun.
+  // A first pass gives seeds_of_pass seeds to each point, so that something is soon known of all: the point
+  // with the fewest begun seeds goes first, among these the cheapest. Then the point with the largest
+  // remaining cost goes first: expected seeds to begin times seconds of each. A campaign ends sooner if its
+  // longest point begins early.
   longest_first,
-  // The point whose half-width w, as a share of the tolerance, will fall most, for a second of processor
-  // time, by its next stop test:
+  // The point goes first whose half-width w, over the tolerance, falls most per second of processor time by
+  // its next stop test:
   //   w (1 - t(n' - 1) sqrt(n) / (t(n - 1) sqrt(n'))) / (seeds still to be begun * seconds of each)
-  // with n values now and n' then. What is begun counts only when its stop test is reached, so a stop test
-  // once begun
-  // is seen through. Points without a stop test come before, the cheapest first. For a budget that will not
-  // see
-  // all points converged.
+  // with n values now, n' then, and Student's quantile t. Seeds count only at their stop test, so one that
+  // has begun is completed first. Points before their first stop test precede all others, the cheapest first.
+  // This is for a budget that is too small for all points to converge.
   steepest_first
 };
 
 class Scheduler {
  public:
-  // As many as `peclet plan --pilot` begins with: a mean with an error, and what a seed costs. The longest
-  // point is hardly held up, because its own seeds are part of the pass.
+  // The first seeds of `peclet plan --pilot`: they give a mean with an error, and the cost of a seed. The
+  // pass hardly delays the longest point, whose own seeds are part of it.
   static constexpr int seeds_of_pass = 4;
 
-  // `outcomes[point][seed]` is what earlier runs left; seeds beyond the end have none.
+  // `outcomes[point][seed]` is known from earlier runs; seeds beyond the end have no outcome.
   Scheduler(std::vector<std::vector<std::optional<Outcome>>> outcomes, Target target, int minimum,
             int maximum);
 
   void set_allocation(Allocation allocation) { allocation_ = allocation; }
   void set_priority(int point, int priority) { point_at(point).priority = priority; }
-  // A cancelled point gets no more seeds and holds nothing up. What it has stays.
+  // A cancelled point gets no more seeds and delays nothing. Its outcomes stay.
   void set_cancelled(int point, bool cancelled) { point_at(point).cancelled = cancelled; }
-  // Mean seconds of a realisation of the point, as far as it is known; until then it costs as much as its
-  // share of the work says, beside the others.
+  // Sets the mean cost of a realisation [s]. Until then it follows from the work, at the mean seconds per
+  // work of the other points.
   void set_cost(int point, double seconds) { point_at(point).seconds = seconds; }
-  // Work of a realisation in any unit (particle-steps) that is the same for all points; 1 unless set.
+  // Sets the work of a realisation, in a unit common to all points (particle-steps); 1 unless set.
   void set_work(int point, double work) { point_at(point).work = work; }
-  // Only the seeds 0 .. ceiling - 1 of each point are wanted.
+  // Restricts each point to the seeds 0 .. ceiling - 1.
   void set_ceiling(int ceiling) { ceiling_ = ceiling; }
 
-  // The next seed for an idle worker; nothing when every seed that could be wanted now is out or ended.
+  // Returns the next seed for an idle worker; nothing if all seeds that may run now run or have ended.
   std::optional<SeedId> next() const;
-  // The same under a budget of which so many seconds are left: a seed that a stop test needs and that is
-  // expected to cost no more, if possible of a stop test that can be paid for as a whole. While no cost is
-  // known at all every seed is expected to cost nothing.
+  // Returns the next seed under a budget with `seconds` left: one that the next stop test of its point needs
+  // and that is expected to cost no more. Stop tests that the budget can pay as a whole go first. While no
+  // cost is known, every seed is expected to cost nothing.
   std::optional<SeedId> next_within(double seconds) const;
-  // Of seeds that are out, so many of each point; 0 while no cost is known at all.
+  // Returns the expected cost of the running seeds [s], running[p] of each point p; 0 while no cost is known.
   double expected_seconds(const std::vector<int>& running) const;
 
-  // The seed has been given to a worker.
+  // Records that a worker has the seed.
   void begin(SeedId id);
-  // The seed has come back without an outcome.
+  // Records that the seed has come back without an outcome.
   void give_back(SeedId id);
-  // The seed has ended, for the first time or (a late result of a quarantined seed) for the second.
-  // True when the stop tests of its point may have changed.
+  // Records that the seed has ended, for the first time or again (late result of a quarantined seed). Returns
+  // true if the stop tests of its point may have changed.
   bool end(SeedId id, const Outcome& outcome);
 
-  // All stop tests that the outcomes allow. The last one decides unless its verdict is `more`.
+  // Returns all stop tests that the outcomes allow. The last one decides unless its verdict is `more`.
   const std::vector<StopTest>& stop_tests(int point) const { return point_at(point).stop_tests; }
   bool decided(int point) const;
   bool cancelled(int point) const { return point_at(point).cancelled; }
-  // Every point is decided or cancelled, or has all seeds below the ceiling.
+  // Returns true if every point is decided or cancelled, or all its seeds below the ceiling have ended.
   bool finished() const;
 
-  // Seeds that the next stop test needs, or the ceiling allows; of a decided point those of the deciding stop
-  // test.
+  // Returns the number of seeds of the next stop test, or the ceiling if that is less; for a decided point,
+  // the seeds of the deciding stop test.
   int wanted(int point) const;
-  // Of these, how many have ended.
+  // Returns how many of these have ended.
   int ended(int point) const;
-  // Values (observable + control) of the seeds that have ended, in whatever order they came; of
-  // Target::observables(), in that order.
+  // Returns the estimates of observable + control over all ended seeds, ordered as Target::observables().
   std::vector<Estimate> all_seeds(int point) const;
-  // Seeds of the point that run or have ended.
+  // Returns the number of seeds of the point that run or have ended.
   int begun(int point) const { return point_at(point).begun; }
-  // Of these, those that have ended.
+  // Returns how many of these have ended.
   int all_ended(int point) const { return point_at(point).all_ended; }
   const Target& target() const { return target_; }
   int points() const { return static_cast<int>(points_.size()); }
 
  private:
-  // How one seed stands; one that nothing is known of waits.
+  // The state of a seed; `out` means that a worker has it.
   enum class Phase : unsigned char { waiting, out, ended };
   struct Point {
     std::vector<StopTest> stop_tests{};
@@ -115,11 +111,11 @@ class Scheduler {
     int all_ended = 0;
     std::vector<RunningEstimate> all_seeds{};  // of each observable
     int closed = 0;                            // the seeds 0 .. closed - 1 have ended
-    int expected = 0;                          // seeds at which it may be expected to stop
-    double fall = 0;  // of the half-width until the next stop test, as a share of the tolerance
+    int expected = 0;                          // seeds at which it is expected to stop
+    double fall = 0;  // expected fall of half-width over tolerance until the next stop test
     std::optional<double> seconds{};
-    // As long as the largest seed that is known asks for, because the maximum may be far beyond what the
-    // point will ever need: later seeds wait, and have no outcome.
+    // Both lists end at the largest known seed, because the maximum may be far beyond what the point needs.
+    // Later seeds are waiting.
     std::vector<std::optional<Outcome>> outcomes{};
     std::vector<Phase> phases{};
     int priority = 0;
@@ -128,30 +124,29 @@ class Scheduler {
   };
   const Point& point_at(int point) const { return points_[static_cast<std::size_t>(point)]; }
   Point& point_at(int point) { return points_[static_cast<std::size_t>(point)]; }
-  // Makes room for the seed. Throws std::out_of_range for one beyond the maximum.
+  // Returns the phase of the seed, for which it makes room. Throws std::out_of_range beyond the maximum.
   Phase& phase_of(SeedId id);
   static void close(Point& point);
   void stop_test_at(Point& point);
   static void count_in(Point& point, const Outcome& outcome);
-  // The look after the last one made, and the one after that.
+  // Returns the number of seeds of the next stop test (steps = 0), or of the one `steps` after it.
   int stop_test_ahead(const Point& point, int steps) const;
   bool is_open(const Point& point) const;
-  // Of the points whose cost is known; nothing when there is none.
+  // Returns the mean over the points with a known cost; nothing if there are none.
   std::optional<double> seconds_per_work() const;
-  // How urgent the point is; the largest goes first.
+  // The urgency of a point; the largest goes first.
   struct Rank {
-    int pass = 0;  // seeds that it lacks of the first pass
+    int pass = 0;  // seeds that it lacks in the first pass
     double urgency = 0;
     auto operator<=>(const Rank&) const = default;
   };
   Rank rank(const Point& point, double seconds) const;
   double expected_fall(const Point& point) const;
-  // Seeds of the next stop test that nobody has begun.
+  // Returns the number of waiting seeds of the next stop test.
   int waiting(const Point& point) const;
-  // The first of them, or of those of `steps` looks further.
+  // Returns the first waiting seed of the next stop test, or of the one `steps` after it.
   std::optional<int> waiting_seed(const Point& point, int steps) const;
-  // Of the seeds that a stop test so many steps ahead is still waiting for, those that `phases` tells of, and
-  // how many follow.
+  // The seeds from Point::closed to a stop test: the known phases, and the number of seeds beyond them.
   struct Stretch {
     std::span<const Phase> known;
     int beyond = 0;
@@ -166,19 +161,17 @@ class Scheduler {
   std::vector<Point> points_;
 };
 
-// What a run under a budget of processor time has bought.
+// The report of a run under a budget of processor time.
 
-// Relative half-widths of the last stop tests, summed over the points that are not cancelled; of no point
-// where the tolerance is absolute. One that has no stop test, or none with an interval, counts as 1: its mean
-// is not known at all.
+// The sum of the relative half-widths of the last stop tests, over the points that are not cancelled. A point
+// without a stop test or interval counts as 1. There are no points if the tolerance is absolute.
 struct SummedError {
   double sum = 0;
   int points = 0, unknown = 0;
 };
 SummedError summed_error(const Scheduler& scheduler);
 
-// "budget: 1.98 of 2 h of processor time spent; the relative half-widths of 6 points sum to 0.31, before to
-// 2.4 (2 points without a stop test count as 1)"
+// Returns "budget: 1.98 of 2 h of processor time spent; ...", with the sums after and before the run.
 std::string budget_text(double spent_seconds, double budget_seconds, const SummedError& before,
                         const SummedError& after);
 

@@ -12,8 +12,8 @@
 namespace peclet::runner {
 namespace {
 
-// A power of two by which the values can be multiplied so that no sum, square or cube of them overflows or
-// vanishes; no digit of the usual ones is changed by that.
+// Returns a power of two by which the values can be multiplied so that no sum, square or cube of them
+// overflows or vanishes. It changes no digit of usual values.
 double unit_of(std::span<const double> values) {
   double largest = 0;
   for (const double value : values) largest = std::max(largest, std::abs(value));
@@ -25,7 +25,7 @@ double unit_of(std::span<const double> values) {
 bool is_binary(double value) { return value == 0 || value == 1; }
 
 Estimate::Values values_between(int count, double low, double high, bool are_binary, bool is_share) {
-  // Sums of equal numbers in another order differ by less.
+  // Equal numbers that were summed in different order differ by less.
   constexpr double rounding = 1e-13;
   const bool are_equal = high - low <= rounding * std::max(std::abs(low), std::abs(high));
   if (count > 0 && are_binary && (is_share || !are_equal)) return Estimate::Values::share;
@@ -33,12 +33,11 @@ Estimate::Values values_between(int count, double low, double high, bool are_bin
 }
 
 constexpr int resamples = 4000;
-// Of five values of which four are equal two resamples in three have spread: so many draws always suffice
-// where numbers are finite.
+// Enough for finite numbers: if four of five values are equal, two resamples in three have a spread.
 constexpr int most_draws = 4 * resamples;
 constexpr std::size_t fewest_values = 5;
 
-// Linear between the order statistics.
+// Returns the quantile, interpolated linearly between the order statistics.
 double quantile(const std::vector<double>& sorted, double probability) {
   const double place = probability * static_cast<double>(sorted.size() - 1);
   const auto below = static_cast<std::size_t>(place);
@@ -61,8 +60,8 @@ Estimate estimate(std::span<const double> values, bool is_share) {
   double sum = 0;
   for (const double value : values) sum += unit * value;
   const double first_mean = sum / count;
-  // The deviations' own sum takes back what rounding did to the first mean, so equal values have exactly
-  // their mean and no spread.
+  // The sum of the deviations corrects the rounding of the first mean, so equal values have exactly their
+  // mean and no spread.
   double correction = 0;
   for (const double value : values) correction += unit * value - first_mean;
   const double mean = first_mean + correction / count;
@@ -161,7 +160,7 @@ std::optional<Interval> bootstrap_t(std::span<const double> values, double confi
   std::mt19937_64 random(0);
   std::vector<double> sample(values.size()), scores;
   for (int draw = 0; draw < most_draws && scores.size() < resamples; ++draw) {
-    // Taken modulo: the bias is below 1e-13, and a std distribution differs between libraries.
+    // Modulo has a bias below 1e-13; std distributions differ between libraries.
     for (double& value : sample) value = values[random() % values.size()];
     const Estimate again = estimate(sample);
     const double score = (again.mean - whole.mean) / again.standard_error;

@@ -1,4 +1,4 @@
-// What a finite number of realisations says about a mean, and how sure it is.
+// Estimates means, standard errors and confidence intervals from a finite number of values.
 #pragma once
 
 #include <optional>
@@ -7,29 +7,29 @@
 
 namespace peclet::runner {
 
-// Sample mean and its standard error s / sqrt(n), s the sample standard deviation with n - 1.
+// The sample mean and its standard error s / sqrt(n), with the sample standard deviation s (divisor n - 1).
 struct Estimate {
   int count = 0;
   double mean = 0;
   double standard_error = 0;  // NaN for fewer than two values
-  // What the values are, which decides what interval they have: see half_width().
+  // The kind of values, which decides the kind of interval: see half_width().
   enum class Values {
     spread,   // different numbers
     share,    // each is 0 or 1
-    equal,    // one and the same number, but for rounding
-    repeated  // of seeds that are not independent: see repeated_seeds()
+    equal,    // all equal within rounding
+    repeated  // from seeds that are not independent: see repeated_seeds()
   };
   Values values = Values::spread;
 };
 
-// `is_share`: each value is 0 or 1 by its nature. Without it, values are a share if both have been seen and
-// nothing else.
+// Returns the estimate of the values. `is_share`: each value is 0 or 1 by definition. Without it, values are
+// a share if both 0 and 1 occur and no other number.
 Estimate estimate(std::span<const double> values, bool is_share = false);
 
-// The same of values that come one by one (Welford's update); NaN for a mean without any.
+// The estimate of values that come one by one (Welford's update); NaN without values.
 class RunningEstimate {
  public:
-  // Of a share are all values or none.
+  // Adds a value. The values are a share only if each is added as one.
   void add(double value, bool is_share = false);
   Estimate estimate() const;
 
@@ -43,46 +43,45 @@ class RunningEstimate {
 
 std::vector<Estimate> estimates_of(std::span<const RunningEstimate> running);
 
-// Third central moment over the 3/2 power of the second, both with n; NaN for fewer than three values or
-// equal ones.
+// Returns the third central moment over the 3/2 power of the second, both with divisor n; NaN for fewer than
+// three values or equal ones.
 double skewness(std::span<const double> values);
 
-// Quantile of Student's t for a two-sided interval: t(degrees, (1 + confidence) / 2).
+// Returns Student's quantile for a two-sided interval: t(degrees, (1 + confidence) / 2).
 double student_quantile(int degrees, double confidence);
 
-// By what the variance of a normal population may exceed that of a sample, but for this probability:
-// f / chi^2_p(f), f the sample's degrees of freedom and chi^2_p the quantile of p.
+// Returns the ratio of population to sample variance that is exceeded with probability p, for normal values:
+//   f / chi^2_p(f),
+// with the sample's degrees of freedom f and the quantile chi^2_p of p.
 double variance_excess(double degrees, double probability);
 
-// Half-width t(n - 1, (1 + confidence) / 2) * standard error of Student's interval; NaN for fewer than two
-// values.
+// Returns the half-width t(n - 1, (1 + confidence) / 2) * standard error of Student's interval; NaN for fewer
+// than two values.
 double student_half_width(const Estimate& estimate, double confidence);
 
 struct Interval {
   double low = 0, high = 0;
 };
 
-// Clopper and Pearson's interval of a share, of k = count * mean values that are 1 (Biometrika 26 (1934)
-// 404): the shares p for which k or more, and k or fewer, of `count` have a probability of (1 - confidence) /
-// 2 or more. It holds the true share at least as often as it says. Requires count > 0.
+// Returns Clopper and Pearson's interval of a share (Biometrika 26 (1934) 404), of which k = count * mean
+// values are 1. It has the shares p for which k or more, and k or fewer, of `count` values have a probability
+// of (1 - confidence) / 2 or more. It holds the true share at least as often as it says. Requires count > 0.
 Interval share_interval(int count, double mean, double confidence);
 
-// What lies below the true share with this probability, after k = count * mean of `count` values are 1 and by
-// Jeffreys' prior: the quantile of Beta(k + 1/2, count - k + 1/2).
+// Returns the quantile of the true share, if k = count * mean of `count` values are 1, with Jeffreys' prior:
+// that of Beta(k + 1/2, count - k + 1/2).
 double share_quantile(int count, double mean, double probability);
 
-// Half-width of the interval at this confidence: Student's of values with a spread; the larger side of
-// share_interval() of a share. NaN for fewer than two values, and for equal or repeated ones, which have no
-// spread to judge by.
+// Returns the half-width of the interval at this confidence: Student's for values with a spread, the larger
+// side of share_interval() for a share. NaN for fewer than two values, and for equal or repeated ones.
 double half_width(const Estimate& estimate, double confidence);
 
-// Bootstrap-t: an interval that follows the skewness of the values.
-//
-// The two-sided interval m - t*(1 - a/2) s .. m - t*(a/2) s, a = 1 - confidence, of the mean m with standard
-// error s, t* being quantiles of (m* - m) / s* over 4000 resamples of the values with replacement (B. Efron
-// and R. Tibshirani, An Introduction to the Bootstrap, 1993, 12.5). Resamples without spread are drawn again.
-// The random numbers are always the same, so the same values give the same interval. Nothing for fewer than
-// five values, values without spread, and where next to no resample has a finite one.
+// Returns the bootstrap-t interval of the mean m, which follows the skewness of the values:
+//   m - t*(1 - a/2) s .. m - t*(a/2) s,    a = 1 - confidence,
+// with the standard error s and the quantiles t* of (m* - m) / s* over 4000 resamples of the values with
+// replacement (B. Efron and R. Tibshirani, An Introduction to the Bootstrap, 1993, 12.5). Resamples without
+// spread are drawn again. The random numbers are fixed: the same values give the same interval. Returns
+// nothing for fewer than five values, for values without spread, and if too few resamples are finite.
 std::optional<Interval> bootstrap_t(std::span<const double> values, double confidence);
 
 }  // namespace peclet::runner

@@ -8,7 +8,7 @@ namespace peclet::runner {
 namespace {
 
 constexpr std::array verdict_names{"more",   "converged", "converged-with-losses", "capped",
-                                   "failed", "complete",  "complete-with-losses"};  // as Verdict
+                                   "failed", "complete",  "complete-with-losses"};  // in the order of Verdict
 
 }  // namespace
 
@@ -46,7 +46,7 @@ double adjusted_confidence(double confidence, int minimum, int maximum) {
 
 std::vector<int> stop_test_schedule(int minimum, int maximum) {
   std::vector<int> schedule;
-  // In whole numbers: ceil(1.25 n) = floor((5 n + 3) / 4).
+  // For integers ceil(1.25 n) = floor((5 n + 3) / 4).
   for (int seeds = minimum; seeds < maximum; seeds = (5 * seeds + 3) / 4) schedule.push_back(seeds);
   schedule.push_back(maximum);
   return schedule;
@@ -117,9 +117,9 @@ StopRule::Judgement StopRule::judge(int seeds, Estimates estimates) {
 }
 
 Verdict StopRule::verdict(int seeds, const Estimate& estimate, double share) const {
-  // False, too, where there is no interval, or the mean is 0: the share is then not a number.
+  // False, too, if there is no interval or the mean is 0: the share is then NaN or infinite.
   if (share <= 1) return estimate.count == seeds ? Verdict::converged : Verdict::converged_with_losses;
-  // Where not one of the first seeds lives, more of them are waste.
+  // If all seeds of the first cohort are lost, more seeds would be wasted.
   if (seeds == minimum_ && estimate.count == 0) return Verdict::failed;
   if (seeds < maximum_) return Verdict::more;
   if (!has_tolerance_) return estimate.count == seeds ? Verdict::complete : Verdict::complete_with_losses;

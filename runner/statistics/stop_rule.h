@@ -1,24 +1,23 @@
-// When a stop test decides, and which interval it gives.
+// Decides stop tests and gives their intervals.
 //
 // The interval of a stop test is that of half_width() (statistics.h) at the level of adjusted_confidence():
-// Student's, of shares Clopper and Pearson's. It depends on the values of the stop test, the confidence that
-// is asked for, and minimum and maximum; the tolerance has no part in it. With a single stop test the level
-// is the confidence itself.
+// Student's, or Clopper and Pearson's for shares. It depends on the values, the confidence, the minimum and
+// the maximum, but not on the tolerance. With a single stop test the level is the confidence itself.
 //
-// A stop test converges when its half-width is within the tolerance e. A relative one allows e |mean|; one
-// that is relative to another observable allows e (|mean| - half-width) of that one, so that the error of the
-// measure counts, too. Equal values have no spread to judge by: such a stop test never converges. As a
-// measure they are taken for exact.
+// A stop test converges if its half-width is within the tolerance e. A relative tolerance allows e |mean|.
+// One that is relative to another observable allows e (|mean| - half-width) of that one, so that its error
+// counts, too. Equal values have no spread to judge by: their stop test never converges. If another
+// observable is relative to them, they count as exact.
 //
-// A point stops where its spread has come out small. That harms nothing as long as all points stop some time:
-// those that stop too early and those that stop too late make up for each other. The maximum cuts the late
-// ones off, and then what has converged is a selection whose intervals hold the mean less often
-// (results/coverage). is_near_maximum() tells of such a point.
+// A point stops when its spread happens to be small. This does no harm as long as all points stop some time,
+// because those that stop too early and too late balance. A near maximum cuts off the late ones. The
+// converged points are then a selection whose intervals hold the mean less often (results/coverage).
+// is_near_maximum() marks them.
 //
 // Without a tolerance there is one stop test, at the fixed number of realisations, and Student's interval.
 //
-// A target of several criteria is met at the first stop test at which each of them is by its own rule. What
-// is said of the point is the least favourable of what is said of them.
+// A target of several criteria is met at the first stop test at which each criterion is met. The verdict of
+// the point is the least favourable one of its criteria.
 #pragma once
 
 #include <limits>
@@ -34,53 +33,54 @@
 namespace peclet::runner {
 
 enum class Verdict {
-  more,                   // nothing is decided: go on to the next stop test
+  more,                   // undecided: continue to the next stop test
   converged,              // within the tolerance
   converged_with_losses,  // within the tolerance, but seeds of the cohort were lost
   capped,                 // the maximum is reached without convergence
-  failed,                 // fewer than two values at the maximum or every seed of the first cohort lost
-  // Of a fixed number of realisations; `failed` where none of them has a value.
+  failed,                 // fewer than two values at the maximum, or every seed of the first cohort lost
+  // For a fixed number of realisations; `failed` if none of them has a value.
   complete,
   complete_with_losses
 };
 
-// "converged-with-losses"
+// Returns a name such as "converged-with-losses".
 const char* to_string(Verdict verdict);
-// Returns nothing for a word that is no verdict.
+// Returns nothing for a word that is not a verdict.
 std::optional<Verdict> verdict_of(std::string_view word);
 
-// Within the tolerance, or complete; with losses or without.
+// Returns true if the verdict is converged or complete, with losses or without.
 bool is_reached(Verdict verdict);
-// Converged or complete, but seeds were lost.
+// Returns true if the verdict is converged or complete, but seeds were lost.
 bool has_losses(Verdict verdict);
 
-// Of two verdicts that the same stop test gave of two criteria, the one that counts for both.
+// Returns the verdict of a stop test on two criteria together: the less favourable one.
 Verdict less_favourable(Verdict one, Verdict other);
 
-// The level that each interval must have so that the one at which a point stops holds the mean with
-// `confidence`. Among several stop tests the first one within the tolerance is often one whose spread came
-// out too small: with levels of 95 %, 93 to 95 % of the last intervals hold the mean from a minimum of 8 on,
-// fewer with smaller ones. 1 - (1 - confidence) (1 - 1.4 / minimum) makes that 94.2 to 95.9 %, for normal
-// populations of any spread (results/coverage). With a single stop test (minimum = maximum) Student's
-// interval is exact.
+// Returns the level of each interval at which the interval of the last stop test holds the mean with
+// `confidence`. Of several stop tests, the first within the tolerance often has a spread that is too small by
+// chance. With levels of 95 %, 93 to 95 % of the last intervals hold the mean from a minimum of 8 on, and
+// fewer below. With
+//   1 - (1 - confidence) (1 - 1.4 / minimum)
+// 94.2 to 95.9 % do, for normal populations of any spread (results/coverage). With a single stop test
+// (minimum = maximum) the level is the confidence, because Student's interval is exact.
 double adjusted_confidence(double confidence, int minimum, int maximum);
 
-// Numbers of seeds at which a point is looked at: minimum, then ceil(1.25 n) each, the last one is maximum.
+// Returns the numbers of seeds of the stop tests: minimum, then ceil(1.25 n) of the one before, last maximum.
 std::vector<int> stop_test_schedule(int minimum, int maximum);
 
 class StopRule {
  public:
   StopRule(const Target& target, int minimum, int maximum);
 
-  // Below, estimates are those of Target::observables(), in that order, of a closed cohort of `seeds`: of
-  // each observable those seeds count that have a value of it.
+  // The estimates of Target::observables(), in that order, over a closed cohort of `seeds`. The estimate of
+  // an observable counts the seeds that have a value of it.
   using Estimates = std::span<const Estimate>;
 
-  // What is said of one observable.
+  // The result for one observable.
   struct Finding {
-    std::optional<Verdict> verdict;  // none where it only measures others
-    double half_width = 0;           // NaN where there is no interval
-    // Half-width over the largest that is allowed; NaN without a tolerance.
+    std::optional<Verdict> verdict;  // none if tolerances are only relative to this observable
+    double half_width = 0;           // NaN if there is no interval
+    // Half-width over the largest allowed one; NaN without a tolerance.
     double share = std::numeric_limits<double>::quiet_NaN();
   };
   struct Judgement {
@@ -89,23 +89,24 @@ class StopRule {
   };
   Judgement judge(int seeds, Estimates estimates);
   bool has_tolerance() const { return has_tolerance_; }
-  // Whether each criterion is within its tolerance.
+  // Returns true if each criterion is within its tolerance.
   bool is_met(Estimates estimates);
 
-  // At the adjusted level; NaN where there is no interval.
+  // Returns the half-width at the adjusted level; NaN if there is no interval.
   double half_width(const Estimate& estimate);
-  // Whether for each criterion some half-width is good enough: not so a share of 0, and of what is unknown.
+  // Returns true if each criterion allows a half-width above 0: not a share of a mean that is 0 or unknown.
   bool has_measure(Estimates estimates) const;
 
   const std::vector<int>& schedule() const { return schedule_; }
 
  private:
-  // One criterion, and where its observable and the one that it is relative to stand among the estimates.
+  // One criterion, with the indices of its observable and of the one to which it is relative.
   struct Part {
     Tolerance tolerance;
     std::size_t place = 0, measure = 0;
   };
-  // Half-width over the one that is allowed: converged at 1. Infinite or NaN where there is no measure.
+  // Returns half-width over the largest allowed one: converged at 1 or less. Infinite or NaN if the allowed
+  // one is 0 or unknown.
   double share(const Part& part, Estimates estimates);
   Verdict verdict(int seeds, const Estimate& estimate, double share) const;
 
@@ -115,12 +116,13 @@ class StopRule {
   bool has_tolerance_;
   double confidence_;
   std::vector<int> schedule_;
-  std::map<int, double> student_;  // by number of values, each computed once
+  std::map<int, double> student_;  // Student's factors by number of values
 };
 
-// Whether the maximum is so near that a stop test which has converged may have done so by luck: with the
-// largest spread that its values leave open (variance_excess() at 5 %) the point would need more seeds than
-// are allowed, n share^2 f > maximum. `share` is the largest of its criteria, of `values` values.
+// Returns true if a converged stop test may be luck, because the maximum is near. With the largest spread
+// that its values leave open, f = variance_excess() at 5 %, the point would need more seeds than the maximum:
+//   n share^2 f > maximum.
+// `share` is half-width over tolerance of a criterion with `values` values.
 bool is_near_maximum(int seeds, int values, double share, int maximum);
 
 }  // namespace peclet::runner

@@ -11,7 +11,8 @@ namespace {
 
 constexpr double confidence_of_each = 1 - 0.0005;
 
-// `scale` is the size of what was subtracted: a difference that rounding can make is none.
+// Returns true if the mean contrast is not zero. `scale` is the size of the subtracted values: differences
+// within rounding count as zero.
 bool differs_from_zero(const std::vector<double>& contrasts, double scale) {
   const Estimate mean = estimate(contrasts);
   if (mean.count < fewest_contrasts) return false;

@@ -34,7 +34,7 @@ def lock_deleted(night):
     """campaign.lock deleted because it is in the way, and a second owner started"""
     run = running(night)
     night.types("rm night.peclet/campaign.lock && peclet run night.json", 5, [f"process {run.pid} owns this campaign"])
-    night.types("peclet status night.peclet", 0, [f"process {run.pid} runs it"])
+    night.types("peclet status night.peclet", 0, [f"process {run.pid} runs the campaign"])
     night.lets_go()
     night.waits(run)
     night.remembers()

@@ -35,7 +35,7 @@ def owner_killed(night):
     night.remarks("The run is killed.")
     night.wait_for("the end of its workers", lambda: not workers_of(night))
     night.lets_go()
-    night.types("peclet status night.json", 0, ["nobody runs it now", "peclet run"])
+    night.types("peclet status night.json", 0, ["no process runs the campaign now", "peclet run"])
     night.slow(20)
     night.types("peclet run night.json", 0, ["an earlier run left unfinished go on", "2 converged"])
     night.lost_nothing()

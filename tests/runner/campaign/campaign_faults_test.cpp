@@ -1,4 +1,4 @@
-// Every fault of a campaign has one message: where, what, and what is allowed.
+// Tests that every fault of a campaign has one message: where, what, and what is allowed.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -17,7 +17,7 @@ const char* const whole_campaign = R"({
   "target": {"observable": "relative_viscosity", "relative_tolerance": 0.05},
   "realisations": {"minimum": 10, "maximum": 100}})";
 
-// One edit of the campaign (RFC 7396: null removes), and the complaint about it.
+// An edit of the campaign as a merge patch (RFC 7396: null removes a key), and the complaint about it.
 struct Fault {
   const char* edit;
   const char* pointer;
@@ -51,10 +51,10 @@ const Fault faults[] = {
     {R"({"target": {"also": [{"observable": "pressure", "absolute_tolerance": 1, "relative_to": "a"}]}})",
      "/target/also/0/relative_to", "a", "must be left out without relative_tolerance"},
     {R"({"target": {"also": [{"observable": "relative_viscosity", "relative_tolerance": 0.1}]}})",
-     "/target/also/0/observable", "relative_viscosity", "must be another one"},
+     "/target/also/0/observable", "relative_viscosity", "must differ from the observables before it"},
     {R"({"target": {"also": [{"observable": "pressure", "relative_tolerance": 0.1},
                              {"observable": "pressure", "absolute_tolerance": 1}]}})",
-     "/target/also/1/observable", "pressure", "must be another one"},
+     "/target/also/1/observable", "pressure", "must differ from the observables before it"},
     {R"({"scene": null})", "/scene", "missing", "must be an object"},
     {R"({"scene": "dense"})", "/scene", "dense", "must be an object"},
     {R"({"seeds": 10})", "/seeds", "unknown key", "allowed keys: name, scene, sweep"},
@@ -68,22 +68,24 @@ const Fault faults[] = {
     {R"({"sweep": [{"set": [], "values": [1]}]})", "/sweep/0/set", "[]", "JSON pointer"},
     {R"({"sweep": [{"set": ["/a", 3], "values": [[1, 2]]}]})", "/sweep/0/set/1", "3", "JSON pointer"},
     {R"({"sweep": [{"set": ["/a", "/b"], "values": [[1, 2], [3]]}]})", "/sweep/0/values/1", "[3]",
-     "array of 2, one for every pointer"},
-    {R"({"sweep": [{"set": ["/a", "/b"], "values": [1, 2]}]})", "/sweep/0/values/0", "1", "array of 2"},
+     "an array with one value for each pointer of set, 2 in all"},
+    {R"({"sweep": [{"set": ["/a", "/b"], "values": [1, 2]}]})", "/sweep/0/values/0", "1", "2 in all"},
     {R"({"sweep": [{"set": "/peclet", "values": [1, 10, 1.0]}]})", "/sweep/0/values/2", "peclet=1",
-     "must differ from the other points: the scene is that of peclet=1, value 0"},
+     "must differ from the other points: the scene equals that of peclet=1, from value 0"},
     {R"({"sweep": [{"set": "/peclet", "values": [1]}, {"set": "/peclet", "values": [2]}]})", "/sweep/1/set",
      "/peclet", "once only"},
     {R"({"sweep": [{"set": "/fluid", "values": [{}]}, {"set": "/fluid/viscosity", "values": [2]}]})",
      "/sweep/1/set", "/fluid/viscosity", "must not overlap with /fluid"},
     {R"({"sweep": [{"set": "/species/2/radius", "values": [1]}]})", "/sweep/0/set", "/species/2/radius",
-     "there is no 2 in an array of 2"},
+     "an array of length 2 has no element 2"},
     {R"({"sweep": [{"set": "/species/01/radius", "values": [1]}]})", "/sweep/0/set", "/species/01/radius",
-     "there is no 01"},
-    {R"({"sweep": [{"set": "/species/-", "values": [1]}]})", "/sweep/0/set", "/species/-", "there is no -"},
+     "has no element 01"},
+    {R"({"sweep": [{"set": "/species/-", "values": [1]}]})", "/sweep/0/set", "/species/-",
+     "has no element -"},
     {R"({"sweep": [{"set": "/fluid/viscosity/x", "values": [1]}]})", "/sweep/0/set", "/fluid/viscosity/x",
-     "nothing can be below 1"},
-    {R"({"target": null})", "/target", "missing", "must be an object, or /realisations the number of seeds"},
+     "1 is neither an object nor an array"},
+    {R"({"target": null})", "/target", "missing",
+     "must be an object, unless /realisations is the number of seeds"},
     {R"({"realisations": 16})", "/target", "observable", "must not be given beside a fixed number"},
     {R"({"show": ["pressure"]})", "/show", "pressure", "must not be given beside a target"},
     {R"({"target": null, "realisations": 0})", "/realisations", "0",
@@ -97,7 +99,7 @@ const Fault faults[] = {
     {R"({"target": null, "realisations": 4, "show": []})", "/show", "[]", "must be an array of 1 to 101"},
     {R"({"target": null, "realisations": 4, "show": [4]})", "/show/0", "4", "must be a string"},
     {R"({"target": null, "realisations": 4, "show": ["pressure", "pressure"]})", "/show/1", "pressure",
-     "must be another one"},
+     "must differ from the observables before it"},
     {R"({"target": {"relative_tolerance": 5}})", "/target/relative_tolerance", "5",
      "must be a number > 0 and < 1; 5 % is written 0.05"},
     {R"({"target": {"relative_tolerance": 0}})", "/target/relative_tolerance", "0", "> 0 and < 1"},

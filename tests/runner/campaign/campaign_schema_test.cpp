@@ -1,4 +1,4 @@
-// The files that others read say the same as the table of keys.
+// Tests that the manual and the reference documents agree with the table of keys.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -25,7 +25,7 @@ TEST(CampaignSchema, TheExampleInTheManualMakesTheGridThatItSays) {
   EXPECT_EQ(campaign.points[1].label, "peclet=0.1 volume_fraction=0.5");
 }
 
-// schema_agreement.py holds the schema file to the same documents.
+// schema_agreement.py tests the schema file with the same documents.
 TEST(CampaignSchema, TheTableJudgesTheReferenceDocumentsByTheirNames) {
   int documents = 0;
   for (const fs::directory_entry& entry : fs::directory_iterator(source / "tests/reference/campaigns")) {

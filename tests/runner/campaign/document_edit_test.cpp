@@ -1,4 +1,4 @@
-// One value changes, and not a blank of the rest.
+// Tests that an edit changes one value and not a blank of the rest.
 #include <gtest/gtest.h>
 
 #include "runner/campaign/campaign_file.h"
@@ -23,14 +23,14 @@ const Case cases[] = {
      {"t", "x"},
      12,
      "{\n\t\"x\": 1,\n\t\"t\": {\n\t\t\"a\": \"}\\\"{\", \"x\": 12\n\t}\n}\n"},
-    // What stands in another object, in a string or in an array is not meant.
+    // Equal keys in another object, in a string or in an array stay.
     {R"({"a": {"t": {"x": 1}}, "s": "\"t\": {\"x\": 1}", "t": {"x": 1}})",
      {"t", "x"},
      2,
      R"({"a": {"t": {"x": 1}}, "s": "\"t\": {\"x\": 1}", "t": {"x": 2}})"},
     {R"({"\u0074": {"x": true}})", {"t", "x"}, 2, R"({"\u0074": {"x": 2}})"},
     {R"({"x": {"deep": [1, 2]}, "y": 1})", {"x"}, 3, R"({"x": 3, "y": 1})"},
-    // Absent keys come last, spaced as the first one.
+    // Absent keys are added last, spaced as the first one.
     {R"({"t": {"x": 1}})", {"t", "y"}, 0.9, R"({"t": {"x": 1, "y": 0.9}})"},
     {R"({"t":{"x":1}})", {"t", "y"}, 0.9, R"({"t":{"x":1, "y":0.9}})"},
     {R"({"t": { "x": 1 }})", {"t", "y"}, 0.9, R"({"t": { "x": 1, "y": 0.9 }})"},

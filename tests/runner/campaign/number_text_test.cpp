@@ -1,4 +1,4 @@
-// Numbers for people: digits by hand, after the usual rule of two digits of the error.
+// Tests numbers for people. The expected digits follow by hand from two digits of the error.
 #include "runner/campaign/number_text.h"
 
 #include <gtest/gtest.h>

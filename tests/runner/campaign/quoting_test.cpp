@@ -30,8 +30,7 @@ TEST(Quoting, APlainPathStaysAsItIs) {
   EXPECT_EQ(sbatch_word("/scratch/me"), "/scratch/me");
 }
 
-// What sbatch of Slurm 22.05 was seen to read as it was meant: `slurm_drill.py --only odd_folder` asks it
-// again.
+// sbatch of Slurm 22.05 reads these words as intended; `slurm_drill.py --only odd_folder` tests it.
 TEST(Quoting, ADirectiveOfSlurmHasNoPatternButItsOwn) {
   EXPECT_EQ(sbatch_word("/a b/%j"), "\"/a b/%%j\"");
   EXPECT_EQ(sbatch_word("say \"hi\""), "\"say \\\"hi\\\"\"");

@@ -1,4 +1,4 @@
-// Which points a sweep makes, and what they are called.
+// Tests the points of a sweep and their labels.
 #include "runner/campaign/sweep.h"
 
 #include <gtest/gtest.h>
@@ -57,9 +57,8 @@ TEST(Sweep, NothingButWhatIsSetDiffersFromTheScene) {
   EXPECT_EQ(point.hash, sha256(canonical_json(expected)));
 }
 
-// SHA-256 of
-// {"fluid":{"viscosity":1},"peclet":5,"species":[{"radius":1},{"radius":1.4}],"volume_fraction":0.5} as
-// coreutils' sha256sum gives it.
+/// The expected hash is that of coreutils' sha256sum for
+/// {"fluid":{"viscosity":1},"peclet":5,"species":[{"radius":1},{"radius":1.4}],"volume_fraction":0.5}
 TEST(Sweep, TheHashIsThatOfTheCanonicalText) {
   EXPECT_EQ(points(R"([{"set": "/peclet", "values": [5.0]}])")[0].hash,
             "0012771b251d2d6200575c815f2ea200fa8553d2a032df0bc5920602fdb96973");

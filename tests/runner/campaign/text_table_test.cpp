@@ -1,4 +1,4 @@
-// Tables for a terminal.
+// Tests tables for a terminal.
 #include "runner/campaign/text_table.h"
 
 #include <gtest/gtest.h>

@@ -19,7 +19,7 @@ TEST(Tolerance, IsAShareOfTheMeanOrANumberOfItsOwn) {
   EXPECT_DOUBLE_EQ(number.share(0.2, 0), 0.5);
 }
 
-// 5 % of 8 is 0.4, of 1 only 0.05.
+// 5 % of 8 is 0.4, above the floor of 0.1. 5 % of 1 is below it.
 TEST(Tolerance, OfASmallMeanHasAFloor) {
   Tolerance tolerance = 0.05;
   EXPECT_TRUE(tolerance.needs_a_mean());

@@ -108,7 +108,7 @@ TEST_F(CommandLine, ASceneIsToldWhatACampaignIs) {
   for (const char* const verb : {"validate", "plan", "run", "status", "explain"}) {
     const Answer answer = peclet(std::string(verb) + " small.json");
     EXPECT_EQ(answer.code, 2) << verb;
-    EXPECT_TRUE(answer.text.starts_with("peclet: small.json: is a scene, and a campaign is asked for: "))
+    EXPECT_TRUE(answer.text.starts_with("peclet: small.json: is a scene, but must be a campaign: "))
         << answer.text;
     EXPECT_TRUE(says(answer.text, "`peclet init NEW.json`")) << answer.text;
   }

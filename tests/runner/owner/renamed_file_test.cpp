@@ -66,7 +66,7 @@ TEST_F(Renamed, AFolderIsNoFileAndASimilarNameIsOffered) {
   };
   EXPECT_EQ(complaint(campaign_.options.campaign), "accepted");
   EXPECT_EQ(complaint(campaign_.directory().root()),
-            "is a folder, and the campaign's file is asked for: " + campaign_.options.campaign.string());
+            "is a folder, but must be the campaign file: " + campaign_.options.campaign.string());
   EXPECT_EQ(complaint(other("tset.json")),
             "no such file; did you mean " + campaign_.options.campaign.string() + "?");
   EXPECT_EQ(complaint(other("something.json")), "no such file");

@@ -20,7 +20,7 @@ CampaignStatus swept(const std::vector<std::pair<Json, double>>& points) {
 
 const double nan = std::nan("");
 
-// Eighths between the least and the greatest: 1, 4.5 and 8 are at 0, 1/2 and 1 of seven steps.
+// The means 1, 2.5 and 4 are at 0, 1/2 and 1 of the seven steps between the lowest and the highest bar.
 TEST(Curve, IsAsHighAsItsMeans) {
   const CampaignStatus status =
       swept({{{{"/peclet", 1}}, 1.0}, {{{"/peclet", 100}}, 4.0}, {{{"/peclet", 10}}, 2.5}});
@@ -45,7 +45,7 @@ TEST(Curve, HasALineForEachOfTheOthersAndADotForWhatIsNotKnown) {
             "phi=0.5  ████····████  5 to 5\n");
 }
 
-// Of all that have ended half or more: its rate of 1e-8 says nothing, and does not make the scale.
+// Half of the ended seeds have jammed: the mean of -1e-8 is meaningless and does not set the scale.
 TEST(Curve, HasACrossForWhatHasJammed) {
   CampaignStatus status =
       swept({{{{"/x", 1}}, 1.0}, {{{"/x", 2}}, 2.5}, {{{"/x", 3}}, 4.0}, {{{"/x", 4}}, -1e-8}});

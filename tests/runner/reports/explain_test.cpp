@@ -1,4 +1,4 @@
-// Why points are where they are.
+// Tests the explanation of verdicts.
 #include "runner/reports/explain.h"
 
 #include <gtest/gtest.h>
@@ -52,21 +52,24 @@ TEST(Explain, ACappedPointIsToldHowManySeedsItWouldTake) {
   const double values[] = {9, 10, 11, 10};
   for (int seed = 0; seed < 4; ++seed) campaign.complete(0, seed, values[seed]);
   const std::string text = explain(campaign.database(), campaign.directory(), "");
-  // Half-width 3.182 * 0.408 = 1.299 of 10 + 0.25; 4 * (0.1267 / 0.05)^2 = 25.7 seeds.
-  EXPECT_TRUE(says(text, "all 4 seeds that are allowed give 13 %, not within the tolerance of 5 %")) << text;
+  // The half-width 3.182 * 0.408 = 1.299 around 10 + 0.25 needs 4 * (0.1267 / 0.05)^2 = 25.7 seeds.
+  EXPECT_TRUE(says(text,
+                   "all 4 seeds that are allowed give a half-width of 13 %, not within the tolerance "
+                   "of 5 %"))
+      << text;
   EXPECT_TRUE(says(text, "/realisations/maximum (about 26 seeds)")) << text;
 }
 
-// The pressure is twice the viscosity and has no control variate: 20 +- 3.1824 * 0.8165 = 2.5985, for which
-// 4 * 2.5985^2 = 27.01 seeds would do.
+// The pressure is twice the viscosity and has no control variate: 20 +- 3.1824 * 0.8165 = 2.5985, which needs
+// 4 * 2.5985^2 = 27.01 seeds.
 TEST(Explain, OfSeveralTargetsEachIsToldWithItsTolerance) {
   StoredCampaign campaign(1, 4, 4, {{"pressure", Tolerance::absolute(1)}});
   const double values[] = {9, 10, 11, 10};
   for (int seed = 0; seed < 4; ++seed) campaign.complete(0, seed, values[seed]);
   const std::string text = explain(campaign.database(), campaign.directory(), "");
   EXPECT_TRUE(says(text,
-                   "all 4 seeds that are allowed give relative_viscosity 13 %, pressure 2.6, not within the "
-                   "tolerance of 5 % for relative_viscosity, 1 for pressure"))
+                   "all 4 seeds that are allowed give half-widths of 13 % for relative_viscosity, 2.6 for "
+                   "pressure, not within the tolerance of 5 % for relative_viscosity, 1 for pressure"))
       << text;
   EXPECT_TRUE(says(text, "/realisations/maximum (about 28 seeds) or /target/also/0/absolute_tolerance"))
       << text;
@@ -99,7 +102,7 @@ TEST(Explain, WhereOneOfSeveralTargetsMayBeZeroItsToleranceIsToBecomeAbsolute) {
   EXPECT_TRUE(says(text, "/target/also/0/absolute_tolerance, or another /target/also/0/observable")) << text;
 }
 
-// Values +- 10 around 0.25: any number of seeds for a share of such a mean would be an accident.
+// The values are +- 10 around 0.25. A number of seeds for a share of such a mean would be accidental.
 TEST(Explain, AMeanThatMayBeZeroIsNotAdvisedToTakeMillionsOfSeeds) {
   StoredCampaign campaign(1, 8, 8), open(1, 8, 20);
   for (int seed = 0; seed < 8; ++seed) {
@@ -107,11 +110,13 @@ TEST(Explain, AMeanThatMayBeZeroIsNotAdvisedToTakeMillionsOfSeeds) {
     open.complete(0, seed, seed % 2 == 0 ? -10 : 10);
   }
   const std::string text = explain(campaign.database(), campaign.directory(), "");
-  EXPECT_TRUE(says(text, "the interval contains zero, and as long as it does no /target/relative_tolerance"))
+  EXPECT_TRUE(says(text,
+                   "while the interval contains zero, no number of seeds can meet a "
+                   "/target/relative_tolerance"))
       << text;
   EXPECT_FALSE(says(text, "/realisations/maximum")) << text;
   const std::string ahead = explain(open.database(), open.directory(), "");
-  EXPECT_TRUE(says(ahead, "cannot be told while the interval contains zero")) << ahead;
+  EXPECT_TRUE(says(ahead, "cannot be predicted while the interval contains zero")) << ahead;
 }
 
 TEST(Explain, AWindowThatBeginsTooEarlyIsATransient) {
@@ -125,13 +130,13 @@ TEST(Explain, AWindowThatBeginsTooEarlyIsATransient) {
   EXPECT_TRUE(says(drifting, "converged, transient")) << drifting;
   EXPECT_TRUE(says(drifting, "the first half by 0.1000 ± 0.0057"))
       << drifting;  // 0.1 +- 1.5 * 0.01 / sqrt(7)
-  EXPECT_TRUE(says(drifting, "next: a longer /scene/duration/equilibration")) << drifting;
+  EXPECT_TRUE(says(drifting, "next: set a longer /scene/duration/equilibration")) << drifting;
   const std::string steady = explain(campaign.database(), campaign.directory(), "point=1");
   EXPECT_FALSE(says(steady, "transient")) << steady;
   EXPECT_TRUE(status_json(read_status(campaign.database()))["points"][0]["stop_test"]["transient"]);
 }
 
-// Results whose blocks are gone: the verdict stands, and says what could not be looked at.
+// Without blocks the verdict stands, and the explanation says that transients could not be tested.
 TEST(Explain, WithoutBlocksNoTransientTestIsSaidNotToHaveBeenPossible) {
   StoredCampaign campaign(1, 4, 20);
   for (int seed = 0; seed < 4; ++seed) {
@@ -150,7 +155,7 @@ TEST(Explain, WithoutBlocksNoTransientTestIsSaidNotToHaveBeenPossible) {
 
 TEST(Explain, AnEstimateHasABootstrapIntervalAndAdviceOnItsWindow) {
   StoredCampaign campaign(1, 16, 20);
-  for (int seed = 0; seed < 16; ++seed) {  // halves that know nothing of each other
+  for (int seed = 0; seed < 16; ++seed) {  // uncorrelated halves
     campaign.complete_in_halves(0, seed, 10 + (seed % 2 == 0 ? 0.1 : -0.1), 10 + (seed % 4 < 2 ? 0.1 : -0.1));
   }
   const std::string text = explain(campaign.database(), campaign.directory(), "");
@@ -176,8 +181,9 @@ TEST(Explain, TheStopTestWithoutTheControlVariateIsShownOnlyWhereThereIsOne) {
     campaign.complete(0, seed, 10 + 0.01 * seed);
     campaign.complete_in_halves(1, seed, 10 + 0.01 * seed, 10 + 0.01 * seed);
   }
-  EXPECT_TRUE(says(explain(campaign.database(), campaign.directory(), "point=0"), "plain"));
-  EXPECT_FALSE(says(explain(campaign.database(), campaign.directory(), "point=1"), "plain"));
+  EXPECT_TRUE(says(explain(campaign.database(), campaign.directory(), "point=0"), "without control variate"));
+  EXPECT_FALSE(
+      says(explain(campaign.database(), campaign.directory(), "point=1"), "without control variate"));
 }
 
 TEST(Explain, AnOpenPointSaysWhatItWaitsFor) {

@@ -1,4 +1,4 @@
-// What `export` holds, and that its canonical form holds nothing that depends on how a run went.
+// Tests the contents of exports, and that the canonical form does not depend on the course of a run.
 #include "runner/reports/export.h"
 
 #include <fmt/format.h>
@@ -35,7 +35,7 @@ void collect_keys(const Json& value, std::set<std::string>& keys) {
   }
 }
 
-TEST(Export, CanonicalBytesDoNotDependOnOrderAttemptsAndExtra) {
+TEST(Export, CanonicalBytesDoNotDependOnOrderAttemptsAndExtraSeeds) {
   StoredCampaign one(2, 4, 20), other(2, 4, 20);
   fill(one, 0, {0, 1, 2, 3});
   fill(one, 1, {0, 1, 2});
@@ -69,7 +69,7 @@ TEST(Export, CanonicalSpellingIsCanonical) {
   StoredCampaign campaign(2, 4, 20);
   fill(campaign, 0, {0, 1, 2, 3});
   std::string text = export_json(campaign.database(), true);
-  std::erase(text, '\n');  // points are kept on lines of their own
+  std::erase(text, '\n');  // each point is on a line of its own
   EXPECT_EQ(text, canonical_json(parse_json(text, "export")));
 }
 
@@ -80,7 +80,7 @@ TEST(Export, EstimatesAreOverTheSeedsOfTheStopTest) {
   const Json point = exported(campaign, true)["points"][0];
   EXPECT_EQ(point["verdict"], "converged");
   EXPECT_EQ(point["realisations"].size(), 4U);
-  // Sample variance (0.1^2 + 0.1^2) / 3; plain_result() has the pressure at twice the viscosity.
+  // The sample variance is (0.1^2 + 0.1^2) / 3. In plain_result() the pressure is twice the viscosity.
   const double standard_error = std::sqrt(0.02 / 3 / 4);
   const Json& viscosity = point["quantities"]["relative_viscosity"];
   EXPECT_EQ(viscosity["count"], 4);
@@ -127,8 +127,7 @@ TEST(Export, AChangedNumberInTheDatabaseIsAnIntegrityFault) {
   EXPECT_THROW(export_csv(campaign.database(), true), IntegrityError);
 }
 
-// plain_result() has a control variate of 0.25: what status shows is 10.25, and so is the first mean of every
-// form.
+// plain_result() has a control variate of 0.25: status and every export must give 10.25 as the mean.
 TEST(Export, TheEstimateThatDecidesIsTheMeanEverywhere) {
   StoredCampaign campaign(1, 4, 20);
   fill(campaign, 0, {0, 1, 2, 3});
@@ -174,13 +173,13 @@ TEST(Export, CsvHasARowPerPointWithEmptyFieldsForWhatDoesNotExist) {
   EXPECT_NE(csv.find(",0.25,0,4,20,"), std::string::npos) << csv;  // control variate and pressure
 }
 
-// Seeds whose profile is (v, 2 v) and whose ratio is v over 2, all with the same unit but the ratio.
+// A quantity has the name of a column ("count").
 TEST(Export, ColumnsOfACsvAreNotCalledAlike) {
   StoredCampaign campaign(1, 4, 40);
   for (int seed = 0; seed < 4; ++seed) {
     campaign.complete_with(0, seed, viscosities[seed], [](Json& result) {
       result.erase("quantities");
-      result["mean"]["count"] = 3;  // another engine's
+      result["mean"]["count"] = 3;  // as other engines may have
     });
   }
   const std::string csv = export_csv(campaign.database(), false);
@@ -190,7 +189,7 @@ TEST(Export, ColumnsOfACsvAreNotCalledAlike) {
   EXPECT_TRUE(seen.count("quantity count"));
 }
 
-// An engine learned to describe its numbers while the campaign ran: "1" is then their unit.
+// An update of the engine describes numbers that earlier results do not: the unit is "1" in both cases.
 TEST(Export, ANumberThatOnlySomePointsDescribeHasOneColumnOfACsv) {
   StoredCampaign campaign(2, 4, 40);
   for (int seed = 0; seed < 4; ++seed) {
@@ -238,8 +237,8 @@ TEST(Export, TheLongTableHasARowForEveryNumber) {
   }
   const std::string table = export_long_csv(campaign.database());
   const std::string hash = campaign.database().points().at(0).hash;
-  // Sample variance 0.02 / 3 of four values of mean 10; Student's t of three degrees of freedom at the level
-  // 1 - 0.05 (1 - 1.4 / 4) of stop tests from four seeds on.
+  // The sample variance is 0.02 / 3, and Student's t has three degrees of freedom. The level is
+  // 1 - 0.05 (1 - 1.4 / 4), for a minimum of four seeds.
   const double error = std::sqrt(0.02 / 3 / 4), half = 3.777447959 * error;
   std::istringstream lines(table);
   std::vector<std::vector<std::string>> rows;
@@ -287,7 +286,7 @@ TEST(Export, NoTextOfACsvIsAFormulaOfASpreadsheet) {
     EXPECT_TRUE(row.starts_with(std::string(cell) + ',')) << row;
     EXPECT_NE(row.find(',' + std::string(cell) + ','), std::string::npos) << row;
   }
-  // A number below zero stays one.
+  // A negative number stays a number.
   campaign.database().connection().execute("UPDATE point SET settings = json_object('/point', -1.5)");
   EXPECT_NE(export_csv(campaign.database(), true).find(",-1.5,"), std::string::npos);
 }

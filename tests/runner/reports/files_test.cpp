@@ -8,7 +8,7 @@
 namespace peclet::runner {
 namespace {
 
-// Two points; seed 3 of the second has left two files, of which one was thrown away.
+// A campaign of two points. Seed 3 of the second has left two files, of which one was thrown away.
 class FilesOfACampaign : public testing::Test {
  protected:
   FilesOfACampaign() {
@@ -21,7 +21,7 @@ class FilesOfACampaign : public testing::Test {
   std::string list(const FileChoice& options) {
     return list_files(campaign_.database(), campaign_.directory(), options);
   }
-  // files/HASH-POINT/SEED/NAME
+  // Returns the path of the kept file, files/HASH-POINT/SEED/NAME.
   std::string path() {
     const std::string hash = campaign_.database().points().at(1).hash;
     return (campaign_.directory().root() / "files" / (hash.substr(0, 16) + "-2") / "000003/final.xyz")

@@ -1,4 +1,4 @@
-// What a campaign may cost.
+// Tests plans: guessed, measured and predicted costs.
 #include "runner/reports/plan.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ TEST(Plan, SaysWhatRestWouldSaveOfThePointsThatAreNearIt) {
   Plan plan = make_plan(plain_campaign(2, 10, 800, 0.05), {1e6, 2e6}, {}, 1);
   EXPECT_EQ(plan_text(plan).find("at rest"), std::string::npos);
   plan.points[1].flow_over_rest = 250;
-  EXPECT_NE(plan_text(plan).find("Nearly at rest. Processor time over that of the same error at rest, by "
+  EXPECT_NE(plan_text(plan).find("nearly at rest. Processor time over that for the same error at rest, with "
                                  "linear_response (a guess):\n  point=1: 250\n"),
             std::string::npos)
       << plan_text(plan);
@@ -32,7 +32,7 @@ TEST(Plan, SaysWhatRestWouldSaveOfThePointsThatAreNearIt) {
   EXPECT_EQ(plan_json(plan)["points"][1]["flow_over_rest"], 250);
 }
 
-// 3 s for 1e6 particle-steps of the first point; 10 and 800 seeds of 3 + 6 s.
+// The guess is 3 s for 1e6 particle-steps of the first point, so a seed of each point takes 3 + 6 s.
 TEST(Plan, AGuessIsCalledOne) {
   const Plan plan = make_plan(plain_campaign(2, 10, 800, 0.05), {1e6, 2e6}, {}, 1, CostGuess{0, 3});
   EXPECT_DOUBLE_EQ(plan.points[1].cost.cpu_seconds, 6);
@@ -45,12 +45,12 @@ TEST(Plan, AGuessIsCalledOne) {
   EXPECT_TRUE(make_plan(plain_campaign(2, 10, 800, 0.05), {1e6, 2e6},
                         {{plain_campaign(2, 10, 800, 0.05).points[0].hash, {{1, 5}}}}, 1, CostGuess{0, 3})
                   .guessed_from.empty())
-      << "what has been measured is no guess";
+      << "measured costs need no guess";
 }
 
 TEST(Plan, APointWithoutASeedCostsWhatTheOthersDoForEachParticleStep) {
   const Campaign campaign = plain_campaign(3, 10, 100, 0.05);
-  // 4 seeds of 36 s for 1e6 particle-steps and one of 216 s for 2e6: 360 s for 6e6, 60 s for each million.
+  // 4 seeds of 36 s for 1e6 particle-steps and one of 216 s for 2e6 give 360 s for 6e6: 60 s per million.
   const Plan plan =
       make_plan(campaign, {1e6, 2e6, 3e6},
                 {{campaign.points[0].hash, {{4, 36}}}, {campaign.points[1].hash, {{1, 216}}}}, 1);
@@ -58,12 +58,12 @@ TEST(Plan, APointWithoutASeedCostsWhatTheOthersDoForEachParticleStep) {
   EXPECT_EQ(plan.points[1].cost.cpu_seconds, 216);
   EXPECT_NEAR(plan.points[2].cost.cpu_seconds, 180, 1e-9);
   EXPECT_EQ(plan.points[2].cost.count, 0);
-  // (36 + 216 + 180) s = 0.12 h for a seed of each.
+  // A seed of each point takes (36 + 216 + 180) s = 0.12 h.
   EXPECT_NEAR(plan_json(plan)["cpu_hours_minimum"].get<double>(), 1.2, 1e-9);
   EXPECT_NEAR(plan_json(plan)["cpu_hours_maximum"].get<double>(), 12, 1e-9);
 }
 
-// Values so near each other that the minimum of 10 is enough, whatever comes.
+// Returns four seeds with values so near each other that the minimum of 10 seeds is certainly enough.
 PointHistory four_equal_seeds(double cpu_seconds, double wall_seconds) {
   PointHistory history{{4, cpu_seconds, wall_seconds}, {}};
   for (const double value : {10.0, 10.001, 9.999, 10.0}) history.outcomes.emplace_back(Outcome{{value}});
@@ -88,7 +88,8 @@ TEST(Plan, WhatIsToComeFollowsFromThePilot) {
   EXPECT_TRUE(json["points"][2]["prediction"].is_null());
   EXPECT_EQ(json["prediction"]["workers"], 4);
   const std::string text = plan_text(plan);
-  EXPECT_NE(text.find("points without a prediction, 1, are not in these sums"), std::string::npos) << text;
+  EXPECT_NE(text.find("these sums leave out the points without a prediction: 1\n"), std::string::npos)
+      << text;
   EXPECT_NE(text.find("with 4 workers 3 min"), std::string::npos) << text;
 }
 
@@ -110,8 +111,8 @@ TEST(Plan, ADecidedPointHasNothingToCome) {
   EXPECT_EQ(plan_json(plan)["points"][0]["verdict"], "converged");
 }
 
-// Four values leave a variance of 0.32 to 14 times the sample's open, those of ten points, which cost as
-// much, 0.64 to 1.8 times: 30 degrees of freedom. Where one outweighs the others, it alone is what counts: 3.
+// After four values, the true variance is 0.32 to 14 times that of the sample. For ten points of equal cost
+// it is 0.64 to 1.8 times (30 degrees of freedom). A point that outweighs the others counts alone.
 TEST(Plan, OfASumMoreIsKnownThanOfEachPartUnlessOneOutweighsTheOthers) {
   const auto seconds_of = [](std::size_t points, double of_first) {
     Campaign campaign = plain_campaign(10, 8, 4000, 0.03);
@@ -131,7 +132,7 @@ TEST(Plan, OfASumMoreIsKnownThanOfEachPartUnlessOneOutweighsTheOthers) {
   EXPECT_NEAR(unequal.lower / 1e6, one.lower, 1e-2 * one.lower);
 }
 
-// A minute a seed, as a point says of which four seeds have ended; the other one is as long.
+// Four seeds of the first point took a minute each. The second point has the same number of particle-steps.
 TEST(Plan, AFixedNumberOfSeedsIsPlannedWithoutAPilot) {
   Campaign campaign = plain_campaign(2, 16, 16, 0.05);
   campaign.target.tolerance = Tolerance::none();
@@ -144,7 +145,7 @@ TEST(Plan, AFixedNumberOfSeedsIsPlannedWithoutAPilot) {
   EXPECT_EQ(plan_text(plan).find("95 %"), std::string::npos) << plan_text(plan);
 }
 
-// Spreads so large that the mean may be zero.
+// The spread is so large that the mean may be zero.
 TEST(Plan, SaysWhereAMeanNearZeroForbidsAPrediction) {
   const Campaign campaign = plain_campaign(1, 10, 100, 0.05);
   PointHistory history = four_equal_seeds(36, 18);

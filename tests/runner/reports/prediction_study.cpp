@@ -1,9 +1,9 @@
 // prediction_study [CAMPAIGNS]: how good the predictions of `peclet plan --pilot` are, as a CSV table.
 //
-// In each row so many points of true mean 1 are predicted from their first seeds and then run by the stop
-// rule, with the same seeds and those that follow. *Needed* is the number of seeds at which the true spread
-// would just meet the tolerance. The last rows are of the seeds of twelve points together, whose coefficients
-// of variation are log-uniform between 0.05 and 0.5.
+// Each row predicts CAMPAIGNS points of true mean 1 from their first seeds, and runs them by the stop rule
+// with the same seeds and later ones. *Needed* is the number of seeds at which the true spread would just
+// meet the tolerance. The last rows have the summed seeds of twelve points, whose coefficients of variation
+// are log-uniform between 0.05 and 0.5.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ struct Case {
   double needed = 20;
 };
 
-// Values of mean 1.
+// Draws values of mean 1.
 class Source {
  public:
   Source(const Case& about, unsigned start)
@@ -52,11 +52,11 @@ class Source {
 
 struct Tally {
   int count = 0, held = 0, below = 0, above = 0;
-  int none = 0, decided = 0;           // not predicted; decided by the pilot itself
+  int none = 0, decided = 0;           // points without prediction; points decided by the pilot
   std::vector<double> ratios, widths;  // expected over actual seeds; upper over lower end
 };
 
-// The verdict of a campaign that has so many seeds.
+// Returns the verdict of a point with `seeds` seeds.
 Verdict verdict_at(int seeds, std::vector<std::optional<Outcome>>& outcomes, const Target& target,
                    int maximum, Source& source) {
   while (std::ssize(outcomes) < seeds) outcomes.emplace_back(source.draw());
@@ -101,7 +101,7 @@ void simulate(const Case& about, Source& source, Tally& tally) {
 
 constexpr int points_together = 12;
 
-// Seeds of all points, as their plan says and as they came.
+// Compares the planned seeds of all points together with the actual ones.
 void simulate_together(int pilot, double tolerance, unsigned start, Tally& tally) {
   constexpr int maximum = 4000;
   std::mt19937_64 random(start);

@@ -1,4 +1,4 @@
-// How good predictions were, in words.
+// Tests the texts that compare predictions with the actual numbers.
 #include <gtest/gtest.h>
 
 #include "runner/reports/status.h"
@@ -15,7 +15,7 @@ PointSummary summary(bool decided, int wanted, int wanted_ended, double seconds)
   return point;
 }
 
-// Expected 16 (8 .. 35) seeds of 2.5 s.
+// Adds a prediction of 16 (8 .. 35) seeds of 2.5 s.
 PointSummary predicted(PointSummary point) {
   point.prediction = StoredPrediction{4, {16, 8, 35}, 2.5, "2026-01-01T00:00:00Z"};
   return point;
@@ -24,16 +24,16 @@ PointSummary predicted(PointSummary point) {
 TEST(PredictionText, ComparesDecidedPointsWithWhatWasExpected) {
   EXPECT_EQ(predictions_text({predicted(summary(true, 20, 20, 48)), predicted(summary(true, 44, 44, 100)),
                               summary(true, 1000, 1000, 1000)}),
-            "predictions: 1 of 2 within their range; 64 seeds (32 expected), processor time 2 min (80 s "
-            "expected)\n");
+            "predictions: 1 of 2 points within their range; 64 seeds (32 expected), processor time 2 min (80 "
+            "s expected)\n");
 }
 
 TEST(PredictionText, OpenPointsHaveSeedsToCome) {
   EXPECT_EQ(predictions_text({predicted(summary(false, 10, 4, 10))}),
-            "predicted for 1 open: 12 seeds and 30 s of processor time to come\n");
-  // More than was expected: as many as the next stop test lacks.
+            "predicted for the open points (1): 12 seeds and 30 s of processor time to come\n");
+  // More seeds are wanted than were predicted: those that the next stop test lacks are to come.
   EXPECT_EQ(predictions_text({predicted(summary(false, 22, 18, 45))}),
-            "predicted for 1 open: 4 seeds and 10 s of processor time to come\n");
+            "predicted for the open points (1): 4 seeds and 10 s of processor time to come\n");
 }
 
 TEST(PredictionText, IsNothingWithoutPredictions) {

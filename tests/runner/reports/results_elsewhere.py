@@ -1,5 +1,7 @@
-"""Carries out what schema/README.md says about results in the sqlite3 shell: usage results_elsewhere.py PECLET
-FAKE_ENGINE."""
+"""results_elsewhere.py PECLET FAKE_ENGINE
+
+Runs the commands of schema/README.md that read results in the sqlite3 shell.
+"""
 import csv
 import io
 import json
@@ -49,7 +51,7 @@ class Elsewhere(unittest.TestCase):
             self.assertEqual([row[0] for row in rows], [point["label"] for point in points])
             for (label, seeds, verdict, mean), point in zip(rows, points):
                 self.assertEqual((int(seeds), verdict), (point["stop_test"]["seeds"], "converged"))
-                # Of the same seeds, summed in another order.
+                # Both means are of the same seeds, summed in different order.
                 self.assertAlmostEqual(float(mean) / point["quantities"][OBSERVABLE]["mean"], 1, places=12, msg=label)
 
 

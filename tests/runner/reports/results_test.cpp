@@ -1,4 +1,4 @@
-// Results as lines for other programs.
+// Tests the lines of results for other programs.
 #include <gtest/gtest.h>
 
 #include "contract/errors.h"

@@ -1,4 +1,4 @@
-// What `status` says of points in every state.
+// Tests the status of points in every state.
 #include "runner/reports/status.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 namespace peclet::runner {
 namespace {
 
-// 9, 10, 11, 10: mean 10, sample variance 2/3, standard error sqrt(2/3/4) = 0.408.
+// Adds the values 9, 10, 11, 10 for unit 1: mean 10, sample variance 2/3, standard error sqrt(2/3/4) = 0.408.
 void four_values(StoredCampaign& campaign, int point, double unit) {
   const double values[] = {-1, 0, 1, 0};
   for (int seed = 0; seed < 4; ++seed) campaign.complete(point, seed, 10 + unit * values[seed]);
@@ -22,7 +22,7 @@ void four_values(StoredCampaign& campaign, int point, double unit) {
 
 TEST(Status, AnOpenPointShowsTheSeedsOfItsNextStopTestAndAProvisionalMean) {
   StoredCampaign campaign(1, 4, 20);
-  four_values(campaign, 0, 1);  // half-width 3.777 * 0.408 = 15 %: goes on to 5 seeds
+  four_values(campaign, 0, 1);  // half-width 3.777 * 0.408 = 15 %: the next stop test is at 5 seeds
   const CampaignStatus status = read_status(campaign.database());
   const PointSummary& point = status.points.at(0);
   EXPECT_FALSE(point.decided);
@@ -53,8 +53,8 @@ TEST(Status, SaysWhySeedsWereLost) {
   EXPECT_TRUE(says(text, "lost: 2 packing (seeds 0, 1)\n    too near (seed 0)\n")) << text;
 }
 
-// Four of eight seeds have ended after 4 s each. One has made 10 of its 100 steps in 120 s. The mean by
-// Kaplan and Meier is (4 * 4 + 1200) / 5.
+// Four of eight seeds have ended after 4 s each. One has made 10 of its 100 steps in 120 s. Kaplan and
+// Meier's mean is (4 * 4 + 1200) / 5.
 TEST(Status, TheForecastKnowsOfSeedsThatRun) {
   StoredCampaign campaign(1, 8, 20);
   for (int seed = 0; seed < 4; ++seed) campaign.complete(0, seed, 10 + 0.001 * seed);
@@ -69,11 +69,12 @@ TEST(Status, TheForecastKnowsOfSeedsThatRun) {
   ASSERT_EQ(status.forecasts.at(0).unfinished.size(), 1U);
   const double mean = (4 * 4 + 1200) / 5.0;
   ASSERT_TRUE(status.to_go);
-  EXPECT_NEAR(status.to_go->likely, 3.5 * mean / 2, 1e-6);  // four seeds of two workers, half of one is done
+  EXPECT_NEAR(status.to_go->likely, 3.5 * mean / 2, 1e-6);  // two workers, four seeds, one half done
   EXPECT_EQ(status_json(status)["seconds_to_go"], to_json(status.to_go));
-  EXPECT_TRUE(says(workers_text(status), "process 4711 runs it: " + to_string(*status.to_go) + "\n"));
+  EXPECT_TRUE(
+      says(workers_text(status), "process 4711 runs the campaign: " + to_string(*status.to_go) + "\n"));
   status.owner.reset();
-  EXPECT_TRUE(says(workers_text(status), "`peclet run` goes on: " + to_string(*status.to_go) + "\n"));
+  EXPECT_TRUE(says(workers_text(status), "`peclet run` continues it: " + to_string(*status.to_go) + "\n"));
 }
 
 TEST(Status, SeedsOfARunThatWasKilledAreNotCalledRunning) {
@@ -109,7 +110,7 @@ TEST(Status, ACancelledPointThatHadConvergedIsASuccess) {
   EXPECT_EQ(verdict_text(status.points.at(0)), "converged, cancelled");
 }
 
-// Under a given stress what jams has a value, else it is lost: both have jammed.
+// A jammed seed has a value under a given stress; otherwise it is lost. Both count as jammed.
 TEST(Status, SaysWhatHasJammedHoweverItEnded) {
   StoredCampaign campaign(4, 4, 20);
   const auto stand_still = [](Json& result) { result["ending"]["cause"] = "jammed"; };
@@ -135,7 +136,7 @@ TEST(Status, SaysWhatHasJammedHoweverItEnded) {
   }
 }
 
-// Of eight values 10.25 +- 1: half-width 2.76 / sqrt(7) at 95.9 %, 10 %; the eighth to tenth change little.
+// Eight values 10.25 +- 1 have a half-width of t(7) / sqrt(7), about 9 %: not within 5 %, but within 50 %.
 TEST(Status, ALoosenedToleranceSaysThatAnEarlierStopTestDecides) {
   StoredCampaign campaign(1, 8, 20);
   for (int seed = 0; seed < 13; ++seed) campaign.complete(0, seed, seed % 2 == 0 ? 9 : 11);
@@ -146,17 +147,16 @@ TEST(Status, ALoosenedToleranceSaysThatAnEarlierStopTestDecides) {
   ASSERT_EQ(status.points.at(0).stop_tests.back().seeds, 8);
   EXPECT_EQ(verdict_text(status.points.at(0)), "converged, earlier-stop-test");
   EXPECT_TRUE(says(status_table(status),
-                   "point=0: the stop test at 8 seeds decides, the first within the present target; \"all "
-                   "seeds\" has all 13 "
-                   "that have ended\n"))
+                   "point=0: the stop test at 8 seeds decides, because it is the first within the present "
+                   "target; \"all seeds\" has all 13 that have ended\n"))
       << status_table(status);
   EXPECT_TRUE(
       says(explain(campaign.database(), campaign.directory(), ""),
            "it decides as if the target had always been this one, and leaves out later seeds; all 13"));
 }
 
-// Ten values 10.25 +- 0.5 at 95 % with a maximum of 10: half-width 2.262 * 0.5 / 3 = 0.377, 3.7 %; the spread
-// may be sqrt(9 / chi2(9)) = 1.65 times as large (p = 5 %), for which 10 seeds would not do.
+// Ten values 10.25 +- 0.5 with a maximum of 10 have a half-width of 2.262 * 0.5 / 3 = 0.377, or 3.7 %. The
+// true spread may be sqrt(9 / chi2(9)) = 1.65 times as large (p = 5 %), and 10 seeds would not suffice.
 TEST(Status, APointThatTheMaximumIsTooNearToIsMarked) {
   StoredCampaign campaign(1, 10, 10);
   for (int seed = 0; seed < 10; ++seed) campaign.complete(0, seed, seed % 2 == 0 ? 9.5 : 10.5);
@@ -200,7 +200,7 @@ TEST(Status, SeedsThatRepeatEachOtherAreNamed) {
                    "seeds 2, 3 ended in the same state as an earlier one"));
 }
 
-// 8 of 8 leave 1 - 0.0205^(1/8) = 0.385 at the level of several stop tests, 1 - 0.05 (1 - 1.4 / 8) = 95.9 %.
+// 8 ones in 8 have the half-width 1 - 0.0205^(1/8) = 0.385 at the level 1 - 0.05 (1 - 1.4 / 8) = 95.9 %.
 TEST(Status, ASharesIntervalIsThatOfAShare) {
   Campaign plain = plain_campaign(1, 8, 100, 0.05);
   plain.target = {"flowing", Tolerance::absolute(0.1), 0.95};
@@ -217,7 +217,7 @@ TEST(Status, ASharesIntervalIsThatOfAShare) {
   EXPECT_EQ(verdict_text(status.points.at(0)), "open, no-transient-test");
   EXPECT_NEAR(stop_test["half_width"].get<double>(), 1 - std::pow((1 - 0.95875) / 2, 1 / 8.0), 1e-9);
   const std::string text = explain(campaign.database(), campaign.directory(), "");
-  // So that the forecast knows what more of them are worth.
+  // The forecast needs the kind of the values.
   ASSERT_EQ(status.forecasts.at(0).all_seeds.size(), 1U);
   EXPECT_EQ(status.forecasts.at(0).all_seeds[0].values, Estimate::Values::share);
   EXPECT_TRUE(says(text, "interval: 0.616 .. 1 of the share (Clopper and Pearson)")) << text;
@@ -301,7 +301,7 @@ TEST(Status, SeedsThatWarnOfTheirResultsAreCountedWithTheVerdict) {
   EXPECT_EQ(status_json(status)["points"][0]["flags"], (Json{{"timestep", 4}}));
 }
 
-// The estimate without the control variate is 10.00 ± 0.15: explain has it.
+// The estimate without control variate, 10.00 ± 0.15, is only in `explain`.
 TEST(Status, TheTableHasTheEstimateThatDecidesAlone) {
   StoredCampaign campaign(1, 4, 20);
   four_values(campaign, 0, 0.1);
@@ -309,7 +309,7 @@ TEST(Status, TheTableHasTheEstimateThatDecidesAlone) {
   EXPECT_NE(table.find("10.25 ± 0.15 (1.5 %)  converged\n"), std::string::npos) << table;
 }
 
-// 20 points with 800 seeds each. A third of a second is what a person does not notice.
+// 20 points have 800 seeds each. A user does not notice a third of a second.
 TEST(Status, OfSixteenThousandRealisationsTakesBelowAThirdOfASecond) {
   StoredCampaign campaign(20, 10, 800);
   campaign.database().connection().execute(
@@ -321,7 +321,7 @@ TEST(Status, OfSixteenThousandRealisationsTakesBelowAThirdOfASecond) {
       // The observable, and 40 numbers of other quantities.
       "INSERT INTO numbers SELECT point_id, seed, 1, '[' || (10 + seed % 7) || ',null,null,null' || "
       "replace(hex(zeroblob(40)), '00', ',1.2345678901234567') || ']' FROM realisation");
-  const std::clock_t start = std::clock();  // processor time: of what else the machine does this says nothing
+  const std::clock_t start = std::clock();  // processor time, which does not depend on other processes
   const std::string table = status_table(read_status(campaign.database()));
   const std::clock_t spent = std::clock() - start;
   EXPECT_NE(table.find("16000 seeds ended"), std::string::npos);

@@ -19,14 +19,14 @@ TEST(Bootstrap, OfManyNormalValuesIsStudents) {
   const double half_width = student_half_width(mean, 0.95);
   const Interval interval = bootstrap_t(values, 0.95).value();
   // A quantile of 4000 scores has a standard error of sqrt(0.025 * 0.975 / 4000) / 0.058 = 0.043 standard
-  // errors of the mean, 2 % of the half-width.
+  // errors of the mean, or 2 % of the half-width.
   EXPECT_NEAR(interval.low, mean.mean - half_width, 0.08 * half_width);
   EXPECT_NEAR(interval.high, mean.mean + half_width, 0.08 * half_width);
 }
 
 // 40 lognormal values of mean 1 and standard deviation 1 (skewness 4): Student's 95 % interval holds the mean
-// about 88 % of the time (0.95 - 0.247 * 16 / 40 by the expansion in cohorts.h), because too often it lies
-// too low. Of 500 samples each share has a standard error of 1.4 %; both intervals are of the same samples.
+// about 88 % of the time (0.95 - 0.247 * 16 / 40 by the expansion in cohorts.h), because it is often too low.
+// With 500 samples each share has a standard error of 1.4 %. Both intervals use the same samples.
 TEST(Bootstrap, HoldsTheMeanOfASkewedPopulationMoreOftenThanStudent) {
   const double s = std::sqrt(std::log(2.0));
   std::mt19937_64 random(2);
@@ -50,7 +50,7 @@ TEST(Bootstrap, OfEqualValuesAgainIsTheSame) {
   EXPECT_EQ(bootstrap_t(values, 0.9)->low, bootstrap_t(values, 0.9)->low);
 }
 
-// Of values this large not even the sum is a number; it must come to an end all the same.
+// The sum of such large values is not finite. The resampling must end all the same.
 TEST(Bootstrap, OfNumbersBeyondAllSumsComesToAnEnd) {
   constexpr double largest = std::numeric_limits<double>::max();
   const std::vector<double> values{largest, -largest, largest, -largest, 0, 1, largest};

@@ -1,9 +1,9 @@
 // budget_study [CAMPAIGNS]: what a budget of processor time buys with either allocation, as a CSV table.
 //
-// Each row simulates that many campaigns of twelve points through the scheduler and the stop rule of
-// `peclet run --budget`, with workers that take as long as the population says. Coefficients of variation and
-// costs of the points are log-uniform, drawn anew for each campaign and the same for both allocations: 0.05
-// to 0.5, and 1 to the ratio of the row. Sums are over the points; one that nobody has looked at counts as 1.
+// Each row simulates CAMPAIGNS campaigns of twelve points with the scheduler and the stop rule of
+// `peclet run --budget`; the run times follow the population. Each campaign draws new coefficients of
+// variation and costs of the points, log-uniform between 0.05 and 0.5, and 1 and the ratio of the row. Both
+// allocations have the same ones. Sums are over the points; a point without a stop test counts as 1.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -22,15 +22,15 @@ constexpr int points = 12, minimum = 8, maximum = 2000;
 constexpr double tolerance = 0.03, confidence = 0.95;
 
 struct Case {
-  double cost_ratio = 1;  // between the dearest seed and the cheapest
-  double share = 0.5;     // of the processor time that all points would need
+  double cost_ratio = 1;  // largest over smallest cost of a seed
+  double share = 0.5;     // budget over the processor time that all points need
   int workers = 1;
 };
 
 struct Population {
   double spread = 0;   // of values around 1
   double seconds = 0;  // of a seed
-  double work = 0;     // what the runner takes them to be in proportion to before it has measured them
+  double work = 0;     // the runner assumes costs proportional to it before it has measured them
 };
 
 std::vector<Population> draw_populations(const Case& about, std::mt19937_64& random) {
@@ -45,7 +45,7 @@ std::vector<Population> draw_populations(const Case& about, std::mt19937_64& ran
   return all;
 }
 
-// At which the true spreads would meet the tolerance.
+// Returns the processor time in which the true spreads would meet the tolerance.
 double needed_seconds(const std::vector<Population>& populations) {
   double seconds = 0;
   for (const Population& of : populations) {
@@ -54,8 +54,8 @@ double needed_seconds(const std::vector<Population>& populations) {
   return seconds;
 }
 
-// What the summed relative half-width would be if the true spreads were known: look by stop test to whom it
-// helps most. Requires a budget for all first stop tests.
+// Returns the sum of the relative half-widths if the true spreads were known: each further stop test goes to
+// the point that it helps most. Requires a budget for all first stop tests.
 double width_of_known_spreads(const std::vector<Population>& populations, double budget) {
   const double level = adjusted_confidence(confidence, minimum, maximum);
   const std::vector<int> schedule = stop_test_schedule(minimum, maximum);
@@ -91,11 +91,11 @@ struct Running {
   friend bool operator>(const Running& a, const Running& b) { return a.end > b.end; }
 };
 
-// Sums over the points; one that nobody has looked at counts as 1.
+// Sums over the points; a point without a stop test counts as 1.
 struct Outlay {
   double width = 0;  // relative half-widths of the last stop tests
   double error = 0;  // |mean - 1|
-  double spent = 0;  // shares of the budget
+  double spent = 0;  // spent time over the budget
   double unseen = 0;
 
   void add(const Scheduler& scheduler) {

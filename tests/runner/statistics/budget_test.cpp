@@ -1,4 +1,4 @@
-// Runs that may spend only so much processor time.
+// Tests runs with a budget of processor time.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 constexpr double seconds_per_hour = 3600;
 
 struct Spending {
-  double total = 0, largest = 0;  // seconds of all results, and of the dearest one
+  double total = 0, largest = 0;  // seconds of all results, and of the most expensive one
 };
 
 Spending spending(const CampaignOnDisk& campaign) {
@@ -30,7 +30,7 @@ Spending spending(const CampaignOnDisk& campaign) {
   return spent;
 }
 
-// A tolerance that takes more seeds than any budget here pays for.
+// Sets a tolerance that needs more seeds than any budget here pays for.
 void ask_for_much(CampaignOnDisk& campaign) {
   campaign.document["target"]["relative_tolerance"] = 0.001;
   campaign.document["realisations"] = {{"minimum", 8}, {"maximum", 10'000}};
@@ -41,7 +41,7 @@ TEST(Budget, IsKeptToWithinOneSeedOfEveryWorker) {
   CampaignOnDisk campaign(3);
   ask_for_much(campaign);
   double before = 0;
-  for (const double budget : {2.0, 1.5}) {  // the second run goes on
+  for (const double budget : {2.0, 1.5}) {  // the second run continues the first one
     campaign.options.budget_hours = budget / seconds_per_hour;
     EXPECT_EQ(campaign.run(seeds_of_a_tenth_of_a_second), 75) << campaign.log();
     const Spending spent = spending(campaign);
@@ -52,7 +52,7 @@ TEST(Budget, IsKeptToWithinOneSeedOfEveryWorker) {
   EXPECT_NE(campaign.log().find("of processor time spent"), std::string::npos) << campaign.log();
   Database database = campaign.reader();
   for (const PointSummary& point : summarise_points(database, database.campaign().target)) {
-    EXPECT_LE(point.counts.terminal(), point.wanted) << "nobody runs ahead";
+    EXPECT_LE(point.counts.terminal(), point.wanted) << "no point runs ahead";
   }
 }
 
@@ -65,8 +65,8 @@ TEST(Budget, ThatIsLargeEnoughIsARunAsAnyOther) {
   EXPECT_EQ(campaign.answer(), unlimited.answer());
 }
 
-// Each attempt hangs for the 0.5 s of its lease and gives nothing. The first leaves 0.3 s, and as nobody
-// knows yet what a seed costs, there is a second; then nothing is left.
+// Each attempt hangs for the 0.5 s of its lease and gives no result. The first one leaves 0.3 s. The cost of
+// a seed is still unknown, so there is a second attempt; then no budget is left.
 TEST(Budget, AttemptsWithoutAResultAreSpent) {
   CampaignOnDisk campaign(3);
   campaign.options.workers = 1;
@@ -77,7 +77,8 @@ TEST(Budget, AttemptsWithoutAResultAreSpent) {
   EXPECT_LE(campaign.count("SELECT count(*) FROM attempt"), 2);
 }
 
-// Four values 10 +- 0.1: t(3) = 3.777 at 1 - 0.05 (1 - 1.4 / 4) = 96.75 %, 3.777 * 0.01 / sqrt(3) = 2.2 %.
+// At 1 - 0.05 (1 - 1.4 / 4) = 96.75 %, t(3) = 3.777. For four values 10 +- 0.1 the relative half-width is
+// 3.777 * 0.01 / sqrt(3) = 2.2 %.
 TEST(Budget, SaysWhatItBought) {
   Scheduler scheduler(std::vector<std::vector<std::optional<Outcome>>>(2), {"relative_viscosity", 0.05, 0.95},
                       4, 40);
@@ -93,9 +94,9 @@ TEST(Budget, SaysWhatItBought) {
   EXPECT_EQ(after.unknown, 1);
   EXPECT_EQ(
       budget_text(1800, 3600, before, after),
-      "budget: 0.5 of 1 h of processor time spent; relative half-widths of the 2 points' last stop tests sum "
-      "to 1.02 (1 of them without an interval, each counted as 1),\n        before to 2 (2 of them without "
-      "an interval, each counted as 1)\n");
+      "budget: 0.5 of 1 h of processor time spent; at the last stop tests the relative half-widths of 2 "
+      "points sum to 1.02 (1 of them without an interval, each counted as 1),\n        before the run to 2 "
+      "(2 of them without an interval, each counted as 1)\n");
 }
 
 TEST(Budget, SumsNoRelativeErrorsWhereTheToleranceIsAbsolute) {
@@ -105,8 +106,8 @@ TEST(Budget, SumsNoRelativeErrorsWhereTheToleranceIsAbsolute) {
             "budget: 0.5 of 1 h of processor time spent\n");
 }
 
-// Of two points with equal costs one has a half-width of 20 % and the other a mean of 0, of which nothing is
-// known: it is worth more, although the tolerance is far from 20 %.
+// Two points have equal costs: one has a half-width of 20 %, the other a mean of 0 without an interval. The
+// latter goes first, although 20 % is far from the tolerance.
 TEST(Budget, AMeanWithoutAnIntervalComesBeforeOneThatIsPoorlyKnown) {
   std::vector<std::optional<Outcome>> poor, unknown(4, Outcome{});
   for (int seed = 0; seed < 4; ++seed) poor.emplace_back(Outcome{{seed % 2 == 0 ? 9.0 : 11}});
@@ -118,7 +119,8 @@ TEST(Budget, AMeanWithoutAnIntervalComesBeforeOneThatIsPoorlyKnown) {
   EXPECT_EQ(scheduler.next_within(1000)->point, 1);
 }
 
-// Normal populations of mean 1 whose spreads and costs differ by a factor of ten, one worker.
+// Returns the summed error after a run with one worker, for normal populations of mean 1 whose spreads and
+// costs differ by a factor of ten.
 double error_bought(Allocation allocation, double budget, unsigned start) {
   const std::vector<double> spreads{0.05, 0.5, 0.05, 0.5}, seconds{1, 1, 10, 10};
   std::mt19937_64 random(start);
@@ -135,8 +137,7 @@ double error_bought(Allocation allocation, double budget, unsigned start) {
   return summed_error(scheduler).sum;
 }
 
-// 2000 s, where all points would take some 12 000. Every pair of the 40 must go the same way: by chance alone
-// once in 10^12.
+// All points would take about 12 000 s. By chance, all 40 pairs have the same order once in 10^12 cases.
 TEST(Budget, SteepestFirstBuysASmallerErrorThanLongestFirst) {
   for (unsigned start = 0; start < 40; ++start) {
     EXPECT_LT(error_bought(Allocation::steepest_first, 2000, start),

@@ -1,4 +1,4 @@
-// The stop rule: what a stop test says, when there is one, and that nothing but the outcomes matters.
+// Tests when stop tests happen, their results, and that these depend on the outcomes alone.
 #include "runner/statistics/cohorts.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,8 @@ const Target five_percent{"relative_viscosity", 0.05, 0.95};
 Outcome value(double number, double control = 0) { return {{number, control}}; }
 Outcome lost() { return {}; }
 
-// Alternating mean - spread, mean + spread: the standard error of an even number n is spread / sqrt(n - 1).
+// Returns values mean - spread, mean + spread in turn. For even n their standard error is
+// spread / sqrt(n - 1).
 Outcomes alternating(int count, double mean, double spread) {
   Outcomes outcomes;
   for (int seed = 0; seed < count; ++seed) {
@@ -30,7 +31,7 @@ Outcomes alternating(int count, double mean, double spread) {
 
 Outcomes all_lost(int count) { return Outcomes(static_cast<std::size_t>(count), lost()); }
 
-TEST(Cohorts, LooksAreAtTheMinimumThenAQuarterMoreRoundedUpAndLastAtTheMaximum) {
+TEST(Cohorts, StopTestsAreAtTheMinimumThenAQuarterMoreRoundedUpAndLastAtTheMaximum) {
   EXPECT_EQ(stop_test_schedule(10, 800),
             (std::vector<int>{10,  13,  17,  22,  28,  35,  44,  55,  69,  87,
                               109, 137, 172, 215, 269, 337, 422, 528, 660, 800}));
@@ -59,7 +60,7 @@ TEST(Cohorts, APointConvergesAtTheFirstStopTestWithinTheTolerance) {
   EXPECT_NEAR(stop_tests[0].half_width, 0.2354, 1e-4);
 }
 
-TEST(Cohorts, APointGoesOnUntilALookIsWithinTheTolerance) {
+TEST(Cohorts, APointGoesOnUntilAStopTestIsWithinTheTolerance) {
   // Half-width over mean 2.354 * 0.1 / 3 = 7.8 % at n = 10; with 22 seeds 2.154 * 0.1 / sqrt(21) = 4.7 %.
   const std::vector<StopTest> stop_tests = replay_stop_tests(alternating(22, 10, 1), five_percent, 10, 100);
   ASSERT_EQ(stop_tests.size(), 4U);  // 10, 13, 17, 22
@@ -126,7 +127,7 @@ TEST(Cohorts, TheControlVariateIsAddedSeedBySeed) {
   EXPECT_DOUBLE_EQ(stop_test.estimate.standard_error, 0.25 / 3);
 }
 
-// Student's interval of ten values 10 +- s at 95.7 % is 2.354 s / 3: s = 1 gives 7.8 %, s = 0.1 0.78 %.
+// Student's half-width of ten values 10 +- s at 95.7 % is 2.354 s / 3: 7.8 % for s = 1, 0.78 % for s = 0.1.
 TEST(Cohorts, TheControlledEstimateDecides) {
   Outcomes narrow, wide;
   for (int seed = 0; seed < 10; ++seed) {
@@ -142,9 +143,9 @@ TEST(Cohorts, TheControlledEstimateDecides) {
   EXPECT_NEAR(relative_width(open), 0.0785, 1e-4);
 }
 
-// Ten values 10 +- 0.6: w = 2.354 * 0.6 / 30 = 4.708 % at 95.7 %. With chi^2_0.05(9) = 3.325 (f = 2.707) up
-// to 10 (4.708 / 5)^2 2.707 = 24.0 seeds may be needed.
-TEST(Cohorts, ALookWithinTheToleranceConvergesAndIsMarkedNearTheMaximum) {
+// For ten values 10 +- 0.6, w = 2.354 * 0.6 / 30 = 4.708 % at 95.7 %. With chi^2_0.05(9) = 3.325 (f = 2.707),
+// up to 10 (4.708 / 5)^2 2.707 = 24.0 seeds may be needed.
+TEST(Cohorts, AStopTestWithinTheToleranceConvergesAndIsMarkedNearTheMaximum) {
   const Outcomes outcomes = alternating(10, 10, 0.6);
   for (const int maximum : {11, 23, 25, 1000}) {
     const StopTest stop_test = replay_stop_tests(outcomes, five_percent, 10, maximum).at(0);
@@ -172,7 +173,7 @@ TEST(Cohorts, TheLastStopTestIsConvergedOrCapped) {
   EXPECT_TRUE(last(0.41).near_maximum);
 }
 
-// Values 0 +- s, of which a share of the mean says nothing; h = 2.354 s / 3.
+// A share of the mean is meaningless for values 0 +- s. Their half-width is 2.354 s / 3.
 TEST(Cohorts, AnAbsoluteToleranceNeedsNoMean) {
   const Target half{"first_normal_stress_difference", Tolerance::absolute(0.5), 0.95};
   const Outcomes outcomes = alternating(10, 0, 0.6);
@@ -183,8 +184,8 @@ TEST(Cohorts, AnAbsoluteToleranceNeedsNoMean) {
   EXPECT_EQ(replay_stop_tests(alternating(10, 0, 0.65), half, 10, 32).at(0).verdict, Verdict::more);
 }
 
-// Values of every kind of population, at every stop test of the schedule and for tolerances of both kinds,
-// from those that the first stop test meets to those that no stop test does.
+// Compares all stop tests of several populations, for relative and absolute tolerances from those that the
+// first stop test meets to those that none meets.
 TEST(Cohorts, NoIntervalDependsOnTheTolerance) {
   const auto alone = [](double tolerance) { return Target{"x", tolerance, 0.95}; };
   std::vector<Target> targets;
@@ -219,7 +220,7 @@ TEST(Cohorts, NoIntervalDependsOnTheTolerance) {
   }
 }
 
-// t(15, 0.975) = 2.131 (NIST): 0.2, 0.5 and 1 over sqrt(15) times it.
+// The half-width is t(15, 0.975) = 2.131 (NIST) times spread / sqrt(15).
 TEST(Cohorts, TheIntervalOfASingleStopTestIsStudents) {
   for (const double spread : {0.2, 0.5, 1.0}) {
     for (const double tolerance : {0.06, 0.1, 1.0}) {
@@ -242,7 +243,7 @@ TEST(Cohorts, EqualValuesHaveNoIntervalAndNeverConverge) {
       EXPECT_EQ(without_interval(stop_tests.back(), target), (std::vector<std::string>{target.observable}));
     }
   }
-  // A sum of the same numbers in another order.
+  // Sums of the same numbers in different order.
   Outcomes rounded(20, value(0.1 + 0.2 + 0.3));
   rounded[3] = value(0.3 + 0.2 + 0.1);
   EXPECT_NE(rounded[3]->value, rounded[2]->value);
@@ -253,7 +254,7 @@ TEST(Cohorts, EqualValuesHaveNoIntervalAndNeverConverge) {
   const StopTest stop_test = replay_stop_tests(controlled, five_percent, 8, 8).at(0);
   EXPECT_TRUE(std::isnan(stop_test.controlled_half_width));
   EXPECT_GT(stop_test.half_width, 0);
-  // Two seeds, and all but one equal, have a spread.
+  // Two different values have a spread, and so have values of which one differs.
   EXPECT_GT(replay_stop_tests({value(10), value(10.1)}, five_percent, 2, 2).at(0).half_width, 0);
   Outcomes but_one(8, value(10));
   but_one[5] = value(10.1);
@@ -266,8 +267,8 @@ Outcome share(int number) {
   return outcome;
 }
 
-// 8 of 8: from 0.025^(1/8) = 0.6306 to 1; none of 10: up to 1 - 0.025^(1/10) = 0.3085. A tolerance of 0.1
-// takes 36 equal values, 0.025^(1/36) = 0.9026, with a single stop test.
+// The interval of 8 ones in 8 is 0.025^(1/8) = 0.6306 to 1; that of 0 in 10 is 0 to 1 - 0.025^(1/10) =
+// 0.3085. With a single stop test a tolerance of 0.1 needs 36 equal values: 0.025^(1/36) = 0.9026.
 TEST(Cohorts, SharesHaveAnIntervalOfShares) {
   const Target tenth{"flowing", Tolerance::absolute(0.1), 0.95};
   const auto single = [&](const Outcomes& outcomes) {
@@ -279,15 +280,14 @@ TEST(Cohorts, SharesHaveAnIntervalOfShares) {
   EXPECT_NEAR(single(Outcomes(10, share(0))).controlled_half_width, 0.3085, 1e-4);
   EXPECT_EQ(single(Outcomes(35, share(1))).verdict, Verdict::capped);
   EXPECT_EQ(single(Outcomes(36, share(1))).verdict, Verdict::converged);
-  // 5 of 10: .187 to .813 (Clopper and Pearson's chart); what nobody called a share is one when both are
-  // seen.
+  // 5 ones in 10: 0.187 to 0.813 (Clopper and Pearson's chart). Values of both 0 and 1 are always a share.
   Outcomes both;
   for (int seed = 0; seed < 10; ++seed) both.emplace_back(value(seed % 2));
   EXPECT_NEAR(single(both).controlled_half_width, 0.3129, 1e-4);
   EXPECT_TRUE(std::isnan(single(Outcomes(8, value(1))).controlled_half_width));
 }
 
-// 59 of 60: far from a normal population, which an interval of shares does not need.
+// 59 ones in 60 are far from a normal population, but the interval of a share does not need one.
 TEST(Cohorts, ASkewedShareIsNotMarked) {
   Outcomes outcomes(60, share(1));
   outcomes[7] = share(0);
@@ -295,12 +295,12 @@ TEST(Cohorts, ASkewedShareIsNotMarked) {
   const StopTest stop_test = replay_stop_tests(outcomes, tenth, 60, 60).at(0);
   EXPECT_GT(std::abs(stop_test.skewness), 5);
   EXPECT_FALSE(is_skewed(stop_test, 0.95));
-  // As it is stored.
+  // The stored estimate is recognised as a share.
   Estimate stored{stop_test.controlled.count, stop_test.controlled.mean, stop_test.controlled.standard_error};
   EXPECT_EQ(stored_values(stored, stop_test.controlled_half_width), Estimate::Values::share);
 }
 
-// The variance of 1e-13 +- 1e-14 differs from that of a share of 1e-13 by less than rounding errors of 1.
+// The variance of 1e-13 +- 1e-14 differs from that of a share of 1e-13 by less than the rounding of 1.
 TEST(Cohorts, SmallNumbersAreNoShares) {
   EXPECT_EQ(stored_values({8, 1e-13, 1e-14 / std::sqrt(7)}, 1e-14), Estimate::Values::spread);
   EXPECT_EQ(stored_values({8, 0.25, std::sqrt(0.25 * 0.75 / 7)}, 0.4), Estimate::Values::share);
@@ -331,8 +331,8 @@ TEST(Cohorts, IntervalsAreWidenedForRepeatedStopTestsOnly) {
               1e-4);
 }
 
-// Seven values of 0 and one of 1: g = 2.268 (moments 1/8 and 7/8). A normal population of 8 shows a skewness
-// of 0.752, three times less, and the loss is 2 * 0.0584 * 1.96 * 19.44 * 2.268^2 / (18 * 8) = 0.159.
+// Seven equal values and one other have g = 2.268 (moments 1/8 and 7/8). The standard deviation of g is 0.752
+// for 8 normal values. The loss is 2 * 0.0584 * 1.96 * 19.44 * 2.268^2 / (18 * 8) = 0.159.
 TEST(Cohorts, ASkewedPopulationIsNoticed) {
   Outcomes skewed(8, value(10)), even = alternating(8, 10, 1);
   skewed[5] = value(11);
@@ -341,7 +341,7 @@ TEST(Cohorts, ASkewedPopulationIsNoticed) {
   EXPECT_TRUE(is_skewed(stop_test, 0.95));
   EXPECT_FALSE(is_skewed(replay_stop_tests(even, five_percent, 8, 8).at(0), 0.95));
   EXPECT_FALSE(is_skewed(replay_stop_tests(Outcomes(8, value(10)), five_percent, 8, 8).at(0), 0.95));
-  // The same skewness among many values costs nothing: 0.247 * 2.268^2 / 200 = 0.6 %.
+  // Among many values this skewness costs little: 0.247 * 2.268^2 / 200 = 0.6 %.
   Outcomes many;
   for (int i = 0; i < 25; ++i) many.insert(many.end(), skewed.begin(), skewed.end());
   EXPECT_FALSE(is_skewed(replay_stop_tests(many, five_percent, 200, 200).at(0), 0.95));
@@ -356,9 +356,8 @@ TEST(Cohorts, OutcomesBeyondTheDecidingStopTestChangeNothing) {
   EXPECT_EQ(many[0].estimate.mean, few[0].estimate.mean);
 }
 
-// Seeds end in 200 random orders; after each one the stop tests are replayed from what is known by then.
-// Every order ends with the same stop tests, bit for bit, and no stop test is ever taken back or changed on
-// the way.
+// Seeds end in 200 random orders, and the stop tests are replayed after each seed. Every order ends with the
+// same stop tests, bit for bit, and no stop test is ever withdrawn or changed.
 TEST(Cohorts, AnswerDoesNotDependOnTheOrderOfArrival) {
   std::mt19937 random(7);
   std::normal_distribution<double> normal(10, 2.5);
@@ -373,24 +372,24 @@ TEST(Cohorts, AnswerDoesNotDependOnTheOrderOfArrival) {
   for (int trial = 0; trial < 200; ++trial) {
     std::shuffle(order.begin(), order.end(), random);
     Outcomes known;
-    std::size_t tests_of_all_seeds = 0;
+    std::size_t before = 0;
     for (const std::size_t seed : order) {
       known.resize(std::max(known.size(), seed + 1));
       known[seed] = truth[seed];
       const std::vector<StopTest> stop_tests = replay_stop_tests(known, five_percent, 10, 60);
-      ASSERT_GE(stop_tests.size(), tests_of_all_seeds);
-      tests_of_all_seeds = stop_tests.size();
+      ASSERT_GE(stop_tests.size(), before);
+      before = stop_tests.size();
       for (std::size_t i = 0; i < stop_tests.size(); ++i) {
         ASSERT_EQ(stop_tests[i].estimate.mean, expected[i].estimate.mean);
         ASSERT_EQ(stop_tests[i].half_width, expected[i].half_width);
         ASSERT_EQ(stop_tests[i].verdict, expected[i].verdict);
       }
     }
-    ASSERT_EQ(tests_of_all_seeds, expected.size());
+    ASSERT_EQ(before, expected.size());
   }
 }
 
-// Of a campaign of a fixed number of realisations.
+// The target of a campaign with a fixed number of realisations.
 const Target no_tolerance{"relative_viscosity", Tolerance::none(), 0.95};
 
 // scipy.stats.t.ppf(0.975, 4) = 2.776445; the values 1 to 5 have the variance 5/2.

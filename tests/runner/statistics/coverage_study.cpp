@@ -1,10 +1,9 @@
 // coverage_study [REPLICATIONS [FIRST_ROW]]: how often the intervals at which campaigns stop hold the true
 // mean, as a CSV table.
 //
-// Every row simulates that many points through the scheduler and the stop rule of `peclet run`, with workers
-// that take as long as the population says, three points at a time. Beside it stands what most scripts do:
-// look at what has come in whenever something comes in, and stop as soon as Student's interval is narrow
-// enough.
+// Each row simulates REPLICATIONS points with the scheduler and the stop rule of `peclet run`, three points
+// at a time; the run times follow the population. Beside it stands the naive rule of most scripts: test all
+// ended seeds whenever one ends, and stop as soon as Student's interval is narrow enough.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -27,11 +26,11 @@ constexpr int points_at_a_time = 3;
 
 enum class Shape { normal, lognormal, gamma };
 
-// Values of mean 1, and how long a realisation runs.
+// A population of values of mean 1, and of run times.
 struct Population {
   std::string name;
   Shape shape = Shape::normal;
-  bool slow_when_large = false;  // run time correlated with the value, 0.8
+  bool slow_when_large = false;  // logarithm of the run time correlates with the value by 0.8
 };
 
 struct Case {
@@ -40,7 +39,7 @@ struct Case {
   double tolerance = 0.05;
   double needed = 20;  // seeds at which the true spread would just meet the tolerance
   int workers = 1;
-  bool plain = false;  // every interval at the level of the confidence, for comparison
+  bool plain = false;  // every interval at the level of the confidence, without adjustment
 };
 
 struct Realisation {
@@ -61,7 +60,7 @@ class Source {
                          : population_.shape == Shape::gamma   ? gamma_(random_)
                                                                : 1 + spread_ * z;
     const double own = normal_(random_);
-    // Lognormal run times whose logarithm has the standard deviation 0.5.
+    // The logarithm of the run time has the standard deviation 0.5.
     return {value, std::exp(0.5 * (population_.slow_when_large ? 0.8 * z + 0.6 * own : own))};
   }
 
@@ -85,7 +84,7 @@ struct Tally {
   }
 };
 
-// A clock of its own, so that the order in which realisations end is that of their run times.
+// A realisation on a simulated clock, so that realisations end in the order of their run times.
 struct Running {
   double end = 0;
   SeedId id;
@@ -94,13 +93,13 @@ struct Running {
 };
 using Clock = std::priority_queue<Running, std::vector<Running>, std::greater<>>;
 
-// Far away: maximum_study is about what a near one does.
+// Returns a maximum that is far away; maximum_study is about near ones.
 int most_seeds(const Case& about) {
   return static_cast<int>(20 * std::max(about.needed, 1.0 * about.minimum));
 }
 
 void simulate_campaign(const Case& about, Source& source, Tally& tally) {
-  // What adjusted_confidence() makes the plain level again.
+  // adjusted_confidence() then returns the confidence itself.
   const double asked = about.plain ? 1 - (1 - confidence) / (1 - 1.4 / about.minimum) : confidence;
   const Target target{"relative_viscosity", about.tolerance, asked};
   Scheduler scheduler(std::vector<std::vector<std::optional<Outcome>>>(points_at_a_time), target,
@@ -129,7 +128,7 @@ void simulate_campaign(const Case& about, Source& source, Tally& tally) {
   }
 }
 
-// Whatever has ended, at every ending, with Student's plain interval.
+// Tests all ended seeds whenever one ends, with Student's interval at the confidence.
 void simulate_naive(const Case& about, Source& source, Tally& tally) {
   Clock clock;
   std::vector<double> values;

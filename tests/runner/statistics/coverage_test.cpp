@@ -1,4 +1,4 @@
-// How often the interval that the stop rule reports holds the true mean.
+// Tests how often the interval that the stop rule reports holds the true mean.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,12 +12,12 @@ namespace {
 
 struct Coverage {
   double covered;          // share of intervals that hold the true mean
-  double mean_stop_tests;  // until the decision
-  double bias;             // of the reported mean, in units of its own error
+  double mean_stop_tests;  // number of stop tests up to the deciding one
+  double bias;             // of the reported mean, in its standard errors
 };
 
-// Seeds of a distribution of mean 1, looked at as a campaign does. `hidden` is the standard deviation of what
-// a control variate adds to each value and takes away again.
+// Simulates points with seeds of a distribution of mean 1. A control variate of standard deviation `hidden`
+// is subtracted from each value, so that value + control has the distribution.
 template <class Distribution>
 Coverage simulate(int replications, Distribution seeds, double tolerance, unsigned start, double hidden = 0) {
   std::mt19937_64 random(start);
@@ -50,24 +50,22 @@ std::normal_distribution<double> normal_of(double spread) {
   return std::normal_distribution<double>(1, spread);
 }
 
-// A spread of 20 % and a tolerance of 7 % need about 34 seeds, so that the decision may fall at any of the
-// looks at 10, 13, 17, 22, 28, 35, 44 ... Stopping when the interval happens to be narrow costs coverage:
-// about 93.7 % is what is known of this rule instead of 95 %. Of 4000 replications the share has a standard
-// error of 0.38 %, so a rule with 93.7 % leaves the band below by chance less than once in 10^5 (4.5 and 6
-// standard errors); the seed is fixed.
+// A spread of 20 % and a tolerance of 7 % need about 34 seeds, so any of the stop tests at 10, 13, 17, 22,
+// 28, 35, 44 ... may decide. Stopping when the interval happens to be narrow costs coverage: this rule is
+// known to have about 93.7 % instead of 95 %. With 4000 replications the share has a standard error of 0.38
+// %, so the band is left by chance less than once in 10^5 (4.5 and 6 standard errors). The seed is fixed.
 TEST(Coverage, OfTheStopRuleStaysNearItsNominalValue) {
   const Coverage coverage = simulate(4000, normal_of(0.20), 0.07, 20260101);
   EXPECT_GT(coverage.mean_stop_tests, 4);
   EXPECT_GT(coverage.covered, 0.92);
   EXPECT_LT(coverage.covered, 0.96);
-  // The tolerance is relative, so cohorts whose mean is too large stop a little earlier: a bias of about 0.05
-  // standard errors. The mean of 4000 such scores has a standard error of 0.017, so chance is 9 of these
-  // away.
+  // The tolerance is relative, so cohorts with a too large mean stop a little earlier: a bias of about 0.05
+  // standard errors. The mean of 4000 scores has a standard error of 0.017; the bound is 9 of these away.
   EXPECT_LT(std::abs(coverage.bias), 0.2);
 }
 
-// The same with a control variate that hides two thirds of the variance: as many stop tests, the same
-// coverage.
+// The plain values have three times the variance of value + control. Stop tests and coverage must be those of
+// value + control.
 TEST(Coverage, OfTheControlledEstimateIsTheSame) {
   const Coverage coverage = simulate(4000, normal_of(0.20), 0.07, 20260103, 0.20 * std::sqrt(2));
   EXPECT_GT(coverage.mean_stop_tests, 4);
@@ -77,17 +75,17 @@ TEST(Coverage, OfTheControlledEstimateIsTheSame) {
   EXPECT_LT(std::abs(coverage.bias), 0.2);
 }
 
-// With a tolerance that the first stop test meets always, the rule is Student's interval, which is exact: 95
-// % with a standard error of 0.34 %; outside the band by chance less than once in 10^4 (4 standard errors).
+// If the first stop test always meets the tolerance, the rule is Student's interval, which is exact: 95 %
+// with a standard error of 0.34 %. The band is left by chance less than once in 10^4 (4 standard errors).
 TEST(Coverage, WithoutRepeatedStopTestsIsStudents) {
   const Coverage coverage = simulate(4000, normal_of(0.02), 0.20, 20260102);
   EXPECT_EQ(coverage.mean_stop_tests, 1);
   EXPECT_NEAR(coverage.covered, 0.95, 0.0138);
 }
 
-// Means of squares, as zero_shear_viscosity is one: a gamma population of the spread of its seeds, and twice
-// that as its skewness. Campaigns that lack large values stop early, so that coverage may fall below that of
-// normal seeds; the same band leaves room for 1 % of it, and lets 93 % pass by 2.6 standard errors of 0.38 %.
+// Means of squares, such as zero_shear_viscosity, have a gamma population whose skewness is twice its spread.
+// Campaigns that lack large values stop early, so the coverage may be below that of normal seeds. The band
+// allows a loss of 1 %: a coverage of 93 % passes by 2.6 standard errors of 0.38 %.
 TEST(Coverage, OfMeansOfSquaresStaysNearItsNominalValueToo) {
   const Coverage coverage = simulate(4000, gamma_of(0.20), 0.07, 20260106);
   EXPECT_GT(coverage.mean_stop_tests, 4);
@@ -96,8 +94,7 @@ TEST(Coverage, OfMeansOfSquaresStaysNearItsNominalValueToo) {
   EXPECT_LT(std::abs(coverage.bias), 0.25);
 }
 
-// Of points that need `needed` seeds and are allowed `maximum`: how often each verdict is given, and how
-// often its interval holds the mean.
+// The number of points with a verdict, and of those whose interval holds the mean.
 struct OfVerdict {
   int count = 0, covered = 0;
   double share(int of) const { return static_cast<double>(count) / of; }
@@ -128,9 +125,8 @@ Verdicts simulate_near_maximum(int replications, double needed, int maximum, uns
   return verdicts;
 }
 
-// Of 4000 replications a coverage of 95 % has a standard error of 0.34 %. All points together hold the mean
-// as often as they say, however near the maximum is: those that are capped make up for those that stopped
-// early.
+// With 4000 replications a coverage of 95 % has a standard error of 0.34 %. The intervals of all points
+// together hold the mean as often as they say: capped points balance those that stopped early.
 TEST(Coverage, NearTheMaximumHoldsOfAllPointsTogether) {
   constexpr int replications = 4000;
   for (const auto& [needed, maximum] : {std::pair(6.0, 20), {10.0, 20}, {15.0, 20}, {25.0, 50}, {30.0, 20}}) {
@@ -139,7 +135,7 @@ TEST(Coverage, NearTheMaximumHoldsOfAllPointsTogether) {
   }
 }
 
-// What has converged is a selection of small spreads: at most 2 Phi(1.96 sqrt(20 / 30)) - 1 = 89 % of the
+// Converged points are a selection of small spreads: at most 2 Phi(1.96 sqrt(20 / 30)) - 1 = 89 % of the
 // intervals within the tolerance hold the mean.
 TEST(Coverage, NextToNothingConvergesUnmarkedThatNeedsMoreSeedsThanAreAllowed) {
   constexpr int replications = 4000;

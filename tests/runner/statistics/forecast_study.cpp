@@ -1,8 +1,8 @@
-// forecast_study [CAMPAIGNS]: how often the forecast of the time to go holds it, as a CSV table.
+// forecast_study [CAMPAIGNS]: how often the forecast of the time to go holds the true one, as a CSV table.
 //
-// Campaigns of twelve points to 3 %, whose coefficients of variation are log-uniform between 0.05 and 0.3 and
-// whose costs differ by a factor of up to 100, go through the scheduler with workers on a machine whose speed
-// wanders between 1 and 1/2. At shares of the time that each takes in the end the forecast is asked for.
+// The scheduler runs campaigns of twelve points to 3 % on a machine whose speed wanders between 1 and 1/2.
+// Their coefficients of variation are log-uniform between 0.05 and 0.3, and their costs differ by a factor of
+// up to 100. Forecasts are evaluated at given shares of the total time of each campaign.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,8 +22,8 @@ namespace {
 constexpr int points = 12, minimum = 8, maximum = 4000;
 const Target three_percent{"relative_viscosity", 0.03, 0.95};
 
-// The logarithm of the speed swings between 0 and -log 2 by three waves whose periods lie between a tenth of
-// a campaign's time and twice that, with random phases.
+// A machine whose speed wanders. The logarithm of the speed oscillates between 0 and -log 2, as the sum of
+// three waves with random phases. Their periods lie between a tenth of a campaign's time and twice that time.
 class Machine {
  public:
   Machine(bool wanders, double time, std::mt19937_64& random) : wanders_(wanders) {
@@ -64,7 +64,7 @@ struct Running {
   friend bool operator>(const Running& a, const Running& b) { return a.end > b.end; }
 };
 
-// The forecasts, some two hundred, and the time at which the campaign was through.
+// The forecasts of a campaign, about two hundred, and the time at which it ended.
 struct History {
   std::vector<Told> told;
   double end = 0;
@@ -82,7 +82,7 @@ History run(const Case& about, double expected_time, unsigned start) {
   Scheduler scheduler(std::vector<std::vector<std::optional<Outcome>>>(points), three_percent, minimum,
                       maximum);
   std::vector<Cost> costs(points);
-  std::vector<Running> clock;  // a heap, the first one to end on top
+  std::vector<Running> clock;  // a heap, with the first seed to end on top
   History history;
   double now = 0, ask_at = 0;
   while (!scheduler.finished()) {
@@ -148,7 +148,7 @@ constexpr double shares[] = {0.1, 0.3, 0.5, 0.7, 0.9, 0.97};
 
 void print_rows(const Case& about, int campaigns, unsigned start) {
   std::vector<Tally> tallies(std::size(shares));
-  double expected_time = 4000.0 / about.workers;  // until the first campaign is through
+  double expected_time = 4000.0 / about.workers;  // for the first campaign
   for (int campaign = 0; campaign < campaigns; ++campaign) {
     const History history = run(about, expected_time, start + static_cast<unsigned>(campaign));
     expected_time = history.end;

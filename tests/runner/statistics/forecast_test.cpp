@@ -24,8 +24,7 @@ TEST(Forecast, ExpectsTheMinimumBeforeTheFirstStopTest) {
   EXPECT_EQ(expected_seeds({}, ten_percent, 10, 100), 10);
 }
 
-// Half-width 2 where 1 is tolerated: four times the seeds, at the first stop test that has them (of 10, 13,
-// 17, 22, 28, 35, 44), if the maximum is far.
+// The half-width is 2 and may be 1, which needs 40 seeds: the stop test at 44, of 10, 13, 17, 22, 28, 35, 44.
 TEST(Forecast, FourTimesTheSeedsHalveTheInterval) {
   EXPECT_EQ(expected_seeds({stop_test(10, 10, 2)}, ten_percent, 10, 1000), 44);
 }
@@ -47,8 +46,7 @@ PointForecast five_of_six_seconds() {
   return point;
 }
 
-// Five more of 6 s by two workers, in three rounds; the machine's allowance either way, since costs and
-// number are sure.
+// Two workers run five more seeds of 6 s in three rounds. Only the speed of the machine is uncertain.
 TEST(Forecast, EqualCostsShareTheWorkers) {
   const std::optional<TimeToGo> left = time_to_go({five_of_six_seconds()}, ten_percent, 10, 100, 2);
   ASSERT_TRUE(left);
@@ -69,8 +67,8 @@ TEST(Forecast, ScatteredCostsWidenTheRange) {
   EXPECT_GT(left->upper, sure->upper);
 }
 
-// Kaplan and Meier by hand: of three seeds two have ended after 2 and 4 s, one runs for 3 s. The share of
-// those that last longer is 1 until 2 s, then 2/3 until 4 s.
+// Kaplan and Meier's estimate by hand: two seeds have ended after 2 and 4 s, one has run for 3 s. The share
+// of seeds that last longer is 1 until 2 s, then 2/3 until 4 s.
 TEST(Forecast, ARunningSeedCountsAsLongerThanItHasTaken) {
   Cost ended;
   ended.add(4);
@@ -79,8 +77,8 @@ TEST(Forecast, ARunningSeedCountsAsLongerThanItHasTaken) {
   EXPECT_DOUBLE_EQ(mean_cost(ended, {}), 3);
 }
 
-// Two of eight seeds have jammed after a minute. The six others have run for two minutes, a thirteenth of
-// their steps: 26 minutes are what three quarters of the seeds take.
+// Two of eight seeds have jammed after a minute. The six others have made a thirteenth of their steps in two
+// minutes, so three quarters of the seeds take 26 minutes.
 TEST(Forecast, SeedsThatEndFirstDoNotSpeakForTheOthers) {
   PointForecast point;
   for (int i = 0; i < 2; ++i) point.cost.add(60);
@@ -91,12 +89,12 @@ TEST(Forecast, SeedsThatEndFirstDoNotSpeakForTheOthers) {
   EXPECT_DOUBLE_EQ(mean_cost(point.cost, point.unfinished), mean);
   const std::optional<TimeToGo> left = time_to_go({point}, ten_percent, 10, 100, 6);
   ASSERT_TRUE(left);
-  EXPECT_NEAR(left->likely, 1.5 * mean, 1e-9);  // eight more of six workers in two rounds, half of one done
+  EXPECT_NEAR(left->likely, 1.5 * mean, 1e-9);  // eight more seeds in two rounds, half of one round done
   EXPECT_LE(left->lower, 1560);
   EXPECT_GE(left->upper, 2 * 1560);
 }
 
-// Where the rate is not known yet, a seed that runs takes as long as the others that run.
+// A running seed without a known rate counts as long as the longest running one.
 TEST(Forecast, ASeedWithoutARateIsTakenForAsLongAsTheOthers) {
   Cost ended;
   ended.add(10);
@@ -104,7 +102,7 @@ TEST(Forecast, ASeedWithoutARateIsTakenForAsLongAsTheOthers) {
   EXPECT_DOUBLE_EQ(mean_cost(ended, {{20, {}}}), 15);
 }
 
-// What runs is not done: a worker that has just been given the last seed needs the time of a seed.
+// A running seed is not done: the last seed may have just begun.
 TEST(Forecast, SeedsThatRunAreStillToCome) {
   PointForecast point = five_of_six_seconds();
   point.ended = 9;
@@ -116,8 +114,8 @@ TEST(Forecast, SeedsThatRunAreStillToCome) {
   EXPECT_GE(left->upper, 6);
 }
 
-// Ten values with a half-width of some 16 % where 10 % are tolerated: 26 seeds are likely; the variance of
-// ten values may be 9 / 4.17 = 2.2 times as large, or 9 / 14.7 = 0.61 times.
+// Ten values have a half-width of about 16 %, and 10 % is the tolerance: 26 seeds are likely. The true
+// variance may be 9 / 4.17 = 2.2 or 9 / 14.7 = 0.61 times that of the ten values.
 TEST(Forecast, TheNumberOfSeedsIsNotKnownBetterThanTheSpread) {
   PointForecast point;
   for (int i = 0; i < 10; ++i) point.cost.add(6);

@@ -1,7 +1,7 @@
-// maximum_study [REPLICATIONS]: what each verdict is worth, as a CSV table.
+// maximum_study [REPLICATIONS]: how reliable each verdict is, as a CSV table.
 //
-// Every row simulates that many points by the stop rule of `peclet run`: how often each verdict is given, and
-// how often the interval that it comes with holds the mean. "Early" is what has converged without the mark
+// Each row simulates REPLICATIONS points by the stop rule of `peclet run`. It has the frequency of each
+// verdict, and how often its interval holds the mean. "Early" points have converged without the mark
 // near-maximum.
 #include <fmt/format.h>
 
@@ -32,7 +32,7 @@ struct Case {
 
 Outcome outcome_of(double value, double control = 0) { return {{value, control}}; }
 
-// Normal values of mean 1 that need so many seeds.
+// Returns normal values of mean 1 that need `needed` seeds.
 Population normal(double needed, double tolerance) {
   const double spread = spread_that_needs(needed, tolerance);
   return {"normal", 1, [spread](std::mt19937_64& random) {
@@ -40,7 +40,7 @@ Population normal(double needed, double tolerance) {
           }};
 }
 
-// A control variate takes half of the variance away.
+// Returns normal values whose control variate removes half of the variance.
 Population controlled(double needed, double tolerance) {
   const double spread = spread_that_needs(needed, tolerance);
   return {"normal with control variate", 1, [spread](std::mt19937_64& random) {
@@ -55,14 +55,14 @@ Population gamma(double needed, double tolerance) {
   return {"gamma", 1, [spread](std::mt19937_64& random) { return outcome_of(gamma_of(spread)(random)); }};
 }
 
-// Coefficient of variation 1 and skewness 2.
+// Returns values of coefficient of variation 1 and skewness 2.
 Population exponential() {
   return {"exponential", 1, [](std::mt19937_64& random) {
             return outcome_of(std::exponential_distribution<double>(1)(random));
           }};
 }
 
-// Coefficient of variation 1 and skewness 4.
+// Returns values of coefficient of variation 1 and skewness 4.
 Population lognormal() {
   return {"lognormal", 1, [](std::mt19937_64& random) {
             return outcome_of(lognormal_of(std::normal_distribution<double>(0, 1)(random), 1));
@@ -77,7 +77,7 @@ Population share(double p) {
           }};
 }
 
-// A rate of spread 10 % that is 0 where the packing has jammed.
+// Returns rates of spread 10 % that are 0 in jammed packings.
 Population jamming(double jams) {
   return {fmt::format("jams {:g}", jams), 1 - jams, [jams](std::mt19937_64& random) {
             const bool jammed = std::bernoulli_distribution(jams)(random);

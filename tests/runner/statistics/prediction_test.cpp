@@ -1,4 +1,4 @@
-// How many seeds a point will need, from its first ones.
+// Tests the prediction of the number of seeds of a point from its first seeds.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ using Outcomes = std::vector<std::optional<Outcome>>;
 
 Target target(double tolerance) { return {"relative_viscosity", tolerance, 0.95}; }
 
-// Mean 1 and this sample standard deviation, whatever the even number of values.
+// Returns values of mean 1 with this sample standard deviation, for even `count`.
 Outcomes values(int count, double deviation) {
   const double step = deviation * std::sqrt((count - 1.0) / count);
   Outcomes outcomes;
@@ -26,10 +26,10 @@ Outcomes values(int count, double deviation) {
 
 struct Record {
   double held = 0;          // share of the campaigns whose deciding stop test lay within the range
-  double median_ratio = 0;  // of expected to actual seeds
+  double median_ratio = 0;  // of expected over actual seeds
 };
 
-// Pilots of normal populations of mean 1, and what the stop rule makes of the same seeds and those after.
+// Predicts points with normal seeds of mean 1 from their pilots, and runs them by the stop rule.
 Record judge(int campaigns, int pilot, double spread, double tolerance, unsigned start) {
   constexpr int minimum = 8, maximum = 4000;
   std::mt19937_64 random(start);
@@ -38,17 +38,17 @@ Record judge(int campaigns, int pilot, double spread, double tolerance, unsigned
   std::vector<double> ratios;
   while (std::ssize(ratios) < campaigns) {
     Outcomes outcomes;
-    const auto looks_at = [&](int seeds) {
+    const auto stop_tests_up_to = [&](int seeds) {
       while (std::ssize(outcomes) < seeds) outcomes.emplace_back(Outcome{{value(random)}});
       return replay_stop_tests(outcomes, target(tolerance), minimum, maximum);
     };
-    const std::vector<StopTest> first = looks_at(pilot);
+    const std::vector<StopTest> first = stop_tests_up_to(pilot);
     if (!first.empty() && first.back().verdict != Verdict::more) continue;
     const Prediction made = predict(outcomes, target(tolerance), minimum, maximum);
     int actual = 0;
     for (const int seeds : stop_test_schedule(minimum, maximum)) {
       actual = seeds;
-      if (looks_at(seeds).back().verdict != Verdict::more) break;
+      if (stop_tests_up_to(seeds).back().verdict != Verdict::more) break;
     }
     held += made.seeds.lower <= actual && actual <= made.seeds.upper ? 1 : 0;
     ratios.push_back(static_cast<double>(made.seeds.likely) / actual);
@@ -57,10 +57,11 @@ Record judge(int campaigns, int pilot, double spread, double tolerance, unsigned
   return {static_cast<double>(held) / campaigns, ratios[static_cast<std::size_t>(campaigns / 2)]};
 }
 
-// Some 43 seeds are needed. Of 600 shares that are 95 % or, as seeds come in looks, a little more, one lies
-// below 91 % with a probability of 1e-5 (4.5 standard errors); a range that holds everything would fail, too:
-// 3 misses or fewer where 20 to 30 are due have 3e-6. The logarithm of the ratio scatters by about 1 with a
-// pilot of four, its median by 0.05: outside 0.8 .. 1.25 by chance once in 10^5. The seeds are fixed.
+// About 43 seeds are needed. The true share is 95 %, or a little more because stop tests are discrete. With
+// 600 campaigns the share is below 91 % with a probability of 1e-5 (4.5 standard errors). A range that always
+// holds would fail, too: 3 misses or fewer instead of 20 to 30 have a probability of 3e-6. With a pilot of
+// four the logarithm of the ratio scatters by about 1, and its median by 0.05: it is outside 0.8 .. 1.25 by
+// chance once in 10^5. The seeds are fixed.
 TEST(Prediction, RangeHoldsTheDecidingStopTestNineteenTimesInTwenty) {
   for (const int pilot : {4, 8}) {
     const Record record = judge(600, pilot, 0.2, 0.06, 20260201);
@@ -71,8 +72,8 @@ TEST(Prediction, RangeHoldsTheDecidingStopTestNineteenTimesInTwenty) {
   }
 }
 
-// (1.96 * 0.2 / 0.03)^2 = 171 seeds, between the stop tests at 155 and 194. The variance of 40 values is
-// known to 2 sqrt(2 / 39) = 45 %: 94 to 248 seeds, one stop test wider for the stop tests.
+// (1.96 * 0.2 / 0.03)^2 = 171 seeds are between the stop tests at 155 and 194. The variance of 40 values is
+// known to 2 sqrt(2 / 39) = 45 %, which gives 94 to 248 seeds. The bounds are one stop test wider.
 TEST(Prediction, ManyPilotSeedsGiveTheSeedsOfTheFormula) {
   const Prediction made = predict(values(40, 0.2), target(0.03), 40, 2000);
   EXPECT_GE(made.seeds.likely, 155);
@@ -120,7 +121,7 @@ TEST(Prediction, WhereHalfTheSeedsAreLostTwiceAsManyAreNeeded) {
   EXPECT_NEAR(half.seeds.likely / all, 2, 0.5);  // one stop test more or less
 }
 
-// scipy.stats.chi2.ppf([0.025, 0.5, 0.975], 3) = 0.2158, 2.366, 9.348; of 30 degrees 16.79 and 46.98.
+// scipy.stats.chi2.ppf([0.025, 0.5, 0.975], 3) = 0.2158, 2.366, 9.348; for 30 degrees 16.79 and 46.98.
 TEST(Prediction, VariancesAreThoseThatTheDegreesOfFreedomLeaveOpen) {
   EXPECT_NEAR(truth_at(3, 0.025).variance, 3 / 9.348, 1e-4);
   EXPECT_NEAR(truth_at(3, 0.5).variance, 3 / 2.366, 1e-3);
@@ -130,9 +131,8 @@ TEST(Prediction, VariancesAreThoseThatTheDegreesOfFreedomLeaveOpen) {
   EXPECT_EQ(truth_at(std::nan(""), 0.975).variance, 1);
 }
 
-// scipy.stats.beta.ppf(0.025, 8.5, 0.5) = 0.7384: with 0.74 of the seeds flowing some 300 are needed for a
-// half-width of 0.05; if all do, the interval of Clopper and Pearson is as narrow with 0.025^(1/n) = 0.95,
-// n = 72.
+// scipy.stats.beta.ppf(0.025, 8.5, 0.5) = 0.7384: if 0.74 of the seeds flow, a half-width of 0.05 needs about
+// 300 seeds. If all flow, Clopper and Pearson's interval is narrow enough with 0.025^(1/n) = 0.95, n = 72.
 TEST(Prediction, AShareMayBeFartherFromCertainThanTheSeedsSay) {
   Outcome one{{1}};
   one.is_share = true;
@@ -156,12 +156,12 @@ TEST(Prediction, AFixedNumberOfSeedsIsSure) {
 
 TEST(Prediction, SaysWhyThereIsNone) {
   Outcomes one = values(4, 0.2);
-  one[1].reset();  // what ended after it says nothing of a cohort in seed order
+  one[1].reset();  // seeds after it do not count
   EXPECT_EQ(predict(one, target(0.03), 8, 100).obstacle, Obstacle::too_few);
   const Prediction lost = predict(Outcomes(4, Outcome{}), target(0.03), 8, 100);
   EXPECT_EQ(lost.obstacle, Obstacle::lost);
   EXPECT_EQ(obstacle_text(lost), "4 of 4 seeds are lost");
-  // Two standard errors of four values are their deviation.
+  // Two standard errors of four values are their standard deviation.
   EXPECT_EQ(predict(values(4, 0.99), target(0.03), 8, 100).obstacle, Obstacle::none);
   EXPECT_EQ(predict(values(4, 1.01), target(0.03), 8, 100).obstacle, Obstacle::near_zero);
 }

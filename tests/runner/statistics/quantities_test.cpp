@@ -45,7 +45,7 @@ TEST(Quantities, OfEarlierEnginesHadOneControlVariate) {
   EXPECT_EQ(control_of(result, "relative_viscosity"), std::nullopt);
 }
 
-TEST(Quantities, TheNameOfAViscosityMeansNothingToWhoeverDescribes) {
+TEST(Quantities, TheNameOfAViscosityMeansNothingInADescribedResult) {
   Json result = {{"mean", {{"relative_viscosity", 3.5}, {"control_variates", {{"brownian_pairwise", 0.1}}}}}};
   result["quantities"] = {{"relative_viscosity", {{"symbol", "eta"}, {"unit", "1"}, {"estimator", "mean"}}}};
   EXPECT_EQ(control_of(result, "relative_viscosity"), std::nullopt);

@@ -1,4 +1,4 @@
-// Means and errors of quantities, against formulas.
+// Compares means and errors of quantities with formulas.
 #include "runner/statistics/quantity_estimates.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ QuantityEstimates of(const std::vector<Json>& means) {
   return estimates;
 }
 
-// N = 1, 2 and D = 1, 3: R = 3 / 4; without one seed 2 / 3 or 1, of mean 5 / 6, each 1 / 6 from it:
+// N = 1, 2 and D = 1, 3 give R = 3 / 4. Without one seed it is 2 / 3 or 1, each 1 / 6 from the mean 5 / 6:
 // s^2 = 1 / 2 (1 / 36 + 1 / 36).
 TEST(RatioOfMeans, HasTheErrorOfTheJackknife) {
   const Estimate found = ratio_of_means({1, 2}, {1, 3});
@@ -38,7 +38,7 @@ TEST(RatioOfMeans, HasTheErrorOfTheJackknife) {
   EXPECT_NEAR(found.standard_error, 1.0 / 6, 1e-15);
 }
 
-// Numerators 2, 4, 9 of mean 5 have the sample variance 13; over a denominator that is always 4 the standard
+// Numerators 2, 4, 9 of mean 5 have the sample variance 13. With the constant denominator 4 the standard
 // error is sqrt(13 / 3) / 4.
 TEST(RatioOfMeans, OverAConstantHasTheErrorOfAMean) {
   const Estimate found = ratio_of_means({2, 4, 9}, {4, 4, 4});
@@ -58,9 +58,9 @@ TEST(RatioOfMeans, OfNothingIsNone) {
   EXPECT_TRUE(std::isnan(ratio_of_means({3}, {2}).standard_error));
 }
 
-// N = 2 D + e with D of mean 1: R - 2 = mean of e / mean of D, of variance var(e) / n to first order. 400
-// sets of 100 seeds: the error's mean square and the spread of the ratios are within 25 % of 0.09 / 100, 3.5
-// standard deviations of a variance from 400 values.
+// For N = 2 D + e with D of mean 1, R - 2 = mean of e / mean of D has the variance var(e) / n to first order.
+// For 400 sets of 100 seeds, the mean square of the error and the spread of the ratios must be within 25 % of
+// 0.09 / 100: 3.5 standard deviations of a variance from 400 values.
 TEST(RatioOfMeans, HasTheSpreadThatItsErrorSays) {
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal;
@@ -80,7 +80,7 @@ TEST(RatioOfMeans, HasTheSpreadThatItsErrorSays) {
   EXPECT_NEAR(error, 0.09 / seeds, 0.25 * 0.09 / seeds);
 }
 
-// 10, 12, 14 with controls 1.5, 0.5, 1 of mean 1: controlled 10.5, 11.5, 14 of mean 12, sample variance
+// Values 10, 12, 14 with controls 1.5, 0.5, 1 of mean 1 give 10.5, 11.5, 14 of mean 12 and sample variance
 // (2.25 + 0.25 + 4) / 2.
 TEST(QuantityEstimates, AreOfTheControlledValueWithThePlainOneBesideIt) {
   const QuantityEstimates estimates = of({{{"pressure", 10}, {"noise", 1.5}, {"g", nullptr}},
@@ -148,7 +148,7 @@ TEST(QuantityEstimates, OfAnotherControlAreUnlikeWhateverComesFirst) {
   EXPECT_EQ(first_described.json(0.95)["pressure"]["unlike"], 1);
 }
 
-// As in a stop test: value + 0. The control has the mean 1.
+// The second value counts as value + 0, as in a stop test. The control has the mean 1.
 TEST(QuantityEstimates, AValueWithoutItsControlCountsAsItIs) {
   const QuantityEstimates estimates = of({{{"pressure", 10}, {"noise", 3}, {"g", nullptr}},
                                           {{"pressure", 20}, {"noise", nullptr}, {"g", nullptr}}});
@@ -157,7 +157,7 @@ TEST(QuantityEstimates, AValueWithoutItsControlCountsAsItIs) {
   EXPECT_EQ(pressure["mean"], 16);
 }
 
-// Stress 3 over the rates of four seeds. What has jammed has a stress and next to no rate, of either sign.
+// Returns the result of a seed under a given stress. A jammed seed has a stress and almost no rate.
 Json under_stress(double rate, bool has_jammed, double stress = 3) {
   const Json ratio{{"symbol", "eta"},
                    {"unit", "1"},
@@ -184,7 +184,7 @@ TEST(QuantityEstimates, OfAPointThatHasJammedHaveNoViscosity) {
     EXPECT_NEAR(viscosity(1, rate, 3).get<double>(), 4 * 3.0 / 3, 1e-6);
     EXPECT_NEAR(viscosity(0, rate, 3).get<double>(), 3, 1e-12);
   }
-  EXPECT_NEAR(viscosity(3, 0, 0).get<double>(), 3, 1e-12);  // of those that flow
+  EXPECT_NEAR(viscosity(3, 0, 0).get<double>(), 3, 1e-12);  // of the seed that flows
   EXPECT_TRUE(viscosity(4, 0, 0).is_null());
 }
 

@@ -1,4 +1,4 @@
-// Points whose seeds end as a test says, and the scheduler that gives them out.
+// Helps tests of the scheduler with outcomes of known spread.
 #pragma once
 
 #include <optional>
@@ -13,13 +13,13 @@ using Outcomes = std::vector<std::vector<std::optional<Outcome>>>;
 
 inline Outcome value(double number) { return {{number, 0}}; }
 
-// Two values so far apart, or so near, that no reasonable interval could decide otherwise at 5 %.
+// Values that are so far apart, or so near, that the stop test at 5 % is certain.
 inline Outcome scattered(int seed) { return value(seed % 2 == 0 ? 1 : 19); }
 inline Outcome steady_outcome(int seed) { return value(seed % 2 == 0 ? 10 : 10.01); }
 
 inline const Target five_percent{"relative_viscosity", 0.05, 0.95};
 
-// As many seeds of values mean - spread and mean + spread in turn.
+// Returns `count` seeds with the values mean - spread and mean + spread in turn.
 inline std::vector<std::optional<Outcome>> alternating(int count, double mean, double spread) {
   std::vector<std::optional<Outcome>> outcomes;
   outcomes.reserve(static_cast<std::size_t>(count));
@@ -28,7 +28,7 @@ inline std::vector<std::optional<Outcome>> alternating(int count, double mean, d
   return outcomes;
 }
 
-// Looks at 4, 5, 7, 9, 12 ... (each the ceiling of 1.25 times the last).
+// Returns a scheduler with stop tests at 4, 5, 7, 9, 12 ... seeds (each the ceiling of 1.25 times the last).
 inline Scheduler fresh(int points, int minimum = 4, int maximum = 40) {
   return {Outcomes(static_cast<std::size_t>(points)), five_percent, minimum, maximum};
 }

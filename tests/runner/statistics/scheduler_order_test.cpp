@@ -1,4 +1,4 @@
-// Which seed of which point goes first, with a budget and without.
+// Tests which seed goes first, with a budget and without.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,8 +29,7 @@ TEST(Scheduler, ThePointFurthestBehindGoesFirst) {
   EXPECT_EQ(take(scheduler), (SeedId{0, 3}));
 }
 
-// Whatever the costs are: after 4 n seeds every one of n points has 4, after 4 n - k no point lacks more than
-// one of the round before; in each round they go by cost.
+// In each round of the first pass, every point gets one seed, in the order of the costs.
 TEST(Scheduler, FirstAllPointsGetSomeSeedsTheCheapestFirst) {
   std::vector<double> costs{0.2, 3, 0.5, 100};
   std::sort(costs.begin(), costs.end());
@@ -50,7 +49,7 @@ TEST(Scheduler, FirstAllPointsGetSomeSeedsTheCheapestFirst) {
   } while (std::next_permutation(costs.begin(), costs.end()));
 }
 
-// Each needs 8 seeds and has 4 after the pass.
+// Each point needs 8 seeds and has 4 after the first pass.
 TEST(Scheduler, ThePointWithMostCostToComeGoesFirst) {
   Scheduler scheduler = fresh(3, 8);
   for (int i = 0; i < 12; ++i) take(scheduler);
@@ -73,7 +72,7 @@ TEST(Scheduler, APointWithoutKnownCostIsTakenForAnAverageOne) {
 }
 
 TEST(Scheduler, ThePointThatNeedsMoreSeedsGoesFirst) {
-  // Half-widths of some 50 % and of 6 %: the first needs the maximum, the second a few more seeds.
+  // Half-widths of 6 % and about 50 %: the first point needs a few more seeds, the second the maximum.
   const Outcomes known{alternating(4, 10, 0.3), alternating(4, 10, 3)};
   Scheduler scheduler(known, five_percent, 4, 40);
   ASSERT_EQ(scheduler.stop_tests(0).back().verdict, Verdict::more);
@@ -82,8 +81,7 @@ TEST(Scheduler, ThePointThatNeedsMoreSeedsGoesFirst) {
 }
 
 TEST(Scheduler, UnderABudgetThePointWhoseErrorFallsFastestGoesFirst) {
-  // Relative widths of 6 and 60 % after 4 seeds: a seed of the second brings ten times as much, unless it
-  // costs twenty times as much.
+  // Half-widths of 6 and 60 % after 4 seeds: a seed of the second point has ten times the effect.
   const Outcomes known{alternating(4, 10, 0.3), alternating(4, 10, 3)};
   for (const double seconds : {1.0, 20.0}) {
     Scheduler scheduler(known, five_percent, 4, 40);
@@ -94,7 +92,7 @@ TEST(Scheduler, UnderABudgetThePointWhoseErrorFallsFastestGoesFirst) {
   }
 }
 
-TEST(Scheduler, UnderABudgetPointsThatNobodyHasSeenGoFirst) {
+TEST(Scheduler, UnderABudgetPointsWithoutAStopTestGoFirst) {
   const Outcomes known{alternating(4, 10, 3), {}};
   Scheduler scheduler(known, five_percent, 4, 40);
   scheduler.set_allocation(Allocation::steepest_first);
@@ -102,8 +100,8 @@ TEST(Scheduler, UnderABudgetPointsThatNobodyHasSeenGoFirst) {
   EXPECT_EQ(take(scheduler).point, 0);
 }
 
-TEST(Scheduler, UnderABudgetALookOnceBegunIsSeenThrough) {
-  // Widths of 11 and 10 %, with 4 seeds each: the second is not begun before the first has its fifth.
+TEST(Scheduler, UnderABudgetAStopTestOnceBegunIsCompleted) {
+  // Half-widths of about 9 % with 9 seeds each: the second point waits until the first one has its 12 seeds.
   const Outcomes known{alternating(9, 10, 1), alternating(9, 10, 0.95)};
   Scheduler scheduler(known, five_percent, 4, 40);
   scheduler.set_allocation(Allocation::steepest_first);
@@ -117,16 +115,16 @@ TEST(Scheduler, UnderABudgetOnlySeedsGoThatItPaysFor) {
   scheduler.set_allocation(Allocation::steepest_first);
   scheduler.set_cost(0, 10);
   scheduler.set_cost(1, 3);
-  EXPECT_EQ(scheduler.next_within(100), (SeedId{1, 0})) << "of points nobody has seen the cheapest";
+  EXPECT_EQ(scheduler.next_within(100), (SeedId{1, 0})) << "the cheapest of the points without a stop test";
   for (int seed = 0; seed < 4; ++seed) scheduler.begin({1, seed});
   EXPECT_EQ(scheduler.next_within(10), (SeedId{0, 0}));
   EXPECT_EQ(scheduler.next_within(9.9), std::nullopt);
   for (int seed = 0; seed < 4; ++seed) scheduler.begin({0, seed});
-  EXPECT_EQ(scheduler.next_within(100), std::nullopt) << "nobody runs ahead";
+  EXPECT_EQ(scheduler.next_within(100), std::nullopt) << "no point runs ahead";
 }
 
-TEST(Scheduler, UnderABudgetALookThatItPaysForAsAWholeGoesFirst) {
-  // Both at 9 seeds and wanting three more; the first is wider, but 20 s do not buy its stop test.
+TEST(Scheduler, UnderABudgetAStopTestThatItPaysForAsAWholeGoesFirst) {
+  // Both points have 9 seeds and need three more. The first one is wider, but its stop test costs 24 s.
   const Outcomes known{alternating(9, 10, 5), alternating(9, 10, 1)};
   Scheduler scheduler(known, five_percent, 4, 40);
   scheduler.set_allocation(Allocation::steepest_first);
@@ -134,15 +132,16 @@ TEST(Scheduler, UnderABudgetALookThatItPaysForAsAWholeGoesFirst) {
   scheduler.set_cost(1, 4);
   EXPECT_EQ(scheduler.next_within(24), (SeedId{0, 9}));
   EXPECT_EQ(scheduler.next_within(20), (SeedId{1, 9}));
-  EXPECT_EQ(scheduler.next_within(9), (SeedId{0, 9})) << "when it buys no stop test, seeds for later ones";
+  EXPECT_EQ(scheduler.next_within(9), (SeedId{0, 9}))
+      << "if it pays for no stop test, seeds of the wider one";
 }
 
 TEST(Scheduler, CostsThatAreNotKnownFollowFromTheWork) {
   Scheduler scheduler = fresh(3);
   for (int point = 0; point < 3; ++point) scheduler.set_work(point, std::pow(10, point));
   EXPECT_EQ(scheduler.expected_seconds({1, 1, 1}), 0);
-  EXPECT_EQ(scheduler.next_within(1e-6), (SeedId{0, 0})) << "nobody knows yet that it is too dear";
-  EXPECT_EQ(scheduler.next_within(0), std::nullopt) << "but nothing is left";
+  EXPECT_EQ(scheduler.next_within(1e-6), (SeedId{0, 0})) << "its cost is not known yet";
+  EXPECT_EQ(scheduler.next_within(0), std::nullopt) << "no budget is left";
   scheduler.set_cost(1, 5);
   EXPECT_DOUBLE_EQ(scheduler.expected_seconds({1, 0, 0}), 0.5);
   EXPECT_DOUBLE_EQ(scheduler.expected_seconds({0, 0, 1}), 50);
@@ -151,8 +150,8 @@ TEST(Scheduler, CostsThatAreNotKnownFollowFromTheWork) {
   EXPECT_EQ(scheduler.next_within(0.49), std::nullopt);
 }
 
-// A stop test at all points for each of them would be 4e10 looks, more than a test may take.
-TEST(Scheduler, WhatManyPointsHaveOutIsSeenAtOneStopTest) {
+// A visit to all points for each of them would be 4e10 visits, which takes too long for a test.
+TEST(Scheduler, TheCostOfRunningSeedsOfManyPointsTakesOnePass) {
   constexpr int many = 200'000;
   Scheduler scheduler(Outcomes(many), five_percent, 4, 4);
   for (int point = 0; point < many; ++point) scheduler.set_work(point, 1);

@@ -39,7 +39,7 @@ TEST(Scheduler, UnderACeilingOnlyTheFirstSeedsGo) {
   EXPECT_FALSE(scheduler.decided(0));
 }
 
-// A campaign of a fixed number of realisations: no seed is extra, and losses are not made up for.
+// With a fixed number of realisations no seed is extra, and lost seeds are not replaced.
 TEST(Scheduler, GivesEveryPointTheFixedNumberOfSeeds) {
   const Target target{"relative_viscosity", Tolerance::none(), 0.95};
   Scheduler scheduler(Outcomes(2), target, 6, 6);
@@ -61,7 +61,7 @@ TEST(Scheduler, PriorityGoesBeforeCost) {
   scheduler.set_cost(1, 100);
   scheduler.set_priority(0, 1);
   for (int seed = 0; seed < 4; ++seed) EXPECT_EQ(take(scheduler), (SeedId{0, seed}));
-  EXPECT_EQ(take(scheduler), (SeedId{1, 0})) << "nobody waits for extra seeds";
+  EXPECT_EQ(take(scheduler), (SeedId{1, 0})) << "needed seeds go before extra ones";
 }
 
 TEST(Scheduler, ACancelledPointGetsNoSeedsAndHoldsNothingUp) {
@@ -72,7 +72,7 @@ TEST(Scheduler, ACancelledPointGetsNoSeedsAndHoldsNothingUp) {
   EXPECT_EQ(take(scheduler).point, 1);
   for (int seed = 0; seed < 4; ++seed) scheduler.end({1, seed}, steady_outcome(seed));
   EXPECT_TRUE(scheduler.finished());
-  scheduler.end({0, 0}, steady_outcome(0));  // what was out may still come in
+  scheduler.end({0, 0}, steady_outcome(0));  // a running seed may still end
   scheduler.set_cancelled(0, false);
   EXPECT_FALSE(scheduler.finished());
   EXPECT_EQ(take(scheduler), (SeedId{0, 2}));
@@ -97,7 +97,7 @@ TEST(Scheduler, ASeedThatComesBackIsTheNextToGo) {
   EXPECT_EQ(take(scheduler), (SeedId{0, 1}));
 }
 
-TEST(Scheduler, LooksOnlyAtClosedCohorts) {
+TEST(Scheduler, TestsOnlyClosedCohorts) {
   Scheduler scheduler = fresh(1);
   for (int i = 0; i < 5; ++i) take(scheduler);
   for (const int seed : {4, 3, 2, 1}) {
@@ -160,7 +160,7 @@ TEST(Scheduler, ALowerMaximumLeavesLaterSeedsOutOfTheStopTests) {
   EXPECT_EQ(scheduler.stop_tests(0).back().seeds, 9);
 }
 
-TEST(Scheduler, ALateResultOfALostSeedIsLookedAtAgain) {
+TEST(Scheduler, ALateResultOfALostSeedRepeatsTheStopTest) {
   Scheduler scheduler = fresh(1);
   for (int seed = 0; seed < 4; ++seed) {
     take(scheduler);
@@ -171,7 +171,7 @@ TEST(Scheduler, ALateResultOfALostSeedIsLookedAtAgain) {
   EXPECT_EQ(scheduler.stop_tests(0).back().verdict, Verdict::converged);
 }
 
-// A list of its outcomes alone would take 80 GB.
+// Lists of all outcomes up to the maximum would take 80 GB.
 TEST(Scheduler, AMaximumThatNoPointComesNearCostsNothing) {
   constexpr int points = 2000, maximum = 1'000'000;
   Scheduler scheduler = fresh(points, 4, maximum);
@@ -184,8 +184,7 @@ TEST(Scheduler, AMaximumThatNoPointComesNearCostsNothing) {
   EXPECT_EQ(scheduler.wanted(points - 1), 5);
 }
 
-// What the scheduler answers of its only point, and the seeds that it would give out one after the other once
-// another one has ended.
+// Returns the answers of a scheduler on its only point, and the seeds that it gives out once `beyond` ends.
 std::vector<double> answers(Scheduler scheduler, int beyond) {
   const Estimate all_seeds = scheduler.all_seeds(0)[0];
   std::vector<double> all{scheduler.begun(0) + 0.0,       scheduler.all_ended(0) + 0.0,
@@ -201,9 +200,9 @@ std::vector<double> answers(Scheduler scheduler, int beyond) {
   return all;
 }
 
-// As it is where something has failed: seeds have ended in any order, the first one twice (its late result),
-// and one is out.
-TEST(Scheduler, MadeAgainFromWhatIsKnownItGoesOnAsTheOneThatHeardIt) {
+// After a failure the scheduler is created again from the database. Seeds have ended in any order, the first
+// one twice (its late result), and one runs.
+TEST(Scheduler, CreatedAgainFromTheOutcomesItContinuesAsTheFirstOne) {
   constexpr int out = 21;
   for (const std::vector<int>& order : {std::vector{0, 1, 2, 3, 4}, {4, 3, 2, 1, 0}, {2, 39, 0, 3, 1, 17}}) {
     Scheduler heard = fresh(1);
@@ -225,8 +224,8 @@ TEST(Scheduler, MadeAgainFromWhatIsKnownItGoesOnAsTheOneThatHeardIt) {
   }
 }
 
-// The promise of the whole runner, for the decision alone: workers in any number, ending in any order.
-TEST(Scheduler, LooksDoNotDependOnWorkersOrOrderOfArrival) {
+// Any number of workers, with seeds that end in any order, gives the same decisions.
+TEST(Scheduler, StopTestsDoNotDependOnWorkersOrOrderOfArrival) {
   const auto outcome = [](SeedId id) {
     std::mt19937 generator(static_cast<unsigned>(1000 * id.point + id.seed));
     if (generator() % 10 == 0) return Outcome{};

@@ -1,4 +1,4 @@
-// Targets of several observables: a point is done when each of them is known well enough.
+// Tests targets of several observables: a point is done when each of them meets its tolerance.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@ namespace {
 
 using Outcomes = std::vector<std::optional<Outcome>>;
 
-// The viscosity to 5 %, and another observable.
+// Returns the target of a viscosity to 5 % and another criterion.
 Target viscosity_and(const Criterion& other) {
   Target target{"viscosity", 0.05, 0.95};
   target.also = {other};
@@ -26,8 +26,8 @@ Tolerance relative_to(const std::string& measure, double share) {
   return tolerance;
 }
 
-// Viscosities 10 - 0.1, 10 + 0.1 in turn, others `mean` - `spread`, `mean` + `spread`: the standard error of
-// an even number n is the spread over sqrt(n - 1).
+// Returns seeds with the viscosity 10 - 0.1, 10 + 0.1 in turn, and another observable `mean` - `spread`,
+// `mean` + `spread`. For even n the standard error is the spread over sqrt(n - 1).
 Outcomes both_alternating(int count, double mean, double spread) {
   Outcomes outcomes;
   for (int seed = 0; seed < count; ++seed) {
@@ -61,7 +61,7 @@ TEST(SeveralTargets, TheLessFavourableVerdictCounts) {
   EXPECT_EQ(less_favourable(Verdict::failed, Verdict::more), Verdict::failed);
 }
 
-// At 95.7 % t(9) = 2.354 and t(27) = 2.126: half-widths of the other are 0.392 at 10 seeds, 0.205 at 28.
+// At 95.7 %, t(9) = 2.354 and t(27) = 2.126: the other half-width is 0.392 at 10 seeds and 0.205 at 28.
 TEST(SeveralTargets, APointGoesOnUntilAllAreWithinTheirTolerances) {
   const Target target = viscosity_and({"other", Tolerance::absolute(0.21)});
   const std::vector<StopTest> stop_tests = replay_stop_tests(both_alternating(100, 5, 0.5), target, 10, 1000);
@@ -79,7 +79,7 @@ TEST(SeveralTargets, APointGoesOnUntilAllAreWithinTheirTolerances) {
   EXPECT_DOUBLE_EQ(stop_tests.back().controlled.mean, 10);
 }
 
-// A mean of 0 has no relative width of its own; 5 % of the viscosity is 0.5, less its error of 0.0785.
+// A mean of 0 has no relative width of its own. 5 % of the viscosity is allowed, less its half-width 0.0785.
 TEST(SeveralTargets, OneMayBeMeasuredByAnother) {
   const Target target = viscosity_and({"N1", relative_to("viscosity", 0.05)});
   const std::vector<StopTest> stop_tests = replay_stop_tests(both_alternating(100, 0, 0.5), target, 10, 1000);
@@ -102,8 +102,8 @@ TEST(SeveralTargets, WhatOnlyMeasuresNeedsNoInterval) {
   EXPECT_TRUE(without_interval(stop_test, target).empty());
 }
 
-// Measures 10 +- s with a half-width of 2.354 s / 3, 5 at s = 6.37: 5 % of what they may be at least is 0.25.
-// The other's half-width is 2.354 * 0.5 / 3 = 0.392: within 5 % of a mean of 10, and of 10 less 2.1.
+// The viscosity 10 +- s has a half-width of 2.354 s / 3, which is 5 at s = 6.37: the tolerance is then 5 % of
+// 10 - 5. The half-width of N1 is 2.354 * 0.5 / 3 = 0.392: within 5 % of 10, and of 10 less at most 2.1.
 TEST(SeveralTargets, TheErrorOfTheMeasureCounts) {
   const auto stop_test_at = [](double spread) {
     Target target{"N1", relative_to("viscosity", 0.05), 0.95};
@@ -126,7 +126,7 @@ TEST(SeveralTargets, TheErrorOfTheMeasureCounts) {
   EXPECT_EQ(stop_test_at(20).verdict, Verdict::more);  // it may be 0
 }
 
-// The other's half-width at 10 seeds is 0.392 around a mean of 0.
+// The half-width of N1 at 10 seeds is 0.392, and its mean is 0.
 TEST(SeveralTargets, AFloorIsEnoughForAMeanOfZero) {
   Tolerance tolerance = 0.05;
   EXPECT_EQ(replay_stop_tests(both_alternating(10, 0, 0.5), viscosity_and({"N1", tolerance}), 10, 1000)
@@ -140,7 +140,7 @@ TEST(SeveralTargets, AFloorIsEnoughForAMeanOfZero) {
   EXPECT_NEAR(stop_test.each[1].share, 0.392 / 0.4, 3e-3);
 }
 
-// A measure that may be zero has no relative width: where the floor counts, it has no part in it.
+// The other observable may be zero, so the floor is the tolerance.
 TEST(SeveralTargets, AFloorNeedsNoMeasure) {
   Tolerance tolerance = relative_to("other", 0.05);
   tolerance.floor = 0.5;
@@ -150,7 +150,7 @@ TEST(SeveralTargets, AFloorNeedsNoMeasure) {
   EXPECT_NEAR(stop_test.each[0].share, 2.354 * 0.1 / 3 / 0.5, 1e-3);
 }
 
-// What only measures others has an interval, but no verdict, and holds nothing up.
+// An observable to which a tolerance is only relative has an interval but no verdict, and delays nothing.
 TEST(SeveralTargets, AMeasureNeedsNoPrecision) {
   Target target{"N1", relative_to("viscosity", 0.05), 0.95};
   Outcomes outcomes;
@@ -205,8 +205,8 @@ TEST(SeveralTargets, ATransientOfAnyIsOneOfTheStopTest) {
   EXPECT_TRUE(replay_stop_tests(outcomes, target, 10, 1000).back().untested);
 }
 
-// The viscosity alone would stop at the first stop test. The other's half-width is t(n - 1) 0.527 / sqrt(n):
-// 0.103 at the stop test of 109 seeds, with t = 2.047, and 0.092 at that of 137.
+// The viscosity alone would stop at the first stop test. The other half-width is t(n - 1) 0.527 / sqrt(n):
+// 0.103 at the stop test of 109 seeds (t = 2.047), and 0.092 at that of 137.
 TEST(SeveralTargets, TheHardestToKnowTellsHowManySeedsToExpect) {
   const Target target = viscosity_and({"other", Tolerance::absolute(0.1)});
   const Outcomes outcomes = both_alternating(10, 5, 0.5);
@@ -237,8 +237,8 @@ TEST(SeveralTargets, ATimeToGoIsThatOfTheHardest) {
   EXPECT_LT(time_to_go({point}, target, 10, 10000, 1)->likely, 10 * 6);
 }
 
-// Each interval holds its mean as often as that of a target alone, or more often, because a point goes on
-// after one of them was narrow for the first time: 93.7 % to 95 %, with a standard error of 0.5 % of 2000.
+// Each interval holds its mean at least as often as with a single criterion, because a point continues after
+// one interval is narrow for the first time: 93.7 % to 95 %, with a standard error of 0.5 % for 2000.
 TEST(SeveralTargets, EachIntervalIsHonest) {
   std::mt19937_64 random(20261123);
   std::normal_distribution<double> viscosities(1, 0.2), others(0, 1);

@@ -1,4 +1,4 @@
-// Means, standard errors and Student intervals against closed forms and printed tables.
+// Compares means, standard errors and intervals with closed forms and printed tables.
 #include "runner/statistics/statistics.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ TEST(Statistics, WholeNumbersUpToNHaveTheirTextbookMeanAndVariance) {
     const Estimate result = estimate(values);
     EXPECT_EQ(result.count, n);
     EXPECT_DOUBLE_EQ(result.mean, (n + 1) / 2.0);
-    // Sample variance n (n + 1) / 12, so its standard error is sqrt((n + 1) / 12).
+    // The sample variance is n (n + 1) / 12, so the standard error is sqrt((n + 1) / 12).
     EXPECT_NEAR(result.standard_error, std::sqrt((n + 1) / 12.0), 1e-12 * n);
   }
 }
@@ -36,12 +36,12 @@ TEST(Statistics, EqualValuesHaveExactlyTheirMeanAndNoSpread) {
   }
 }
 
-// The sums of these overflow or vanish; n equal steps have the mean of the first and the last.
+// The sums or squares of these numbers overflow or vanish.
 TEST(Statistics, NumbersNearTheEndsOfWhatThereIsHaveTheirMeanAndSpread) {
   for (const double size : {1e308, 1e-300, 4e-308, 1e200}) {
     const Estimate result = estimate(std::vector<double>{1.1 * size, 1.2 * size, 1.3 * size, 1.4 * size});
     EXPECT_NEAR(result.mean / size, 1.25, 1e-12);
-    // Variance .05 / 3 of the values, over 4 that of the mean.
+    // The variance of the values is 0.05 / 3, and that of their mean a quarter of it.
     EXPECT_NEAR(result.standard_error / size, std::sqrt(0.05 / 12), 1e-12);
     EXPECT_NEAR(skewness(std::vector<double>{size, size, 1.7 * size}), std::sqrt(0.5), 1e-9);
   }
@@ -60,8 +60,8 @@ TEST(Statistics, FewerThanTwoValuesHaveNoStandardErrorAndNoInterval) {
   EXPECT_TRUE(std::isnan(student_half_width(one, 0.95)));
 }
 
-// Clopper and Pearson, Biometrika 26, 404: 95 % limits of 0, 1, 5 of 10 and 1 of 20 as printed in tables of
-// the binomial distribution; all of 8: 0.025^(1/8).
+// 95 % limits of 0, 1, 5 in 10 and 1 in 20 are printed in tables of the binomial distribution (Clopper and
+// Pearson, Biometrika 26, 404); 8 in 8 give 0.025^(1/8).
 TEST(Statistics, SharesHaveClopperAndPearsonsInterval) {
   struct Row {
     int ones, count;
@@ -78,8 +78,7 @@ TEST(Statistics, SharesHaveClopperAndPearsonsInterval) {
   }
 }
 
-// Of binomial numbers of 1 to 40 the interval holds the share with at least the probability that it says,
-// summed over all numbers.
+// The probability that the interval holds the share is summed over all numbers of ones, for 2 to 40 values.
 TEST(Statistics, IntervalsOfSharesAreNeverTooNarrow) {
   for (const int count : {2, 8, 17, 40}) {
     for (const double share : {0.01, 0.1, 0.5, 0.62, 0.95, 0.999}) {

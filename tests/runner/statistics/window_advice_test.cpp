@@ -8,8 +8,7 @@
 namespace peclet::runner {
 namespace {
 
-// Halves whose correlation is exactly r: (a, r a + sqrt(1 - r^2) b) with a and b of unit variance and
-// orthogonal.
+// Returns halves with the exact correlation r: (a, r a + sqrt(1 - r^2) b), a and b orthogonal, of variance 1.
 std::vector<WindowHalves> halves(double r) {
   std::vector<WindowHalves> all;
   for (const double a : {-1.0, 1.0, -1.0, 1.0}) {
@@ -21,8 +20,8 @@ std::vector<WindowHalves> halves(double r) {
 }
 
 TEST(WindowAdvice, WithoutCorrelationOnlyTheEquilibrationIsWasted) {
-  // Equilibration and window cost the same: half the window costs 3/4 as much and has twice the variance;
-  // twice the window 3/2 as much and half the variance.
+  // Equilibration and window cost the same. Half the window has 3/4 of the cost and twice the variance; twice
+  // the window has 3/2 of the cost and half the variance.
   const WindowAdvice advice = advise_window(halves(0), 10, 10).value();
   EXPECT_NEAR(advice.correlation, 0, 1e-12);
   EXPECT_DOUBLE_EQ(advice.half_as_long, 1.5);
@@ -31,7 +30,7 @@ TEST(WindowAdvice, WithoutCorrelationOnlyTheEquilibrationIsWasted) {
 }
 
 TEST(WindowAdvice, CorrelatedHalvesAskForShorterWindows) {
-  // r = 0.8, no equilibration: half the window costs 1/2 and has 2 / 1.8 times the variance.
+  // Without equilibration, half the window has 1/2 of the cost and 2 / 1.8 times the variance (r = 0.8).
   const WindowAdvice advice = advise_window(halves(0.8), 0, 10).value();
   EXPECT_NEAR(advice.correlation, 0.8, 1e-12);
   EXPECT_NEAR(advice.half_as_long, 1 / 1.8, 1e-12);
