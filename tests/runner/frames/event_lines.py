@@ -134,7 +134,7 @@ class EventLines(unittest.TestCase):
         os.close(reader)
         errors = process.communicate()[1]
         self.assertEqual(process.returncode, 0)
-        self.assertEqual(errors.count("the run goes on without them"), 1, errors)
+        self.assertEqual(errors.count("the run continues without them"), 1, errors)
         self.run_it("whole")
         self.assertEqual(self.export("left").replace(b"left", b"whole"), self.export("whole"))
 

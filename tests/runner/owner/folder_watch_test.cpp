@@ -80,8 +80,7 @@ TEST_F(FolderWatched, FoldersBelowAreMadeAnewAndNoSeedIsGivenUp) {
     fs::remove_all(gone);
   }
   campaign_.wait_until("what the watch says", [&] {
-    return campaign_.log().find("somebody deleted spool/, checkpoints/, failures/, logs/") !=
-           std::string::npos;
+    return campaign_.log().find("are made anew: spool/, checkpoints/, failures/, logs/;") != std::string::npos;
   });
   campaign_.release();
   EXPECT_EQ(campaign_.finish(), 0) << campaign_.log();
@@ -95,7 +94,7 @@ TEST(FolderWatchedOfFiles, FoldersOfFilesAreMadeAnewAndNobodyIsBlamed) {
   const auto delete_and_wait = [&](const fs::path& folder, const std::string& name) {
     fs::remove_all(folder);
     campaign.wait_until("what the watch says",
-                        [&] { return campaign.log().find("somebody deleted " + name) != std::string::npos; });
+                        [&] { return campaign.log().find("are made anew: " + name) != std::string::npos; });
   };
   // One after the other: a result whose files are gone is rejected, which makes the folder for rejected ones.
   delete_and_wait(campaign.directory().rejected(), "spool/rejected/");

@@ -85,7 +85,7 @@ TEST_F(LockedDatabase, IsAPauseThatEndsWithTheLock) {
   EXPECT_TRUE(spool_files(directory_).empty());
   ASSERT_EQ(listener_.warnings.size(), 1U);
   EXPECT_TRUE(was_warned_of("campaign.db: is locked by "));
-  EXPECT_TRUE(was_warned_of("the campaign goes on by itself when the lock is released"));
+  EXPECT_TRUE(was_warned_of("the campaign continues by itself when the lock is released"));
   EXPECT_EQ(listener_.count<ShortageBegan>(), 1);
   EXPECT_EQ(listener_.count<ShortageEnded>(), 1);
 }

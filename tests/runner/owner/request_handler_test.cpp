@@ -46,7 +46,7 @@ TEST_F(CarryingOut, AFileThatWasChangedSinceItWasCheckedIsNotTakenOver) {
   const TakeOver checked = file_as_it_is();
   document_["realisations"]["maximum"] = 90;
   write();
-  EXPECT_TRUE(ask(checked).starts_with("set: left to what " + file().string() + " says since"));
+  EXPECT_TRUE(ask(checked).starts_with("set: not taken over: " + file().string() + " changed after"));
   EXPECT_EQ(database_.campaign().target.maximum, 40);
 }
 
@@ -58,7 +58,7 @@ TEST_F(CarryingOut, OfTwoChangesOneAfterTheOtherTheSecondTakesBothOver) {
   write();
   const Request second = write_request(directory_, file_as_it_is());
   requests_->carry_out();
-  EXPECT_TRUE(answer(first).starts_with("set: left to what ")) << answer(first);
+  EXPECT_TRUE(answer(first).starts_with("set: not taken over: ")) << answer(first);
   EXPECT_EQ(answer(second), "set: tolerance 5 % -> 10 %; maximum 40 -> 90");
 }
 
@@ -86,7 +86,7 @@ TEST_F(CarryingOut, TheEngineOfARunIsNotChangedUnderIt) {
   EXPECT_NE(ask(file_as_it_is()).find("/engine: [\"another-engine\"]: cannot be changed while"),
             std::string::npos);
   begin();  // nobody runs it
-  EXPECT_EQ(ask(file_as_it_is()), "set: the file, in nothing that decides");
+  EXPECT_EQ(ask(file_as_it_is()), "set: parts of the file that affect no decision");
 }
 
 TEST_F(CarryingOut, ARunWithAnotherEngineDoesNotReopenWhatTheFirstOneDid) {
