@@ -116,7 +116,7 @@ TEST_F(Databases, TablesThatThisProgramDidNotMakeAreNotRead) {
         owner ? Database::open_owner(path()) : Database::open_reader(path());
         FAIL() << "opened after " << change;
       } catch (const IntegrityError& error) {
-        EXPECT_NE(std::string(error.what()).find("somebody else made or changed this file"),
+        EXPECT_NE(std::string(error.what()).find("another program made or changed this file"),
                   std::string::npos)
             << error.what();
       }

@@ -187,7 +187,7 @@ TEST(RealisationResult, ANameMayHoldASlash) {
     parse_result(result.dump());
     ADD_FAILURE();
   } catch (const ResultError& error) {
-    EXPECT_NE(std::string(error.what()).find("/mean/P/P0: must not be there by two ways"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("/mean/P/P0: must not be there in two ways"), std::string::npos)
         << error.what();
   }
 }
