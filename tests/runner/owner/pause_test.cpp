@@ -1,4 +1,4 @@
-// What is in the owner's way and passes. Full disks: tests/runner/store/disk_room_test.cpp.
+// Temporary hindrances of the owner. Full disks are in tests/runner/store/disk_room_test.cpp.
 #include "runner/owner/pause.h"
 
 #include <gtest/gtest.h>
@@ -104,7 +104,7 @@ TEST_F(LockedDatabase, CanBeStoppedAndTheSpoolKeepsTheResults) {
   EXPECT_TRUE(was_warned_of("what workers did last is booked by the next run"));
 }
 
-// A process of its own, because the locks of one process do not exclude each other.
+// The lock is held by another process, because locks of one process do not exclude each other.
 TEST(LockText, NamesTheProgramThatHasLockedTheDatabase) {
   const TemporaryFolder folder;
   const std::string path = (folder.path() / "campaign.db").string();
