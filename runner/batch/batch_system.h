@@ -58,8 +58,7 @@ struct JobUnknown {  // the answer was lost; the job may exist
 };
 using Submission = std::variant<JobTaken, JobRefused, JobUnknown>;
 
-// Submits the job. After a failure the batch system is asked for the job's name, because the command may have
-// failed after all its work.
+// Submits the job. After a failure the batch system is asked for the job's name, as the job may exist.
 Submission submit_job(const fs::path& folder, const std::string& name,
                       const std::vector<std::string>& options);
 // Returns nothing if there is no complete answer; `why` says why. It then says nothing about any task.

@@ -28,8 +28,7 @@ constexpr int the_worker = 0;
 
 struct Stopped {};
 
-// Returns a random name, so that two runs of a task write different files: a node that was thought dead may
-// come back.
+// Returns a random name: two runs of a task (a node thought dead may come back) write different files.
 std::string name_of_this_run() {
   std::random_device chance;
   return fmt::format("{:08x}{:08x}", chance(), chance());

@@ -171,8 +171,7 @@ void publish_results(const BundleFolder& folder, const Manifest& manifest, int t
                         result_name(manifest.seeds[static_cast<std::size_t>(*place)]))) {
         throw ResultError("it is of another seed than the one that was asked for");
       }
-      // Writes the note first, then moves the result: a task that runs again finds one of the two and runs
-      // nothing twice.
+      // The note comes first, then the move: a task that runs again finds one of them and runs nothing twice.
       if (!fs::exists(folder.ended(*place))) {
         AttemptReport report;
         report.outcome = AttemptOutcome::result;
@@ -181,8 +180,7 @@ void publish_results(const BundleFolder& folder, const Manifest& manifest, int t
       }
       const fs::path spool = folder.shared().spool() / (file.stem().string() + ".json");
       create_folders_durably(left_folder(spool));  // it may have been deleted
-      // Files that were moved before a crash are in their places; if one is in neither place, the owner
-      // rejects the result.
+      // Files moved before a crash are in their places; the owner rejects a result without its files.
       for (const fs::path& left : left_files_of(file)) {
         rename_durably(left, left_folder(spool) / left.filename());
       }

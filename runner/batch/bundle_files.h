@@ -55,8 +55,7 @@ class BundleFolder {
  public:
   BundleFolder(const fs::path& shared, const std::string& name)
       : shared_(shared), root_(shared / "bundles" / name) {}
-  // Returns the folder of a manifest as it is seen here: owner and nodes may see the shared folder in
-  // different places.
+  // Returns the folder of a manifest, which owner and nodes may see in different places.
   static BundleFolder of_manifest(const fs::path& manifest);
 
   // The folders that this bundle shares with others: spool, checkpoints, failures.
@@ -94,8 +93,7 @@ std::string result_name(const BundledSeed& seed);
 // reached (not mounted, or not answering) is an answer, not an error.
 bool is_there(const BundleFolder& folder, std::string& why);
 
-// Returns what a person may do about seeds that are out, "" if there are none. `words` name the campaign on
-// the command line.
+// Returns what a person may do about seeds that are out, or "". `words` name the campaign to the verbs.
 std::string handed_over_advice(const std::vector<HandedOver>& bundles, const std::string& words);
 
 // Moves the results in a task's own folder into the spool, after the files that their realisations left, and

@@ -45,8 +45,7 @@ void Bundles::take_back_seeds(const BundleRecord& bundle) {
   }
 }
 
-// Queues the seeds again and removes the bundle's folder. If there is a job after all, its tasks find no
-// manifest and leave.
+// Queues the seeds again and removes the folder. Tasks of a job that exists after all find no manifest.
 void Bundles::withdraw(const BundleRecord& bundle) {
   Transaction booking(database_.connection());
   take_back_seeds(bundle);
@@ -78,8 +77,7 @@ bool Bundles::forget(const std::string& name) {
   return false;
 }
 
-// Once the folder of a forgotten bundle can be reached, ends its job and leaves a file that tells its tasks
-// to leave.
+// Ends the job of a forgotten bundle once its folder can be reached, and tells its tasks to leave.
 void Bundles::fence_forgotten() {
   for (const BundleRecord& bundle : book_.forgotten_bundles()) {
     const BundleFolder folder(bundle.shared, bundle.name);
@@ -101,8 +99,7 @@ void Bundles::fence_forgotten() {
 
 namespace {
 
-// Returns a mark of the campaign's folder on this machine, so that campaigns of one name do not share a job's
-// name.
+// Returns a mark of the campaign's folder and machine, so that campaigns of one name share no job's name.
 std::string mark_of(const CampaignDirectory& directory) {
   return sha256(host_name() + ':' + directory.root().string()).substr(0, 6);
 }
@@ -414,8 +411,7 @@ void Bundles::return_seed(const BundleRecord& bundle, const BundleFolder& folder
   ++returned.seeds;
   if (!cut_off) ++returned.lifeless;
   if (id && cut_off && cut_off->place == seed.place && cut_off->report.outcome == AttemptOutcome::running) {
-    // The task was ended in the middle of the seed, without time to report. The attempt is counted, but not
-    // blamed.
+    // The task had no time to report: the attempt is counted, but not blamed.
     AttemptReport report = cut_off->report;
     report.outcome = AttemptOutcome::killed;
     report.message = "its task ended without a report";

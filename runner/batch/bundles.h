@@ -38,8 +38,7 @@ struct BundleSettings {
   std::string program;     // peclet, as the nodes find it
 };
 
-// Checks that these settings can be put into the template. Throws InputError if not, before anything is
-// written.
+// Throws InputError if these settings cannot be put into the template.
 void check_template(const BatchTemplate& scripts, const fs::path& shared, const std::string& program);
 
 class Bundles {
@@ -70,8 +69,7 @@ class Bundles {
   bool any_out() const { return !book_.open_bundles().empty(); }
   // Describes what hand_over() would do; nothing is made or submitted.
   std::string describe(const BundleSettings& settings);
-  // Ends all jobs, and takes back the seeds of jobs that were never submitted. Tasks may take some time to
-  // end.
+  // Ends all jobs, and takes back the seeds of jobs that were never submitted. Tasks may take time to end.
   void cancel();
   // Queues the seeds of a bundle again without waiting for an answer; its job is ended once its folder can be
   // reached. Results that its tasks still leave are taken in, and count once. Returns false if no open bundle

@@ -33,8 +33,7 @@ const char* name_of(Severity severity) {
   return severity == Severity::integrity ? "integrity" : severity == Severity::warning ? "warning" : "note";
 }
 
-// Queues the seed again, which gives the same result if its engine is the same. What was stored is kept in
-// spool/rejected/.
+// Queues the seed again, and keeps what was stored in spool/rejected/.
 void run_again(Database& owner, const CampaignDirectory& directory, std::int64_t point, int seed) {
   if (const std::string stored = readable_result(owner, point, seed); !stored.empty()) {
     write_durably(directory.rejected() / fmt::format("point-{}-seed-{}-altered.json", point, seed), stored);

@@ -1,5 +1,4 @@
-// The verb `peclet doctor` examines whether everything about a campaign is in order, and says what cures a
-// fault.
+// The verb `peclet doctor` examines a campaign, and says what cures its faults.
 #pragma once
 
 #include <functional>
@@ -43,8 +42,7 @@ struct CampaignUnderExamination {
 
 using Findings = std::vector<Finding>;
 
-// Each function examines one side of it (doctor_files.cpp, doctor_machine.cpp). The database is open for
-// reading.
+// Each examines one side (doctor_files.cpp, doctor_machine.cpp). The database is open for reading.
 void examine_files(Database& database, const CampaignUnderExamination& examined, Findings& findings);
 void examine_left_files(Database& database, const CampaignUnderExamination& examined, Findings& findings);
 void examine_backups(Database& database, const CampaignUnderExamination& examined, Findings& findings);
@@ -58,8 +56,7 @@ struct Diagnosis {
   int exit_code = 0;  // 0 sound, 6 integrity, 1 other warnings; repaired findings do not count
 };
 
-// Throws InputError if there is no campaign, and OwnedByAnother if it is to be repaired while a process runs
-// it.
+// Throws InputError if there is no campaign; for repairs OwnedByAnother if a process runs it.
 Diagnosis examine_campaign(const DoctorOptions& options);
 
 }  // namespace peclet::runner

@@ -49,8 +49,7 @@ std::vector<fs::path> processes() {
   return found;
 }
 
-// Returns the processes that have the database open, without the owner and this process: "process 4711
-// (peclet watch), which is stopped".
+// Returns the other processes that have the database open: "process 4711 (peclet watch), which is stopped".
 std::vector<std::string> readers_of(const fs::path& database, const std::string& owner) {
   std::error_code error;
   const fs::path file = fs::canonical(database, error);

@@ -515,8 +515,7 @@ void CampaignState::turn_down(const fs::path& spool, const std::string& why) {
 
 void CampaignState::ingest_spool_of(const CampaignDirectory& directory) {
   turned_down_ = 0;
-  // Each commit waits for the disk, so files are booked in groups. After a crash the rest is still in the
-  // spool.
+  // Each commit waits for the disk, so files are booked in groups. After a crash the rest is still there.
   const std::vector<fs::path> files = spool_files(directory);
   for (std::size_t next = 0; next < files.size();) {
     const std::size_t end = std::min(files.size(), next + files_at_a_time);

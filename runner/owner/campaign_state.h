@@ -1,8 +1,7 @@
 // CampaignState keeps the scheduler, the database and the spool of a running campaign in step.
 //
 // The writing functions run inside a Transaction of the caller. Effects that must follow its commit are kept
-// until after_commit(). A process may be killed at any time: database and spool together hold every result
-// once.
+// until after_commit(). Whenever a process is killed, database and spool together hold every result once.
 //
 // After a failure these effects are dropped and the state is read again from the rolled-back database.
 // roll_back() does this for a transaction, take_whole() for a single result within one.
@@ -95,8 +94,7 @@ class CampaignState {
   int accept_engine(const std::string& identity);
   bool has_engine() const { return !engine_.empty(); }
 
-  // Takes over a changed campaign within the caller's transaction. Throws InputError if finished realisations
-  // lack its observable.
+  // Takes over a changed campaign within the transaction. Throws InputError if results lack its observable.
   void take_over(const Campaign& campaign);
   // Reads the state again after others have written to the database within the transaction, and stores the
   // stop tests and seeds that follow. Throws OtherEngine as admit_engine(). The seeds that workers have then
@@ -119,8 +117,7 @@ class CampaignState {
   // Processor time [s] of this run's attempts. A result counts with its own processor time, but no more than
   // its worker held the seed in this run; any other attempt counts with its wall time times the threads.
   double spent_seconds() const { return committed_.spent_seconds + changes_.spent_seconds; }
-  // Returns points, seeds, spent time and time to go for this number of workers; the caller fills in the
-  // rest.
+  // Returns points, seeds, spent time and time to go for this number of workers; the rest is the caller's.
   RunReport report(int workers);
   // Returns the seed's name for people: "peclet=10 seed 3".
   std::string name(SeedId id) const;
@@ -132,7 +129,6 @@ class CampaignState {
   void read_point_states();
   void book_stop_tests();
   void refuse_other_engine(const std::string& identity) const;
-  // True if the seed takes part in the stop tests.
   bool takes_part(SeedId id) const {
     return id.point != nowhere && id.seed < campaign().maximum_realisations;
   }

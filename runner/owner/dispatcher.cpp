@@ -20,8 +20,7 @@ constexpr seconds report_interval{1};
 // Longest wait for another program's lock. A longer lock is a pause, in which workers and signals are heard.
 constexpr std::chrono::milliseconds lock_patience{500};
 constexpr seconds lease_display_interval{2};
-// Workers that have not saved and left by then are killed; their seeds lose the steps since the last
-// checkpoint.
+// Workers that have not left by then are killed; their seeds lose the steps since the last checkpoint.
 constexpr seconds drain_patience{60};
 constexpr seconds extra_patience{10};
 // Exits before any job, in a row, after which the engine is given up.
@@ -92,8 +91,7 @@ Dispatcher::Ending Dispatcher::run() {
   return state_.scheduler().finished() ? Ending::finished : Ending::stopped;
 }
 
-// True if a process of a worker still runs. One that has exited no longer counts, even if that is not booked
-// yet.
+// True if a process of a worker still runs. An exit counts before it is booked.
 bool Dispatcher::anyone_there() const {
   const auto present = std::count_if(now_.workers.begin(), now_.workers.end(),
                                      [](const Worker& worker) { return worker.watch.is_there(); });
@@ -350,8 +348,7 @@ void Dispatcher::give_out_seeds() {
   }
 }
 
-// Books the next seed as this worker's and queues its job to be sent after the commit. Returns nothing if no
-// seed is available.
+// Books the next seed as this worker's, to be sent after the commit. Returns nothing if there is no seed.
 std::optional<Dispatcher::Assignment> Dispatcher::next_assignment(int number) {
   std::optional<GivenSeed> given_seed = state_.give_out(number, pool_.process(number), at(number).engine);
   if (!given_seed) return std::nullopt;
@@ -553,8 +550,7 @@ bool Dispatcher::lacked_room(int number) {
   return folder.has_value();
 }
 
-// Takes in results that workers of an earlier owner left meanwhile, and results of this run that could not be
-// booked.
+// Takes in results of earlier owners' workers, and results of this run that could not be booked.
 void Dispatcher::settle_spool() {
   try {
     state_.ingest_spool();

@@ -1,5 +1,4 @@
-// Dispatcher gives seeds to workers and books what becomes of them, until every point is decided or the run
-// is stopped.
+// Dispatcher gives seeds to workers and books their ends, until every point is decided or the run stops.
 //
 // Each turn collects events, books all of them in one transaction, and acts only after the commit: a job is
 // sent when its attempt is durable, a spool file is removed when its result is. If something temporary is in
@@ -34,9 +33,8 @@ struct DispatchSettings {
   // Called at every turn, about twice a second or more often. Returns true if folders into which engines
   // write had been deleted and were made anew.
   std::function<bool()> chore = [] { return false; };
-  // Carries out requests. Called about once a second, between two bookings. Returns true if the state was
-  // read again; if it throws because of a temporary hindrance, the state was read again and nothing was
-  // changed.
+  // Carries out requests, about once a second, between two bookings. Returns true if the state was read
+  // again. It was also read again, with nothing changed, if a temporary hindrance is thrown.
   std::function<bool()> requests = [] { return false; };
 };
 
@@ -55,7 +53,6 @@ class Dispatcher {
   Ending run();
 
  private:
-  // A seed that a worker has.
   struct Assignment {
     GivenSeed given_seed;
     Time given{};                // when the worker got it
@@ -128,8 +125,7 @@ class Dispatcher {
   // Returns the most processor time [s] that a worker can have spent since `time`.
   double processor_seconds_since(Time time) const;
   void end_assignment(int worker, const AttemptEnd& end);
-  // Takes the result of a worker that has exited at this step of the job. Returns false if there is no valid
-  // one.
+  // Takes the result of a worker that exited at this step of its job. Returns false without a valid one.
   bool left_result(int worker, const Assignment& about, std::int64_t step);
   // Gives back a waiting assignment, which never began.
   void give_back(const Assignment& waiting);

@@ -1,5 +1,4 @@
-// EventStream writes what happens in a run as JSON, one object a line, for programs that follow it (`peclet
-// run --jsonl`).
+// EventStream writes what happens in a run as JSON, one object a line (`peclet run --jsonl`).
 //
 // The run never waits for the reader: lines that it has not taken are kept in memory. If the reader is gone,
 // cannot be written to, or leaves too much behind, one warning is given and the run continues without events.

@@ -56,8 +56,7 @@ bool has_been_run(const CampaignDirectory& directory) {
   return !kind_of(directory.database()).empty() || !restore_hint(directory).empty();
 }
 
-// Throws BeingSetUp, with the reason, if the setup will not end within moments: its run has ended, or the
-// disk is full.
+// Throws BeingSetUp with the reason if the setup has stopped: its run has ended, or the disk is full.
 void refuse_unfinished_beginning(const CampaignDirectory& directory) {
   const std::string database = directory.database().string();
   if (!current_owner(directory)) {

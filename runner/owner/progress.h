@@ -40,8 +40,7 @@ class Progress : public RunListener {
   double next_line_ = 0;  // time of the run [s] at which a log line is due
 };
 
-// Writes what a run tells into logs/peclet.log, one line an event with times in UTC, and passes it on. The
-// file is bounded in size.
+// Writes what a run tells into logs/peclet.log, of bounded size, one line an event, and passes it on.
 class RunLog : public RunListener {
  public:
   // `audience` must outlive the log.

@@ -48,8 +48,7 @@ class RequestError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Writes the request durably, making its folder if needed, and returns it with its name. Throws NoRoomError,
-// std::system_error.
+// Writes the request durably and returns it with its name. Throws NoRoomError, std::system_error.
 Request write_request(const CampaignDirectory& directory, const Wish& wish);
 
 // Throws RequestError.
@@ -60,8 +59,7 @@ fs::path request_file(const CampaignDirectory& directory, const std::string& nam
 // Returns the waiting requests, oldest first.
 std::vector<fs::path> waiting_requests(const CampaignDirectory& directory);
 
-// Renames a file that is not a request, so that it no longer waits, and returns its new path; nothing if it
-// cannot be renamed.
+// Renames a file that is not a request, so that it no longer waits. Returns its new path, or nothing.
 std::optional<fs::path> set_request_aside(const fs::path& file);
 
 }  // namespace peclet::runner

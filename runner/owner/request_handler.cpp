@@ -137,7 +137,6 @@ std::optional<std::int64_t> only(const std::vector<PointRecord>& points) {
   return points.size() == 1 ? std::optional(points.front().id) : std::nullopt;
 }
 
-// Seeds that a retry queues again.
 struct RetryPlan {
   std::map<std::int64_t, std::vector<int>> seeds;  // by PointRecord::id
   std::string message;                             // the seeds, and why no more are queued

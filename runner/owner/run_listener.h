@@ -1,5 +1,4 @@
-// RunListener hears what a run tells about itself. The dispatcher reports; progress.cpp alone puts it into
-// words on a terminal.
+// RunListener hears what a run tells about itself. Only progress.cpp puts it into words on a terminal.
 #pragma once
 
 #include <optional>

@@ -24,18 +24,15 @@ void copy_database(const fs::path& from, const fs::path& to,
 void copy_database(Connection& from, const fs::path& to,
                    const std::function<void(Connection& copy)>& amend = {});
 
-// Returns the first fault inside a database, from integrity_check, the tables or foreign_key_check; "" if it
-// is sound.
+// Returns the first fault of integrity_check, of the tables or of foreign_key_check; "" if there is none.
 std::string damage(Connection& connection);
 
-// How far a campaign has come: the number of stored results, and of its last attempt. Attempts are never
-// removed.
+// Progress of a campaign: stored results, and the number of its last attempt. Attempts are never removed.
 struct Extent {
   std::int64_t results = 0, attempts = 0;
 };
 Extent extent_of(Connection& database);
 
-// Contents of a database.
 struct Contents : Extent {
   std::string name, created_at;  // name and time of creation of the campaign
   std::string origin;            // tells campaigns apart, also after a change of name

@@ -10,7 +10,6 @@
 
 namespace peclet::runner {
 
-// End of a process.
 struct ExitStatus {
   std::optional<int> status;  // argument of exit()
   std::optional<int> signal;  // signal that killed it

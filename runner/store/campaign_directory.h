@@ -1,4 +1,4 @@
-// CampaignDirectory names the files in the folder of a campaign.
+// CampaignDirectory names the files in the folder of a campaign; it does not touch the disk.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,6 @@
 
 namespace peclet::runner {
 
-// Names of everything below the folder; nothing here touches the disk.
 class CampaignDirectory {
  public:
   explicit CampaignDirectory(fs::path root) : root_(std::move(root)) {}
@@ -37,8 +36,7 @@ class CampaignDirectory {
 
   // Checkpoint of a seed, shared by all attempts: the next one resumes what the last one left.
   fs::path checkpoint(const std::string& hash, int seed) const;
-  // Spool file of one attempt, so that a worker that outlived its owner never writes where a later attempt
-  // does.
+  // Spool file of one attempt: a worker that outlived its owner never writes where a later attempt does.
   fs::path spool_file(const std::string& hash, int seed, std::int64_t attempt) const;
   // Folder of a seed's files; `point_id` distinguishes the engines that a scene has had.
   fs::path left_files(const std::string& hash, std::int64_t point_id, int seed) const;
@@ -103,8 +101,7 @@ void move_intruders_aside(const CampaignDirectory& directory,
 // kind (as kind_of() says). Returns a sentence about it; "" if nothing was moved. Throws std::system_error.
 std::string make_way(const fs::path& path, const std::string& wanted);
 
-// Files that belong to the program and lie beside it: adapters of other engines, the fit of the jamming
-// point.
+// Files installed with the program: adapters of other engines, the fit of the jamming point.
 
 // Returns the folder of the running program.
 fs::path own_folder();

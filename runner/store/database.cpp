@@ -93,8 +93,7 @@ int pages_of_log(const fs::path& database) {
   return static_cast<int>(std::clamp(available / (part * page), least, most));
 }
 
-// Opens a database for reading. SQLite keeps an index of its log beside it, which fails in a folder that may
-// not be written.
+// Opens a database for reading. SQLite's index of the log needs a folder that may be written.
 std::unique_ptr<Connection> connection_of_reader(const fs::path& path) {
   constexpr int busy_milliseconds = 5'000;
   const bool is_frozen = is_frozen_for_us(path);

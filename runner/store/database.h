@@ -198,8 +198,7 @@ class Database {
   // Returns how each seed has ended, for replay_stop_tests(). The index is the seed; the last one is the
   // largest that has ended. Throws IntegrityError if the numbers do not match their layout.
   std::vector<std::optional<Outcome>> outcomes(std::int64_t point);
-  // Returns the text of a result as the engine wrote it, without white space; nothing for a seed without a
-  // result. Throws IntegrityError.
+  // Returns the engine's text of a result, without white space, if there is a result. Throws IntegrityError.
   std::optional<std::string> result_text(std::int64_t point, int seed);
   // Returns result_text() as JSON.
   std::optional<Json> result(std::int64_t point, int seed);

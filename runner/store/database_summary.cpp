@@ -56,8 +56,7 @@ struct Aggregate {
   }
 };
 
-// Reads the seeds in one pass, in the order in which they are stored: for a large campaign this takes most of
-// the time.
+// Reads the seeds in one pass in stored order, which takes most of the time of a large campaign.
 std::map<std::int64_t, Aggregate> read_aggregates(Connection& connection) {
   Statement query(connection,
                   "SELECT point_id, seed, state, numbers, cpu_seconds, cause FROM realisation "
@@ -115,8 +114,7 @@ std::map<std::int64_t, int> read_largest_earlier_stop_tests(Connection& connecti
   return largest;
 }
 
-// Restores what is not stored of the last stop test. Outcomes are read only if it has no interval, which is
-// rare.
+// Restores what is not stored of the last stop test. Outcomes are read only for one without an interval.
 void make_again(Database& database, const PointRecord& point, const TargetRecord& target,
                 PointSummary& summary) {
   if (summary.stop_tests.empty()) return;
@@ -235,8 +233,7 @@ std::optional<StopTest> checked_stop_test(Database& database, const PointRecord&
   const std::vector<StopTestRecord> stored = database.stop_tests(point.id);
   const std::vector<StopTest> replayed =
       replay_stop_tests(database.outcomes(point.id), target.target, target.minimum, target.maximum);
-  // An owner that was killed between a result and its stop test leaves fewer stop tests than the results
-  // allow.
+  // An owner that was killed after a result may have left fewer stop tests than the results allow.
   for (std::size_t i = 0; i < stored.size(); ++i) {
     if (i < replayed.size() && agrees(stored[i].stop_test, replayed[i])) continue;
     throw IntegrityError(fmt::format(

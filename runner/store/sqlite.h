@@ -35,7 +35,6 @@ class DatabaseError : public std::runtime_error {
   int code_, system_error_;
 };
 
-// True if an exception says that there was no room to write something.
 bool means_no_room(const std::exception& error);
 
 class Connection {

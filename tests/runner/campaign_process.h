@@ -38,7 +38,6 @@ class CampaignOnDisk {
   Environment held_from(int seed, Environment environment = {}) const;
   void release() const;
   void signal(int number) const;
-  // Kills all workers of the run.
   void kill_workers() const;
   // Waits until this number of realisations is done. Throws if that takes a minute.
   void wait_for_results(int count) const;
@@ -48,8 +47,7 @@ class CampaignOnDisk {
   const CampaignDirectory& directory() const { return directory_; }
   Database reader() const { return Database::open_reader(directory_.database()); }
   std::int64_t count(const std::string& sql) const;
-  // Returns what must not depend on what happened to the processes: all stop tests, and the contents of the
-  // seeds that decided.
+  // Returns all stop tests and the contents of the seeds that decided, which must not depend on disturbances.
   std::string answer() const;
   std::string log() const;
 

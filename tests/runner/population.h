@@ -17,8 +17,7 @@ inline double values_that_need(double spread, double tolerance) {
   return std::pow(1.959964 * spread / tolerance, 2);
 }
 
-// Gamma distribution of mean 1 and this deviation, like a mean of squares. Its skewness is twice the
-// deviation.
+// Gamma distribution of mean 1 and this deviation, like a mean of squares; its skewness is 2 `spread`.
 inline std::gamma_distribution<double> gamma_of(double spread) {
   return std::gamma_distribution<double>(1 / (spread * spread), spread * spread);
 }

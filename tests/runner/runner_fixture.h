@@ -35,8 +35,7 @@ Campaign plain_campaign(int points, int minimum, int maximum, double tolerance);
 Json plain_result(const std::string& point, int seed, double viscosity,
                   const std::string& identity = "engine");
 
-// Returns the description of a ratio of means, of members "counts" and "ideal", along an axis with these
-// values.
+// Returns the description of a ratio of "counts" and "ideal" along an axis with these values.
 Json described_ratio(const Json& values);
 
 bool says(const std::string& text, const std::string& part);
@@ -54,7 +53,6 @@ class SilentListener : public RunListener {
   void warn(const std::string& message) override { warnings.push_back(message); }
   void happened(const RunEvent& event) override { events.push_back(event); }
   void report(const RunReport& report) override { last = report; }
-  // Returns the number of events of a kind.
   template <typename Event>
   std::ptrdiff_t count() const {
     return std::count_if(events.begin(), events.end(),

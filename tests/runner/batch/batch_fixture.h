@@ -1,5 +1,4 @@
-// BatchFixture has a campaign with the fake engine, and a batch system of four scripts that do what the test
-// says.
+// BatchFixture has a campaign with the fake engine, and a batch system of four scripts.
 #pragma once
 
 #include <filesystem>
@@ -33,7 +32,6 @@ class BatchFixture : public testing::Test {
   void queries(bool answered) const;
   // Sets what a query says of the tasks of every job that was taken: lines of INDEX STATE.
   void states(const std::string& lines) const;
-  // Returns the number of jobs that were taken.
   int submitted() const;
 
   int hand_over() const { return hand_over_campaign(options); }

@@ -1,9 +1,7 @@
-// Fake engine: an engine without physics that speaks the frames. It proves that the runner knows no engine
-// from inside.
+// Fake engine without physics that speaks the frames: the runner knows no engine from inside.
 //
 // A realisation is a chain of mixed 64-bit states, started by point and seed. Its relative viscosity is a
-// normal variate made of the last state. A result depends on every step, so a resume at the wrong place would
-// show.
+// normal variate of the last state. It depends on every step, so a resume at the wrong place would show.
 //
 //   PECLET_FAKE_STEPS (10), PECLET_FAKE_STEP_MS (0)     length of a realisation
 //   PECLET_FAKE_MEAN (10), PECLET_FAKE_DEVIATION (1)    mean and deviation of the relative viscosity

@@ -31,7 +31,6 @@ class Dispatching : public testing::Test {
     return dispatcher.run();
   }
 
-  // Lets all busy workers finish.
   void finish_all() {
     for (int worker = 0; worker < pool_.size(); ++worker) {
       if (pool_.has_job(worker)) pool_.finish(worker, steady(pool_.job(worker).seed));

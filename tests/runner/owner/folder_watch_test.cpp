@@ -97,8 +97,7 @@ TEST(FolderWatchedOfFiles, FoldersOfFilesAreMadeAnewAndNobodyIsBlamed) {
     campaign.wait_until("what the watch says",
                         [&] { return campaign.log().find("are made anew: " + name) != std::string::npos; });
   };
-  // Deleted one after the other: a result without its files is rejected, which makes the folder for rejected
-  // files.
+  // One after the other: a rejected result makes the folder for rejected files anew.
   delete_and_wait(campaign.directory().rejected(), "spool/rejected/");
   delete_and_wait(campaign.directory().left(), "spool/files/");
   campaign.release();

@@ -1,5 +1,4 @@
-// Requests and the campaign's state without processes: what each changes, what is refused, and that it
-// happens once.
+// Requests without processes: what each changes, what is refused, and that it happens once.
 #include "runner/owner/request_handler.h"
 
 #include <gtest/gtest.h>
