@@ -16,9 +16,9 @@
 namespace peclet::runner {
 namespace {
 
-// A controller that is restarted answers after some tens of seconds.
+// A restarted controller answers after some tens of seconds.
 constexpr std::chrono::seconds patience{60};
-// Of submit.sh: the connection failed on the way (EX_TEMPFAIL).
+// Exit code of submit.sh if the connection failed on the way (EX_TEMPFAIL).
 constexpr int exit_nobody_knows = 75;
 constexpr const char* letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZ_";
 
@@ -34,14 +34,14 @@ std::optional<TaskState> task_state(const std::string& word) {
   return std::nullopt;
 }
 
-// Of a task that is there twice (it was submitted twice) the liveliest state counts.
+// Adds a task. If it is listed twice because it was submitted twice, the livelier state counts.
 void add(QueryAnswer& answer, const std::string& job, int task, TaskState state) {
   if (std::find(answer.jobs.begin(), answer.jobs.end(), job) == answer.jobs.end()) answer.jobs.push_back(job);
   const auto [known, is_new] = answer.tasks.emplace(task, state);
   if (!is_new && known->second == TaskState::ended) known->second = state;
 }
 
-// What the shell makes of a character after this beginning of a line.
+// True if the shell is between quotes after this beginning of a line.
 bool is_between_quotes(const std::string& before) {
   char open = 0;
   for (std::size_t i = 0; i < before.size(); ++i) {
@@ -66,7 +66,7 @@ std::string quoted_for(const std::string& before, const std::string& name, const
   if (has_control_characters(value)) refuse("it has a line break or another control character");
   if (is_plain(value)) return value;
   if (before.starts_with("#SBATCH")) {
-    if (value.find('\\') != std::string::npos) refuse("after a backslash Slurm replaces no %a");
+    if (value.find('\\') != std::string::npos) refuse("Slurm does not replace %a after a backslash");
     return sbatch_word(value);
   }
   if (before.starts_with("#")) {
@@ -85,7 +85,7 @@ BatchTemplate batch_template(const std::string& system, const fs::path& folder) 
     if (system == "slurm") return slurm_template();
     throw InputError(
         "", "", system,
-        "is no batch system that peclet knows; slurm is, and --template FOLDER describes another");
+        "is not a batch system that peclet knows; slurm is, and --template FOLDER describes another");
   }
   BatchTemplate scripts;
   for (const auto& [name, text] : slurm_template()) {
@@ -107,13 +107,13 @@ std::string fill_in(const std::string& text, const std::map<std::string, std::st
     if (begin == std::string::npos || end == std::string::npos) return filled + text.substr(from);
     filled += text.substr(from, begin - from);
     const std::string name = text.substr(begin + 1, end - begin - 1);
-    if (text[end] != '@' || name.empty()) {  // somebody else's: B:USR1@120
+    if (text[end] != '@' || name.empty()) {  // not a placeholder: B:USR1@120
       filled += text.substr(begin, end - begin);
       from = end;
       continue;
     }
     const auto value = values.find(name);
-    if (value == values.end()) throw InputError(file, "", '@' + name + '@', "is no placeholder");
+    if (value == values.end()) throw InputError(file, "", '@' + name + '@', "is not a placeholder");
     const std::size_t line_begin = text.rfind('\n', begin) + 1;  // npos + 1 is 0
     filled += quoted_for(text.substr(line_begin, begin - line_begin), name, value->second, file);
     from = end + 1;
@@ -164,7 +164,7 @@ std::optional<QueryAnswer> query_job(const fs::path& folder, const std::string& 
     const std::optional<int> task = number_in<int>(index);
     const std::optional<TaskState> known = task_state(state);
     if (!task || !known || !rest.empty()) {
-      why = "an answer of another form: " + line;
+      why = "the answer has another form: " + line;
       return std::nullopt;
     }
     add(answer, job, *task, *known);

@@ -28,7 +28,7 @@ constexpr int the_worker = 0;
 
 struct Stopped {};
 
-// Runs of a task on two nodes (a node that was thought to be dead comes back) write under different names.
+// Returns a random name: two runs of a task (a node thought dead may come back) write different files.
 std::string name_of_this_run() {
   std::random_device chance;
   return fmt::format("{:08x}{:08x}", chance(), chance());
@@ -50,7 +50,7 @@ class BatchTask {
     fs::create_directories(folder_.left(index_));
     publish_results(folder_, manifest_, index_);
     for (const int place : manifest_.tasks.at(static_cast<std::size_t>(index_))) {
-      if (fs::exists(folder_.forgotten())) break;  // its seeds are somebody else's by now
+      if (fs::exists(folder_.forgotten())) break;  // its seeds are queued again
       if (!fs::exists(folder_.ended(place))) run_seed(place);
     }
     fs::remove(folder_.trouble(index_));
@@ -61,9 +61,9 @@ class BatchTask {
     Campaign named;
     named.engine = manifest_.engine;
     EngineCommand command = resolve_engine(named, folder_.manifest());
-    // A batch system sends them to every process of a job.
+    // A batch system sends these signals to every process of a job.
     command.blocked_signals = {SIGTERM, SIGINT, SIGUSR1};
-    // An engine that needs its files there says so when they are not; ours needs none.
+    // An engine that needs files in its folder says so if they are absent; ours needs none.
     command.folder = fs::is_directory(manifest_.engine_folder) ? manifest_.engine_folder : fs::path();
     return command;
   }
@@ -80,7 +80,7 @@ class BatchTask {
   void handle(const Garbled& event) { condemn({AttemptOutcome::garbled, event.message}); }
   void handle(const Exited& event);
   void handle(const StopSignal& event);
-  // The outcome, or `drained` where the engine may have failed for want of room.
+  // Returns the outcome, or `drained` if the engine may have failed because it could not write.
   AttemptOutcome unless_it_lacked_room(AttemptOutcome outcome) const {
     return is_blamed(outcome) && unwritable_folder(job_) ? AttemptOutcome::drained : outcome;
   }
@@ -100,7 +100,7 @@ class BatchTask {
   WorkerWatch watch_;
   bool stopping_ = false;
 
-  // Of the seed in hand.
+  // The seed in hand.
   int place_ = 0;
   Job job_;
   AttemptReport report_;
@@ -187,19 +187,19 @@ void BatchTask::handle(const JobFailed& event) {
 }
 
 void BatchTask::handle(const Drained& event) {
-  if (is_in_hand(event.job) && !stopping_) {  // it could do so for ever
-    return condemn({AttemptOutcome::garbled, "gave back a job that nobody wanted back"});
+  if (is_in_hand(event.job) && !stopping_) {  // it could do so again and again
+    return condemn({AttemptOutcome::garbled, "gave back a job without being asked to"});
   }
   if (is_in_hand(event.job)) drained_ = true;
   pool_.drain(the_worker);  // an idle engine leaves
 }
 
-// The engine keeps its work and stands still; as long as there really is no room, that is not its fault.
+// The engine keeps its work and waits. It is not blamed as long as the disk is full.
 void BatchTask::handle(const ShortOfRoom& event) {
   if (is_in_hand(event.job) && !has_room(job_.spool.parent_path(), event.bytes)) watch_.renew(awake_.awake());
 }
 
-// Only the first signal counts: a batch system sends several, and has the last word itself.
+// Only the first signal counts: a batch system sends several, and kills the task in the end.
 void BatchTask::handle(const StopSignal&) {
   if (std::exchange(stopping_, true)) return;
   pool_.drain(the_worker);
@@ -208,7 +208,7 @@ void BatchTask::handle(const StopSignal&) {
 void BatchTask::handle(const ResultSpooled& result) {
   if (!is_in_hand(result.job)) return;
   try {
-    if (result.spool != job_.spool) throw ResultError("spooled its result elsewhere");
+    if (result.spool != job_.spool) throw ResultError("wrote its result to another file than the job names");
     const RealisationResult read = read_spool_file(job_.spool, result.sha256);
     if (read.point != job_.point || read.seed != job_.seed) {
       throw ResultError("its result is of another point or seed than the job");
@@ -229,7 +229,7 @@ void BatchTask::handle(const Exited& event) {
     if (!watch.is_starting() || stopping_) return;
     throw EngineError("the engine ended before it said hello: " + to_string(event.ending));
   }
-  // A result may be durable although nobody could announce it any more.
+  // A result may be durable although its worker could not announce it.
   if (!watch.condemned()) publish_results(folder_, manifest_, index_);
   if (fs::exists(folder_.ended(place_))) return;
   AttemptReason how = watch.ended(event.ending, stopping_);
@@ -256,7 +256,7 @@ void BatchTask::note_running() {
   write_report(folder_.running(index_), place_, report_);
 }
 
-// The seed in hand has ended; a worker that is still there rests.
+// Ends the seed in hand. A worker that is still there becomes idle.
 void BatchTask::end(const AttemptReason& how, const ExitStatus& ending) {
   report_.outcome = how.outcome;
   report_.message = how.message;
@@ -282,7 +282,7 @@ int run_task(const TaskOptions& options) {
   } catch (const Stopped&) {
     return ExitCode::stopped;
   } catch (const std::runtime_error& error) {
-    // It says nothing about any seed; the owner must hear of it all the same.
+    // The error says nothing about any seed, but the owner must learn of it.
     write_durably(folder.trouble(options.index),
                   Json{{"host", host_name()}, {"message", error.what()}}.dump() + '\n');
     throw;

@@ -41,7 +41,7 @@ const KeyTable& manifest_keys() {
   static const KeyTable table("Seeds of a campaign that are handed over to a batch system",
                               fmt::format(R"(
 /schema_version | integer = 1
-/bundle | string | Its name.
+/bundle | string | Name of the bundle.
 /campaign | string
 /engine | array | Program and arguments, as the nodes find them.
 /engine/* | string
@@ -49,12 +49,12 @@ const KeyTable& manifest_keys() {
 /engine_identity | string | Identity that the engine there must have.
 /threads | integer >= 1 and <= 2147483647
 /lease_seconds, /checkpoint_seconds | number > 0
-/scenes | object | By hash of the point.
-/seeds | array | In the order in which tasks take them.
+/scenes | object | Scenes by hash of the point.
+/seeds | array | Seeds in the order in which tasks take them.
 /seeds/* | object
 /seeds/*/point | string
 /seeds/*/seed | integer >= 0 and < {}
-/tasks | array | Places in seeds, of each task.
+/tasks | array | Places in seeds, for each task.
 /tasks/* | array
 /tasks/*/* | integer >= 0 and <= 2147483647
 )",
@@ -140,13 +140,13 @@ const KeyTable& report_keys() {
 /schema_version | integer = 1
 /place | integer >= 0 and <= 2147483647 | Place of the seed in the manifest.
 /outcome | one of running, result, crashed, hung, garbled, refused, drained, killed, abandoned
-/step | count | The last one that was reported.
+/step | count | Last step that was reported.
 /exit_status | integer >= -2147483648 and <= 2147483647 or null | Exit status of the engine; null if it had
     none.
 /signal | integer >= 0 and <= 2147483647 or null | Signal that ended the engine; null if none did.
 /message, /host, /started_at | string
 /process | count
-/engine | anything | As in the result; null if it said none.
+/engine | anything | Provenance as in the result; null if the engine gave none.
 )");
   return table;
 }
@@ -171,7 +171,7 @@ void publish_results(const BundleFolder& folder, const Manifest& manifest, int t
                         result_name(manifest.seeds[static_cast<std::size_t>(*place)]))) {
         throw ResultError("it is of another seed than the one that was asked for");
       }
-      // First the note, then the move: a task that is run again finds one of the two and runs nothing twice.
+      // The note comes first, then the move: a task that runs again finds one of them and runs nothing twice.
       if (!fs::exists(folder.ended(*place))) {
         AttemptReport report;
         report.outcome = AttemptOutcome::result;
@@ -179,8 +179,8 @@ void publish_results(const BundleFolder& folder, const Manifest& manifest, int t
         write_report(folder.ended(*place), *place, report);
       }
       const fs::path spool = folder.shared().spool() / (file.stem().string() + ".json");
-      create_folders_durably(left_folder(spool));  // somebody may have deleted it
-      // What was moved before somebody died is in its place; what is in neither, the owner misses.
+      create_folders_durably(left_folder(spool));  // it may have been deleted
+      // Files moved before a crash are in their places; the owner rejects a result without its files.
       for (const fs::path& left : left_files_of(file)) {
         rename_durably(left, left_folder(spool) / left.filename());
       }

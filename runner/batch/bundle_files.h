@@ -1,16 +1,16 @@
-// What owner and nodes share of seeds that are handed over: files below one folder that both see, nothing
-// else.
+// Files by which owner and nodes share handed-over seeds, below one folder that both see.
 //
-//   SHARED/spool, checkpoints, failures      as in a campaign's folder
-//   SHARED/bundles/NAME/manifest.json        what is to be done; written once, by the owner
-//                       *.sh                 the job and the commands, from the template; written once
-//                       ended/N.json         what became of the bundle's seed N; written by its task
-//                       tasks/I/running.json the seed in the hands of task I, or drained by it; written by it
-//                       tasks/I/trouble.json why task I could do nothing at all
-//                       tasks/I/*.result     results that are not in the spool yet
-//                       tasks/I/files        what their realisations leave beside them
-//                       forgotten            the owner has given the bundle up: no task begins a seed any
-//                       more logs/                what tasks and engines printed
+//   SHARED/spool, checkpoints, failures   as in a campaign's folder
+//   SHARED/bundles/NAME/
+//     manifest.json          what is to be done; written once, by the owner
+//     *.sh                   the job and the commands, from the template; written once
+//     ended/N.json           how the bundle's seed N has ended; written by its task
+//     tasks/I/running.json   the seed that task I runs or has drained; written by it
+//     tasks/I/trouble.json   why task I could do nothing at all
+//     tasks/I/*.result       results that are not in the spool yet
+//     tasks/I/files          files that their realisations leave beside them
+//     forgotten              the owner has given the bundle up: no task begins a seed any more
+//     logs/                  what tasks and engines printed
 //
 // Every file is written whole (temporary file, fsync, rename) by one process at a time.
 #pragma once
@@ -27,35 +27,35 @@
 
 namespace peclet::runner {
 
-// A seed of a bundle, called by its place in the manifest.
+// A seed of a bundle. Its place is its index in the manifest.
 struct BundledSeed {
-  std::string point;  // hash
+  std::string point;  // hash of the scene
   int seed = 0;
 };
 
 struct Manifest {
   std::string bundle, campaign;     // names
   std::vector<std::string> engine;  // program and arguments, as the nodes find them
-  fs::path engine_folder;           // in which it runs, where the node has it
-  std::string engine_identity;      // that the engine there must have
+  fs::path engine_folder;           // folder in which it runs, if the node has it
+  std::string engine_identity;      // identity that the engine there must have
   int threads = 1;
   double lease_seconds = 120, checkpoint_seconds = 60;
   Json scenes;                          // by hash
   std::vector<BundledSeed> seeds;       // in the order in which tasks take them
-  std::vector<std::vector<int>> tasks;  // of places in `seeds`
+  std::vector<std::vector<int>> tasks;  // places in `seeds`, for each task
 };
 
 const KeyTable& manifest_keys();
 Json manifest_json(const Manifest& manifest);
-// Throws InputError for a file that is absent or no manifest.
+// Throws InputError if the file is absent or not a manifest.
 Manifest read_manifest(const fs::path& path);
 
-// Names below a bundle's folder.
+// Names of the files in a bundle's folder.
 class BundleFolder {
  public:
   BundleFolder(const fs::path& shared, const std::string& name)
       : shared_(shared), root_(shared / "bundles" / name) {}
-  // Of a manifest where it is seen here: owner and nodes may see the shared folder in different places.
+  // Returns the folder of a manifest, which owner and nodes may see in different places.
   static BundleFolder of_manifest(const fs::path& manifest);
 
   // The folders that this bundle shares with others: spool, checkpoints, failures.
@@ -83,22 +83,21 @@ struct PlacedReport {
   AttemptReport report;
 };
 const KeyTable& report_keys();
-// Nothing when there is none. Throws InputError for a file that is no report.
+// Returns nothing if there is no report. Throws InputError if the file is not a report.
 std::optional<PlacedReport> read_report(const fs::path& path);
 
-// How the names of a seed's results begin, in the task's folder and in the spool.
+// Returns how the names of a seed's results begin, in the task's folder and in the spool.
 std::string result_name(const BundledSeed& seed);
 
-// Whether the bundle's manifest can be seen from here; `why` says why not. A folder that cannot be reached (a
-// file system that is not mounted, or no longer answers) is no error, but an answer.
+// True if the bundle's manifest can be seen from here; otherwise `why` says why not. A folder that cannot be
+// reached (not mounted, or not answering) is an answer, not an error.
 bool is_there(const BundleFolder& folder, std::string& why);
 
-// What a person may do about seeds that are out; `words` are the campaign's on the command line.
+// Returns what a person may do about seeds that are out, or "". `words` name the campaign to the verbs.
 std::string handed_over_advice(const std::vector<HandedOver>& bundles, const std::string& words);
 
-// Moves the results that a task has left in its own folder into the spool, under names of their own, after
-// what their realisations left beside them, and notes them as ended. Files that are no result go to
-// spool/rejected.
+// Moves the results in a task's own folder into the spool, after the files that their realisations left, and
+// notes them as ended. Files that are not results go to spool/rejected.
 void publish_results(const BundleFolder& folder, const Manifest& manifest, int task);
 
 }  // namespace peclet::runner

@@ -16,8 +16,8 @@
 
 namespace peclet::runner {
 
-// Asked of the batch system again, just before something is done about it: an answer that came too late for
-// settle() would otherwise be overlooked.
+// Asks the batch system again just before something is done about the bundle, so that an answer that was too
+// late for settle() is not overlooked.
 bool Bundles::was_never_submitted(const BundleRecord& bundle) const {
   const BundleFolder folder(bundle.shared, bundle.name);
   std::string why;
@@ -30,7 +30,7 @@ void Bundles::cancel() {
   for (const BundleRecord& bundle : book_.open_bundles()) {
     const BundleFolder folder(bundle.shared, bundle.name);
     std::string why;
-    if (!is_there(folder, why)) continue;  // settle() has said so
+    if (!is_there(folder, why)) continue;  // settle() has warned of it
     if (was_never_submitted(bundle)) {
       withdraw(bundle);
     } else if (!cancel_job(folder.root(), bundle.name, why)) {
@@ -45,7 +45,7 @@ void Bundles::take_back_seeds(const BundleRecord& bundle) {
   }
 }
 
-// The folder goes with it: should there be a job after all, its tasks find no manifest and leave.
+// Queues the seeds again and removes the folder. Tasks of a job that exists after all find no manifest.
 void Bundles::withdraw(const BundleRecord& bundle) {
   Transaction booking(database_.connection());
   take_back_seeds(bundle);
@@ -54,7 +54,7 @@ void Bundles::withdraw(const BundleRecord& bundle) {
   }
   book_.close(bundle.id);
   booking.commit();
-  std::error_code left;  // does no harm
+  std::error_code left;  // remnants do no harm
   fs::remove_all(BundleFolder(bundle.shared, bundle.name).root(), left);
 }
 
@@ -77,8 +77,7 @@ bool Bundles::forget(const std::string& name) {
   return false;
 }
 
-// As soon as the folder of a forgotten bundle can be reached, its job is ended, and tasks that begin all the
-// same find a file that tells them to leave.
+// Ends the job of a forgotten bundle once its folder can be reached, and tells its tasks to leave.
 void Bundles::fence_forgotten() {
   for (const BundleRecord& bundle : book_.forgotten_bundles()) {
     const BundleFolder folder(bundle.shared, bundle.name);
@@ -100,7 +99,7 @@ void Bundles::fence_forgotten() {
 
 namespace {
 
-// Of the campaign's folder on this machine: campaigns of one name do not share a job's name.
+// Returns a mark of the campaign's folder and machine, so that campaigns of one name share no job's name.
 std::string mark_of(const CampaignDirectory& directory) {
   return sha256(host_name() + ':' + directory.root().string()).substr(0, 6);
 }
@@ -119,7 +118,7 @@ BatchTemplate filled_in(const BatchTemplate& scripts, const BundleFolder& folder
   return filled;
 }
 
-// Some task of the bundle has been at work, whatever the batch system remembers.
+// True if some task of the bundle has been at work.
 bool has_left_traces(const BundleFolder& folder, const BundleRecord& bundle) {
   if (!fs::is_empty(folder.root() / "ended")) return true;
   for (int task = 0; task < bundle.tasks; ++task) {
@@ -152,7 +151,7 @@ Bundles::Bundles(Database& database, CampaignState& state, const Campaign& campa
       events_(database.connection()) {}
 
 std::string Bundles::hand_over(const BundleSettings& settings) {
-  // What is not mounted now must not be made anew below it.
+  // A shared folder that is not mounted must not be made anew below its mount point.
   if (!fs::is_directory(settings.shared) && book_.are_out_in(settings.shared.string())) {
     tell_once(
         settings.shared.string(),
@@ -187,8 +186,8 @@ std::string Bundles::describe(const BundleSettings& settings) {
 }
 
 std::string Bundles::free_name(const fs::path& shared) {
-  // A number whose folder is there was used before this database was restored from an older copy, or by an
-  // owner that died before it had made a bundle of it.
+  // Skips numbers whose folder exists: they were used before this database was restored from an older copy,
+  // or by an owner that died before it stored the bundle.
   for (int number = book_.count() + 1;; ++number) {
     std::string name = fmt::format("{}-{}-{:04}", campaign_.name, mark_of(directory_), number);
     if (!fs::exists(BundleFolder(shared, name).root())) return name;
@@ -235,8 +234,8 @@ void Bundles::write(const BundleFolder& folder, const Manifest& manifest, const 
   write_durably(folder.manifest(), manifest_json(manifest).dump(1) + '\n');
 }
 
-// The files first, then the rows, then the job: whatever is cut off when, a row without a job is found by the
-// job's name, and a folder without a row was never submitted.
+// Writes the files first, then the rows, then submits the job. After a crash, a row without a job is found by
+// the job's name, and a folder without a row was never submitted.
 std::string Bundles::make(const BundleSettings& settings, const std::vector<SeedId>& seeds) {
   Manifest manifest = manifest_of(settings, seeds);
   manifest.bundle = free_name(settings.shared);
@@ -312,17 +311,17 @@ Bundles::SettleReport Bundles::settle() {
     ++settled.unreachable;
     std::error_code unreachable;
     if (!fs::is_directory(CampaignDirectory(bundle.shared).spool(), unreachable))
-      continue;  // the state says so
+      continue;  // state_ has warned of it
     tell_once(
         bundle.name,
         fmt::format("{}; {} seeds of this bundle are out. `peclet ingest --forget {}` queues them again", why,
                     book_.seeds_out(bundle.id).size(), bundle.name));
   }
-  if (settled.unreachable > 0) state_.ingest_spool();  // what there is elsewhere
+  if (settled.unreachable > 0) state_.ingest_spool();  // results in other folders
   return settled;
 }
 
-// Turns of --follow would fill a log with it.
+// Warns unless the last warning about the subject was the same, which --follow would repeat at every turn.
 void Bundles::tell_once(const std::string& about, const std::string& message) {
   std::string& last = told_[about];
   if (last != message) listener_.warn(message);
@@ -334,7 +333,7 @@ void Bundles::settle_bundle(const BundleRecord& known, SettleReport& settled) {
   const BundleFolder folder(bundle.shared, bundle.name);
   const Manifest manifest = read_manifest(folder.manifest());
   std::string why;
-  // Asked before the files are read: whatever a task that has gone has left is there by then.
+  // The batch system is asked before the files are read: what an ended task left is there by then.
   const std::optional<QueryAnswer> answer = query_job(folder.root(), bundle.name, why);
   if (!answer) {
     ++settled.unknown;
@@ -365,7 +364,7 @@ void Bundles::book(const BundleRecord& bundle, const BundleFolder& folder, const
   std::vector<std::optional<PlacedReport>> reports;
   reports.reserve(out.size());
   for (const BundleSeedRecord& seed : out) reports.push_back(read_report(folder.ended(seed.place)));
-  // After the reports: a result is in the spool when, or soon after, its report says so.
+  // Results are taken in after the reports: a result is in the spool when, or soon after, its report says so.
   state_.ingest_spool();
 
   Transaction booking(database_.connection());
@@ -412,11 +411,10 @@ void Bundles::return_seed(const BundleRecord& bundle, const BundleFolder& folder
   ++returned.seeds;
   if (!cut_off) ++returned.lifeless;
   if (id && cut_off && cut_off->place == seed.place && cut_off->report.outcome == AttemptOutcome::running) {
-    // Its task was ended in the middle of it, without time to say so: that is nobody's blame, but it is
-    // counted.
+    // The task had no time to report: the attempt is counted, but not blamed.
     AttemptReport report = cut_off->report;
     report.outcome = AttemptOutcome::killed;
-    report.message = "its task ended without a word";
+    report.message = "its task ended without a report";
     state_.end_handed_over(*id, seed.task, report,
                            folder.shared().checkpoint(state_.point(id->point).hash, id->seed));
     book_.seed_ended(bundle.id, seed.place, to_string(report.outcome));
@@ -429,11 +427,11 @@ void Bundles::return_seed(const BundleRecord& bundle, const BundleFolder& folder
 void Bundles::tell(const BundleRecord& bundle, const Returned& returned, SettleReport& settled) {
   if (returned.seeds > 0) {
     listener_.note(
-        fmt::format("{}: tasks of job {} have gone without a result for {} seeds; they are queued again",
+        fmt::format("{}: tasks of job {} ended without a result for {} seeds, which are queued again",
                     bundle.name, bundle.job, returned.seeds));
   }
   if (returned.lifeless > 0) {
-    settled.lifeless = fmt::format("{}: tasks have gone without having begun; what they printed is in {}",
+    settled.lifeless = fmt::format("{}: tasks ended before they began a seed; what they printed is in {}",
                                    bundle.name, BundleFolder(bundle.shared, bundle.name).logs().string());
   }
   for (const std::string& trouble : returned.troubles) {
@@ -449,10 +447,10 @@ void Bundles::close(const BundleRecord& bundle, const BundleFolder& folder) {
   events_.write("bundle-closed", fmt::format("{} (job {}): {} seeds came back without a result", bundle.name,
                                              bundle.job, without));
   booking.commit();
-  // What the tasks printed is of interest only when something went wrong.
+  // Logs of tasks are kept only if something went wrong.
   if (without == 0) return void(fs::remove_all(folder.root()));
   for (int task = 0; task < bundle.tasks; ++task)
-    fs::remove_all(folder.left(task));  // of attempts without a result
+    fs::remove_all(folder.left(task));  // files of attempts without a result
 }
 
 }  // namespace peclet::runner

@@ -1,10 +1,11 @@
-// Bundles of seeds in the hands of a batch system: made, submitted, asked after, settled.
+// Bundles hands seeds over to a batch system in bundles: it makes them, submits them, asks about them and
+// settles them.
 //
-// Nothing here trusts the batch system with a result: results come through the spool, and what became of an
-// attempt through the reports of the tasks. The batch system is asked for one thing: is a task still there?
-// When it is not, and has left no result, its seeds are queued again. When nobody answers, nothing is
-// concluded, until a person says that a bundle is to be forgotten. A wrong answer costs time only: a seed
-// that is run twice gives the same result twice, and it counts once.
+// The batch system is not trusted with results: these come through the spool, and the ends of attempts
+// through the reports of tasks. It is asked one thing only: whether a task is still there. The seeds of a
+// task that is gone without a result are queued again. Without an answer nothing is concluded, until a person
+// forgets the bundle. A wrong answer only costs time: a seed that runs twice gives the same result twice,
+// which counts once.
 #pragma once
 
 #include <map>
@@ -25,20 +26,19 @@ namespace peclet::runner {
 struct BundleSettings {
   fs::path shared;
   int seeds_per_task = 1;
-  int largest_array = 1000;  // tasks of one bundle
+  int largest_array = 1000;  // most tasks of one bundle
   int threads = 1;
   double lease_seconds = 120, checkpoint_seconds = 60;
-  bool ahead = false;  // also the seeds of the stop test after the next one
+  bool ahead = false;  // also hand over the seeds of the stop tests after the next ones
   BatchTemplate scripts;
-  std::vector<std::string> options;  // of submit.sh
+  std::vector<std::string> options;  // options of submit.sh
   std::vector<std::string> engine;   // program and arguments
   fs::path engine_folder;
-  Json engine_provenance;  // of the owner's engine: the nodes' must have its identity
+  Json engine_provenance;  // provenance of the owner's engine; the nodes' must have its identity
   std::string program;     // peclet, as the nodes find it
 };
 
-// What the template would make of these settings. Throws InputError for what cannot be put into it, before
-// anything is written.
+// Throws InputError if these settings cannot be put into the template.
 void check_template(const BatchTemplate& scripts, const fs::path& shared, const std::string& program);
 
 class Bundles {
@@ -48,35 +48,32 @@ class Bundles {
           RunListener& listener);
 
   struct SettleReport {
-    int open = 0;         // bundles of which something is still out
-    int unknown = 0;      // of these, those that nobody answers for
-    int unreachable = 0;  // of the unknown, those whose folder is not there
-    int unconfirmed = 0;  // those whose submission has not been seen
-    int ended = 0;        // seeds that have ended, in whatever way
-    std::string
-        lifeless;  // of tasks that have gone without having begun a seed, in words; "" when there were none
-    // Something is out that will be heard of again.
+    int open = 0;          // bundles with tasks or seeds that are still out
+    int unknown = 0;       // open bundles without an answer of the batch system
+    int unreachable = 0;   // unknown bundles whose folder is not there
+    int unconfirmed = 0;   // open bundles whose submission has not been confirmed
+    int ended = 0;         // seeds that have ended, in whatever way
+    std::string lifeless;  // message about tasks that ended before they began a seed; "" if none did
+    // True if something is out that will be heard of again.
     bool any_awaited() const { return open > unreachable + unconfirmed; }
   };
-  // Takes in results and reports, asks the batch system what is still there, and puts the seeds of tasks that
-  // have gone without a result back.
+  // Takes in results and reports, asks the batch system which tasks are still there, and queues the seeds of
+  // tasks that are gone without a result again.
   SettleReport settle();
 
   // Submits again the jobs that the batch system has never shown. Requires a settle() before, which asks for
-  // them by name.
-  // The result is why the batch system refused, "" when it did not; the seeds are open again then.
+  // them by name. Returns why the batch system refused, or ""; after a refusal the seeds are open again.
   std::string submit_unconfirmed();
-  // Hands the open seeds over. The result is as before; what was taken before the refusal stays out.
+  // Hands the open seeds over. Returns as submit_unconfirmed(); what was taken before a refusal stays out.
   std::string hand_over(const BundleSettings& settings);
   bool any_out() const { return !book_.open_bundles().empty(); }
-  // What hand_over() would do, in words; nothing is made or submitted.
+  // Describes what hand_over() would do; nothing is made or submitted.
   std::string describe(const BundleSettings& settings);
-  // Ends all jobs, and takes the seeds back of those that were never submitted. Tasks may take their time to
-  // go.
+  // Ends all jobs, and takes back the seeds of jobs that were never submitted. Tasks may take time to end.
   void cancel();
-  // Queues the seeds of a bundle again without waiting for anybody's answer, and ends its job where that can
-  // be reached. Results that its tasks leave all the same are taken in, and count once. False: nothing of it
-  // is out.
+  // Queues the seeds of a bundle again without waiting for an answer; its job is ended once its folder can be
+  // reached. Results that its tasks still leave are taken in, and count once. Returns false if no open bundle
+  // has this name.
   bool forget(const std::string& name);
 
  private:
@@ -110,8 +107,8 @@ class Bundles {
   BundleStore book_;
   SeedStore seeds_;
   EventStore events_;
-  std::map<std::string, std::string>
-      told_;  // the last complaint about each bundle: the same is not made twice
+  // Last complaint about each bundle, so that it is not repeated.
+  std::map<std::string, std::string> told_;
 };
 
 }  // namespace peclet::runner

@@ -43,7 +43,7 @@ void link_or_copy(const fs::path& place, const fs::path& copy) {
 }
 
 void refuse_unsuitable_folder(const CampaignDirectory& directory, const fs::path& folder) {
-  // A path that leads through a disk that is not mounted would be made on the one above it, unnoticed.
+  // A path through a disk that is not mounted would be made on the disk above it, unnoticed.
   if (!fs::is_directory(folder.parent_path())) {
     throw InputError(folder.string(), "", "",
                      fmt::format("there is no folder {}: mount its disk, or make it (of a backup's path only "
@@ -58,7 +58,7 @@ void refuse_unsuitable_folder(const CampaignDirectory& directory, const fs::path
     throw InputError(folder.string(), "", "", "is the folder of a campaign; backups need one of their own");
   }
   if (kind_of(newest_backup(folder)).empty()) return;
-  // Damage is found when the copy is made; here only those are told apart that can still be read.
+  // Damage is found when the copy is made; here only readable databases are compared.
   const Contents here = campaign_in(directory.database());
   const Contents there = campaign_in(newest_backup(folder));
   if (here.origin.empty() || there.origin.empty() || there.same_campaign(here)) return;
@@ -66,7 +66,7 @@ void refuse_unsuitable_folder(const CampaignDirectory& directory, const fs::path
                    "holds backups of another campaign; choose another folder");
 }
 
-// A file may go while we look: its result was committed, and then it is in the database.
+// Returns false if the file has gone: its result was committed meanwhile and is in the database.
 bool copy_file_that_may_go(const fs::path& from, const fs::path& folder) {
   try {
     copy_regular(from, folder / from.filename(), largest_copied_file);
@@ -79,7 +79,7 @@ bool copy_file_that_may_go(const fs::path& from, const fs::path& folder) {
 
 int copy_files(const fs::path& from, const fs::path& to) {
   if (kind_of(from) != "a folder") return 0;
-  if (kind_of(to) == "a link") fs::remove(to);  // it would lead the copies elsewhere
+  if (kind_of(to) == "a link") fs::remove(to);  // a link would lead the copies elsewhere
   fs::create_directories(to);
   int copied = 0;
   for (const fs::path& file : whole_files(from)) {
@@ -136,7 +136,7 @@ std::string as_text(const Backup& backup, const CampaignDirectory& directory, bo
                             shell_word(directory.root().filename().string()));
 }
 
-// A backup must not be what fills the disk: beside it, there has to be room for as much again.
+// Throws unless the disk has room for a backup and for as much again, so that a backup does not fill it.
 void refuse_to_fill_the_disk(const CampaignDirectory& directory) {
   const std::uintmax_t size = fs::file_size(directory.database());
   const std::uintmax_t available = fs::space(directory.backup()).available;
@@ -155,13 +155,13 @@ Backup back_up(const CampaignDirectory& directory) {
 struct Source {
   fs::path file;
   Contents contents;
-  std::string remarks;  // why it is not a newer one
+  std::string remarks;  // why newer backups were passed over
 };
 
-// The newest sound one. A damaged generation is a reason to look at the one before it, not to give up.
+// Returns the newest sound backup. After a damaged generation the one before it is examined.
 Source find_backup(const fs::path& given) {
   std::error_code absent;
-  const fs::path target = fs::canonical(given, absent);  // a person may name a link to it
+  const fs::path target = fs::canonical(given, absent);  // the path may be a link
   std::vector<fs::path> candidates{absent ? given : target};
   if (fs::is_directory(given)) candidates = {newest_backup(given), previous_backup(given)};
   Source source;
@@ -179,7 +179,7 @@ Source find_backup(const fs::path& given) {
   throw InputError(given.string(), "", "", "there is no backup here (a folder with backup.db, or one file)");
 }
 
-// What the present database holds; nothing when it is absent or damaged, and then `damage` says how.
+// Returns what the present database holds; nothing if it is absent, or damaged as `damage` then says.
 std::optional<Contents> examine_present(const fs::path& database, std::string& damage) {
   if (kind_of(database).empty()) return std::nullopt;
   try {
@@ -188,7 +188,7 @@ std::optional<Contents> examine_present(const fs::path& database, std::string& d
     damage = error.what();
   } catch (const DatabaseError& error) {
     damage = error.what();
-  } catch (const UnsuitableFile& error) {  // it is kept aside as it is
+  } catch (const UnsuitableFile& error) {  // kept aside as it is
     damage = error.what();
   }
   return std::nullopt;
@@ -209,8 +209,8 @@ void refuse_to_replace(const CampaignDirectory& directory, const Contents& prese
                                backup.results));
 }
 
-// The database first: until the backup has taken its place there is none, and nothing can go on with half of
-// it. Its write-ahead log must never meet another database.
+// Moves the present database to aside/, its main file first: until the backup has taken its place there is
+// none, so no program can continue with half of it. Its write-ahead log must never meet another database.
 fs::path keep_aside(const CampaignDirectory& directory) {
   fs::path folder;
   for (const char* const suffix : {"", "-wal", "-shm", "-journal"}) {
@@ -241,7 +241,7 @@ FileCopies bring_files(const CampaignDirectory& directory, const fs::path& backu
 
 struct Place {
   CampaignDirectory directory;
-  fs::path file;  // the campaign's
+  fs::path file;  // campaign file
   std::string run_arguments;
 };
 
@@ -268,15 +268,14 @@ void record(const CampaignDirectory& directory, const Source& source) {
   booking.commit();
 }
 
-// What was restored is what counts now, also where the campaign's own last backup knows more, or is
-// damaged: that becomes the one before.
+// Makes a new backup if the campaign's own last one knows more than what was restored, or is damaged. That
+// one becomes the previous generation. Returns true if a new one was made.
 bool leave_newer_backup_behind(const CampaignDirectory& directory, const Source& source) {
   const fs::path newest = newest_backup(directory.backup());
   if (kind_of(newest).empty() || fs::equivalent(newest, source.file)) return false;
   try {
     if (examine(newest).attempts <= source.contents.attempts) return false;
-  } catch (
-      const IntegrityError&) {  // why an older one was restored; what can be read of it may still be newer
+  } catch (const IntegrityError&) {  // a damaged backup may still be the newer one
   }
   make_backup(directory, directory.backup(), false);
   return true;
@@ -289,13 +288,12 @@ std::string write_campaign_file(const fs::path& file, const Json& document) {
   }
   try {
     if (read_campaign(file).document == document) return "";
-  } catch (const InputError&) {  // `peclet run` will say what is wrong with it
+  } catch (const InputError&) {  // `peclet run` will say what is wrong
   }
-  return fmt::format("{} was there, is not what was run last, and is not touched\n", file.string());
+  return fmt::format("{} differs from what was run last, and is not changed\n", file.string());
 }
 
-// Copies what is kept of these into a folder of backups. Throws NoRoomError, std::system_error,
-// UnsuitableFile.
+// Copies the kept files into a folder of backups. Throws NoRoomError, std::system_error, UnsuitableFile.
 FileCopies copy_files_of(const std::vector<FileRecord>& records, const CampaignDirectory& directory,
                          const fs::path& backups) {
   FileCopies copies;
@@ -303,7 +301,7 @@ FileCopies copy_files_of(const std::vector<FileRecord>& records, const CampaignD
   for (const FileRecord& record : records) {
     if (!record.kept) continue;
     const fs::path target = copy_of(record, backups), place = record.place(directory);
-    // Only whole files get such a name.
+    // Only complete files get such a name.
     const bool is_there = kind_of(target) == "a regular file" && fs::file_size(target) == record.file.bytes;
     if (!is_there && !is_what_it_was(place, record)) {
       ++copies.lacking;
@@ -352,7 +350,7 @@ Backup make_backup(const CampaignDirectory& directory, const fs::path& folder, b
   remove_unfinished_files(folder);
   Backup backup;
   if (checkpoints) {
-    // Before the database: a result that is committed in between is in both, and counts once.
+    // Copied before the database: a result that is committed in between is in both, and counts once.
     backup.spool_files = copy_files(directory.spool(), folder / "spool");
     copy_files(directory.left(), CampaignDirectory(folder).left());  // after the results that list them
     backup.checkpoints = copy_files(directory.checkpoints(), folder / "checkpoints");
@@ -360,7 +358,7 @@ Backup make_backup(const CampaignDirectory& directory, const fs::path& folder, b
   const fs::path next = folder / "backup.next.db";
   std::vector<FileRecord> files;
   copy_database(directory.database(), next, [&](Connection& copy) {
-    // Whoever restores the copy can say when and where it was made.
+    // The event says when and where the copy was made.
     EventStore(copy).write("backup", "copied from " + directory.database().string());
     files = files_in(copy);
     backup.results = extent_of(copy).results;
@@ -417,7 +415,7 @@ void PeriodicBackup::tell() {
   } catch (const std::exception& error) {
     if (complaint_ == error.what()) return;
     complaint_ = error.what();
-    listener_.warn("no backup could be made, which is tried again: " + complaint_);
+    listener_.warn("no backup could be made; it will be tried again: " + complaint_);
   }
 }
 
@@ -444,7 +442,7 @@ std::string restore_campaign(const RestoreOptions& options) {
   const bool is_older = leave_newer_backup_behind(directory, source);
   std::string text = source.remarks;
   if (!damage.empty()) text += damage + "\n";
-  const std::string& made_at = source.contents.backed_up_at;  // not of a database that is no backup
+  const std::string& made_at = source.contents.backed_up_at;  // empty if it is not a backup
   text += fmt::format("{}: restored from {}{}, with {} results\n", directory.root().string(),
                       source.file.string(), made_at.empty() ? "" : ", made at " + made_at,
                       source.contents.results);

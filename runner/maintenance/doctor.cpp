@@ -33,8 +33,7 @@ const char* name_of(Severity severity) {
   return severity == Severity::integrity ? "integrity" : severity == Severity::warning ? "warning" : "note";
 }
 
-// The seed runs again, and gives the same result if its engine is the same; what was stored is kept for
-// people.
+// Queues the seed again, and keeps what was stored in spool/rejected/.
 void run_again(Database& owner, const CampaignDirectory& directory, std::int64_t point, int seed) {
   if (const std::string stored = readable_result(owner, point, seed); !stored.empty()) {
     write_durably(directory.rejected() / fmt::format("point-{}-seed-{}-altered.json", point, seed), stored);
@@ -46,7 +45,7 @@ void run_again(Database& owner, const CampaignDirectory& directory, std::int64_t
   booking.commit();
 }
 
-// What is wrong with the result of a seed that has ended: "" when nothing is.
+// Returns what is wrong with the result of a seed that has ended; "" if nothing is.
 std::string fault_of(Database& database, const PointRecord& point, const RealisationRecord& record,
                      const std::vector<std::string>& observables) {
   try {
@@ -60,7 +59,7 @@ std::string fault_of(Database& database, const PointRecord& point, const Realisa
       return "has other numbers than its result";
     return "";
   } catch (const ResultError& error) {
-    return fmt::format("has a result that is none: {}", error.what());
+    return fmt::format("has an invalid result: {}", error.what());
   } catch (const IntegrityError& error) {
     return fmt::format("has a result that cannot be read: {}", error.what());
   }
@@ -131,7 +130,7 @@ void examine_stop_tests(Database& database, Findings& findings) {
                             Transaction booking(owner.connection());
                             ResultStore(owner).store_stop_tests(id, stop_tests);
                             EventStore(owner.connection())
-                                .write("repaired", id, std::nullopt, "looked again at the stored results");
+                                .write("repaired", id, std::nullopt, "tested the stored results again");
                             booking.commit();
                           }});
     }
@@ -160,7 +159,7 @@ void examine_states(Database& database, const CampaignUnderExamination& examined
   }
 }
 
-// Are the seeds that a batch system has where somebody can find them again?
+// Reports handed-over seeds whose bundle cannot be reached, or whose job is not confirmed.
 void examine_hand_over(Database& database, const CampaignUnderExamination& examined, Findings& findings) {
   for (const HandedOver& bundle : BundleStore(database.connection()).handed_over()) {
     std::string why;
@@ -172,7 +171,7 @@ void examine_hand_over(Database& database, const CampaignUnderExamination& exami
                "put it back, and `peclet ingest` takes in what it holds; if it is gone for good, `peclet "
                "ingest --forget {}` queues them again",
                bundle.bundle)});
-    } else if (bundle.job.empty() && !examined.owner) {  // an owner is just about to know
+    } else if (bundle.job.empty() && !examined.owner) {  // an owner will know soon
       findings.push_back(
           {"bundle-unconfirmed", Severity::warning,
            fmt::format(
@@ -186,7 +185,7 @@ void examine_hand_over(Database& database, const CampaignUnderExamination& exami
   }
 }
 
-// A damaged database cannot be asked anything more.
+// A damaged database is not examined any further.
 void examine_database(const CampaignUnderExamination& examined, Findings& findings) {
   const auto damaged = [&](const std::string& message) {
     std::string cure = restore_hint(examined.directory);

@@ -1,4 +1,4 @@
-// The verb `peclet doctor`: is everything about a campaign in order, and what cures it if not?
+// The verb `peclet doctor` examines a campaign, and says what cures its faults.
 #pragma once
 
 #include <functional>
@@ -20,29 +20,29 @@ struct DoctorOptions {
 };
 
 enum class Severity {
-  note,      // nothing is wrong
-  warning,   // something will go wrong, or somebody should look
-  integrity  // what is stored contradicts itself
+  note,      // no fault
+  warning,   // something will go wrong, or a person should check it
+  integrity  // stored data contradict each other
 };
 
 struct Finding {
   std::string code;  // for programs: "checkpoint-left"
   Severity severity = Severity::note;
   std::string message, cure;
-  std::function<void(Database& owner)> repair{};  // safe, and undone by nothing that a run would miss
+  std::function<void(Database& owner)> repair{};  // safe: removes nothing that a run would miss
   bool repaired = false;
 };
 
-// What is examined. Requires that the campaign's folder exists.
+// The campaign that is examined. Requires that its folder exists.
 struct CampaignUnderExamination {
   CampaignDirectory directory;
-  std::optional<std::int64_t> owner;  // process that runs it now; with repairs, nobody does
+  std::optional<std::int64_t> owner;  // process that runs it now; absent during repairs
   std::string now;                    // wall-clock time in UTC, as in the database
 };
 
 using Findings = std::vector<Finding>;
 
-// Each stop tests at one side of it (doctor_files.cpp, doctor_machine.cpp). A reader's database.
+// Each examines one side (doctor_files.cpp, doctor_machine.cpp). The database is open for reading.
 void examine_files(Database& database, const CampaignUnderExamination& examined, Findings& findings);
 void examine_left_files(Database& database, const CampaignUnderExamination& examined, Findings& findings);
 void examine_backups(Database& database, const CampaignUnderExamination& examined, Findings& findings);
@@ -53,10 +53,10 @@ void examine_disk(Database& database, const CampaignUnderExamination& examined, 
 
 struct Diagnosis {
   std::string text;   // for people, or JSON
-  int exit_code = 0;  // 0 sound, 6 integrity, 1 other warnings; what was repaired does not count
+  int exit_code = 0;  // 0 sound, 6 integrity, 1 other warnings; repaired findings do not count
 };
 
-// Throws InputError when there is no campaign, and with `repair` OwnedByAnother when somebody runs it.
+// Throws InputError if there is no campaign; for repairs OwnedByAnother if a process runs it.
 Diagnosis examine_campaign(const DoctorOptions& options);
 
 }  // namespace peclet::runner

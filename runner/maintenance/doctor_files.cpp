@@ -1,4 +1,4 @@
-// Do the files of a campaign belong to it, and are there backups?
+// Examines whether the files of a campaign belong to it, and whether there are backups.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ constexpr std::array known_names{"campaign.db",
                                  "requests",
                                  "files"};
 
-// A campaign that works makes one every ten minutes.
+// A running campaign makes a backup every ten minutes.
 constexpr double old_backup_hours = 24;
 
 std::vector<fs::path> files_in(const fs::path& folder) {
@@ -74,18 +74,19 @@ enum class Need {
   none    // its seed has ended
 };
 
-// The seeds below the stop test all have ended, unless one is to be run again.
+// True if the seed lies beyond the stop test that has decided the point. The seeds below it have all ended,
+// unless one is to be run again.
 bool is_extra(const RealisationRecord& record, const std::vector<StopTestRecord>& stop_tests) {
   return !stop_tests.empty() && stop_tests.back().stop_test.verdict != Verdict::more &&
          record.seed >= stop_tests.back().stop_test.seeds;
 }
 
-// What each checkpoint is good for, by its name.
+// Returns what each checkpoint is needed for, by its name.
 std::map<std::string, Need> checkpoint_names(Database& database, const CampaignDirectory& directory) {
   std::map<std::string, Need> names;
   for (const auto& points : {database.points(), database.inactive_points()}) {
     for (const PointRecord& point : points) {
-      if (point.set_aside) continue;  // a checkpoint of its scene is of the engine that is used now
+      if (point.set_aside) continue;  // checkpoints of its scene are of the engine that is used now
       const std::vector<StopTestRecord> stop_tests = database.stop_tests(point.id);
       for (const RealisationRecord& record : database.realisations(point.id)) {
         const Need need = !record.cause.empty()          ? Need::none
@@ -112,7 +113,7 @@ void examine_checkpoints(Database& database, const CampaignUnderExamination& exa
       strays.push_back(file);
     }
   }
-  // A worker may be about to remove, or to leave, one while the campaign runs.
+  // While the campaign runs, a worker may be about to remove a checkpoint, or to leave one.
   if (!ended.empty() && !examined.owner) {
     findings.push_back(
         {"checkpoint-left", Severity::note,
@@ -123,10 +124,10 @@ void examine_checkpoints(Database& database, const CampaignUnderExamination& exa
   if (!extra.empty() && !examined.owner) {
     findings.push_back(
         {"checkpoint-extra", Severity::note,
-         fmt::format("{} checkpoints ({:.1f} MB) are of seeds that their points, which are decided, did not "
+         fmt::format("{} checkpoints ({:.1f} MB) belong to extra seeds, which their decided points did not "
                      "need: {}",
                      extra.size(), megabytes(extra), listed(extra)),
-         "`peclet doctor --repair` removes them; kept, they save these seeds' time should a tolerance be "
+         "`peclet doctor --repair` removes them; if kept, they save these seeds' time when a tolerance is "
          "tightened",
          [extra](Database&) { remove_all_of(extra); }});
   }
@@ -139,7 +140,7 @@ void examine_checkpoints(Database& database, const CampaignUnderExamination& exa
   }
   if (!strays.empty()) {
     findings.push_back({"stray-checkpoint", Severity::note,
-                        fmt::format("{} files in checkpoints/ are of no seed of this campaign: {}",
+                        fmt::format("{} files in checkpoints/ belong to no seed of this campaign: {}",
                                     strays.size(), listed(strays)),
                         "move them away if nothing else needs them"});
   }
@@ -195,11 +196,12 @@ void examine_strays(const CampaignUnderExamination& examined, Findings& findings
     if (!known && file.extension() != ".tmp") strays.push_back(file);
   }
   if (strays.empty()) return;
-  findings.push_back({"stray-file", Severity::note, "files that belong to nobody: " + listed(strays),
+  findings.push_back({"stray-file", Severity::note,
+                      "files that do not belong to the campaign: " + listed(strays),
                       "move them away if nothing else needs them"});
 }
 
-// "files/a, files/b, files/c ...": the first of these, as they lie below `root`.
+// Returns "files/a, files/b, files/c ...": the first of these places, as they lie below `root`.
 std::string places_text(const std::vector<fs::path>& places, const fs::path& root) {
   constexpr std::size_t most = 3;
   std::string text;
@@ -209,7 +211,7 @@ std::string places_text(const std::vector<fs::path>& places, const fs::path& roo
   return places.size() > most ? text + " ..." : text;
 }
 
-// Reports files that are not what their rows say, for whatever reason.
+// Reports files that do not match their rows.
 void report_faulty(const std::vector<FileRecord>& faulty, const char* code, const char* how,
                    const CampaignDirectory& directory, Findings& findings) {
   if (faulty.empty()) return;
@@ -239,7 +241,7 @@ void examine_places(Database& database, const CampaignUnderExamination& examined
     known.insert(place);
     if (is_there(place)) {
       if (!is_sound(record, directory)) damaged.push_back(record);
-    } else if (!examined.owner) {  // those of a result that has just been committed are on their way
+    } else if (!examined.owner) {  // files of a result that was just committed are on their way
       missing.push_back(record);
     }
   }
@@ -254,7 +256,7 @@ void examine_places(Database& database, const CampaignUnderExamination& examined
   if (orphans.empty()) return;
   findings.push_back(
       {"file-orphan", Severity::note,
-       fmt::format("{} files in files/ are of no result: {}", orphans.size(),
+       fmt::format("{} files in files/ belong to no result: {}", orphans.size(),
                    places_text(orphans, directory.root())),
        "their seeds bring them again if the database is an older one; move them away otherwise"});
 }
@@ -296,8 +298,7 @@ void examine_backups(Database& database, const CampaignUnderExamination& examine
   }
 }
 
-// Are the files that realisations have left where the database says, and are they what it says?
-
+// Examines whether the files that realisations have left are where the database says, and match it.
 void examine_left_files(Database& database, const CampaignUnderExamination& examined, Findings& findings) {
   examine_places(database, examined, findings);
   if (examined.owner || kind_of(examined.directory.left()) != "a folder") return;
@@ -309,7 +310,7 @@ void examine_left_files(Database& database, const CampaignUnderExamination& exam
   }
   if (waiting.empty()) return;
   findings.push_back({"file-left", Severity::note,
-                      fmt::format("{} files are of attempts that gave no result: {}", waiting.size(),
+                      fmt::format("{} files belong to attempts that gave no result: {}", waiting.size(),
                                   places_text(waiting, examined.directory.root())),
                       "the next `peclet run` removes them"});
 }

@@ -1,4 +1,4 @@
-// Is the machine fit for the campaign: processes, clock, disk?
+// Examines whether the machine is fit for the campaign: processes, clock, disk.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <sys/statvfs.h>
@@ -23,7 +23,7 @@ std::string content(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// The value of a variable in the environment that a process was started with, which NUL characters divide.
+// Returns a variable of the environment that a process was started with, which NUL characters divide.
 std::string variable_of(const std::string& environment, const std::string& name) {
   std::istringstream entries(environment);
   for (std::string entry; std::getline(entries, entry, '\0');) {
@@ -39,7 +39,7 @@ std::string command_of(const fs::path& process) {
   return words;
 }
 
-// The folders of all processes, in /proc.
+// Returns the folders of all processes, in /proc.
 std::vector<fs::path> processes() {
   std::vector<fs::path> found;
   for (const fs::directory_entry& entry : fs::directory_iterator("/proc")) {
@@ -49,8 +49,7 @@ std::vector<fs::path> processes() {
   return found;
 }
 
-// "process 4711 (peclet watch), which is stopped": those that have the database open, the owner and this
-// process apart.
+// Returns the other processes that have the database open: "process 4711 (peclet watch), which is stopped".
 std::vector<std::string> readers_of(const fs::path& database, const std::string& owner) {
   std::error_code error;
   const fs::path file = fs::canonical(database, error);
@@ -78,8 +77,8 @@ struct RoomNeeded {
   std::uintmax_t bytes = 0, files = 0;
 };
 
-// What the seeds that may still be wanted will need: their rows, two backups and a third that is being made,
-// and a checkpoint and a result in flight for each that runs at a time.
+// Returns the room that the seeds of the next stop tests need: their rows, two backups and a third that is
+// being made, and a checkpoint and a result in flight for each that runs at a time.
 RoomNeeded still_needed(Database& database, const CampaignDirectory& directory) {
   const std::int64_t results = extent_of(database.connection()).results;
   const std::uintmax_t size = fs::file_size(directory.database());
@@ -90,7 +89,7 @@ RoomNeeded still_needed(Database& database, const CampaignDirectory& directory) 
     const std::vector<StopTestRecord> stop_tests = database.stop_tests(point.id);
     if (!stop_tests.empty() && stop_tests.back().stop_test.verdict != Verdict::more) continue;
     const int ended = database.counts(point.id).terminal();
-    // The next stop test is what is certain to be needed.
+    // The next stop test is certain to be needed.
     const int wanted = stop_tests.empty() ? target.minimum : stop_tests.back().stop_test.seeds * 5 / 4 + 1;
     seeds += static_cast<std::uintmax_t>(std::max(0, std::min(wanted, target.maximum) - ended));
   }
@@ -112,7 +111,7 @@ void examine_processes(const CampaignUnderExamination& examined, Findings& findi
   const std::string owner = examined.owner ? std::to_string(*examined.owner) : "";
   for (const fs::path& process : processes()) {
     const std::string number = process.filename().string();
-    // Those of other users cannot be read, and are not ours.
+    // Processes of other users cannot be read, and are not ours.
     const std::string environment = content(process / "environ");
     if (variable_of(environment, "PECLET_CAMPAIGN") != examined.directory.root().string()) continue;
     const std::string theirs = variable_of(environment, "PECLET_OWNER");
@@ -145,10 +144,9 @@ void examine_clock(Database& database, const CampaignUnderExamination& examined,
   }
 }
 
-// While somebody reads an earlier state of the database, SQLite cannot begin its log anew; everything that is
-// written goes on top of it.
+// While a reader uses an earlier state of the database, SQLite cannot begin its log anew, and the log grows.
 void examine_log(const CampaignUnderExamination& examined, Findings& findings) {
-  constexpr std::uintmax_t large = 32 << 20;  // twice what a checkpoint in time lets it become
+  constexpr std::uintmax_t large = 32 << 20;  // far more than checkpoints in time let it become
   std::error_code absent;
   const std::uintmax_t size = fs::file_size(examined.directory.database().string() + "-wal", absent);
   if (absent || size < large) return;
@@ -157,13 +155,13 @@ void examine_log(const CampaignUnderExamination& examined, Findings& findings) {
   findings.push_back(
       {"log-large", Severity::warning,
        fmt::format(
-           "the database's write-ahead log has {:.0f} MB: somebody reads an earlier state and does not "
-           "come to an end{}{}",
+           "the database's write-ahead log has {:.0f} MB: a process reads an earlier state and does not "
+           "finish{}{}",
            1e-6 * static_cast<double>(size), readers.empty() ? "" : "; it is open in ",
            fmt::join(readers, ", ")),
        readers.empty()
            ? "the owner's next commits make it small again"
-           : "let that process go on (kill -CONT) or end it; the log then becomes small by itself"});
+           : "let that process continue (kill -CONT) or end it; the log then becomes small by itself"});
 }
 
 void examine_disk(Database& database, const CampaignUnderExamination& examined, Findings& findings) {

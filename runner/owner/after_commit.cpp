@@ -24,9 +24,8 @@ void append(std::vector<T>& list, std::vector<T>& later) {
   std::move(later.begin(), later.end(), std::back_inserter(list));
 }
 
-// Gives the file that is open the further name `name`, on the same file system; elsewhere copies it. What has
-// lost its own name since it was checked, or has another file in its place, is the file that was checked all
-// the same.
+// Gives the open file the further name `name` on the same file system; elsewhere copies it. This is the
+// checked file, even if its own name was removed or given to another file.
 void link_or_copy(const Descriptor& file, std::uint64_t bytes, const fs::path& name) {
   fs::remove_all(name);
   const std::string open_file = fmt::format("/proc/self/fd/{}", file.number());
@@ -35,8 +34,8 @@ void link_or_copy(const Descriptor& file, std::uint64_t bytes, const fs::path& n
   copy_durably(file.number(), bytes, name);
 }
 
-// After the commit the file only changes its name, which needs no room. Until then it has a name that no file
-// of a result has.
+// Gives the file a waiting name in the folder of its place, which no file of a result has. After the commit
+// it is only renamed, which needs no room.
 void bring_home(const Descriptor& file, const FileRecord& record, const CampaignDirectory& directory,
                 AfterCommit& after) {
   const fs::path place = record.place(directory), seed = place.parent_path();
@@ -49,7 +48,7 @@ void bring_home(const Descriptor& file, const FileRecord& record, const Campaign
   after.keep(waiting, place);
 }
 
-// Brings the file of a known result that is not in its place to it, if the spool still has it.
+// Brings a missing file of a known result to its place if the spool still has it.
 void heal(const FileRecord& record, const fs::path& spool, const CampaignDirectory& directory,
           AfterCommit& after) {
   if (!record.kept || kind_of(record.place(directory)) == "a regular file") return;
@@ -60,7 +59,7 @@ void heal(const FileRecord& record, const fs::path& spool, const CampaignDirecto
   }
 }
 
-// The attempt that writes files with this stem, as CampaignDirectory::spool_file() spells it.
+// Returns the attempt that writes files with this stem, as CampaignDirectory::spool_file() spells it.
 std::optional<std::int64_t> attempt_of(const std::string& stem) {
   const std::size_t dash = stem.rfind('-');
   return dash == std::string::npos ? std::nullopt : number_in<std::int64_t>(stem.substr(dash + 1));
@@ -87,7 +86,7 @@ void AfterCommit::carry_out(RunListener& listener, FileRemoval& removal) {
     if (const std::string text = make_way(path, "a regular file"); !text.empty()) listener.warn(text);
   };
   for (const auto& [from, place] : to_keep_) {
-    // `peclet doctor` names one that somebody has taken away meanwhile.
+    // A file may have been removed meanwhile; `peclet doctor` names it.
     if (!is_there(from)) continue;
     make_way_for_file(place);
     rename_durably(from, place);
@@ -118,7 +117,7 @@ void take_files(Connection& connection, const CampaignDirectory& directory, cons
       heal(record, spool, directory, after);
   }
   if (files.empty()) return;
-  // What is then left of them: unwanted ones, and those that were copied.
+  // Removes what is left of them: unwanted files, and those that were copied.
   for (const fs::path& file : left_files_of(spool)) after.remove(file);
 }
 
@@ -126,11 +125,11 @@ void remove_files_of_the_dead(Database& database, const CampaignDirectory& direc
   for (const fs::path& file : whole_files(directory.left())) {
     const std::string name = file.filename().string();
     const std::size_t end = name.rfind('@');
-    if (end == std::string::npos) continue;  // not ours
+    if (end == std::string::npos) continue;  // another program's
     const std::string stem = name.substr(0, end);
-    // In this order: what a process that is gone has written is there by now.
+    // The process is checked first: what an ended process has written is there by now.
     if (is_at_work(database, stem) || is_there(directory.spool() / (stem + ".json"))) continue;
-    std::error_code replaced;  // by a folder meanwhile, which the next start moves aside
+    std::error_code replaced;  // error if a folder took its place, which the next start moves aside
     fs::remove(file, replaced);
   }
 }

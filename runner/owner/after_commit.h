@@ -1,6 +1,5 @@
-// What may happen only when a transaction is committed: files go, and people and programs hear of it.
-//
-// A process that is killed in between leaves the files, which the next run finds and takes for what they are.
+// AfterCommit holds what may happen only once a transaction is committed: files are removed, and people and
+// programs are told. If the process is killed in between, the next run finds these files and handles them.
 #pragma once
 
 #include <functional>
@@ -20,13 +19,13 @@ namespace peclet::runner {
 
 class AfterCommit {
  public:
-  // A file that a result left gets its place, whose folder is there; before anything is removed.
+  // Renames a file that a result left to its place, whose folder exists, before anything is removed.
   void keep(fs::path from, fs::path place) { to_keep_.emplace_back(std::move(from), std::move(place)); }
-  // A checkpoint that the next attempt must not find: gone when carry_out() returns.
+  // Removes a checkpoint that the next attempt must not find, before carry_out() returns.
   void discard(fs::path checkpoint) { to_discard_.push_back(std::move(checkpoint)); }
-  // What is left of a seed that has ended: removed in the background.
+  // Removes what is left of an ended seed, in the background.
   void remove(fs::path file) { to_remove_.push_back(std::move(file)); }
-  // A spool file that is no result: moved to the rejected ones of its folder.
+  // Moves a spool file that is not a result to the rejected files of its folder.
   void reject(fs::path spool) { to_reject_.push_back(std::move(spool)); }
   void note(std::string text) {
     tell_later([text = std::move(text)](RunListener& listener) { listener.note(text); });
@@ -38,12 +37,12 @@ class AfterCommit {
     tell_later([event = std::move(event)](RunListener& listener) { listener.happened(event); });
   }
 
-  // Appends what is to be done later than all of this.
+  // Appends what is to be done after all of this.
   void add(AfterCommit&& later);
 
-  // Does all of it, once. Requires that the transaction is committed. Throws
-  // fs::filesystem_error, and std::system_error for a file that could not be moved, or one of an
-  // earlier call that could not be removed; all is then left to the next call.
+  // Does everything once. Requires that the transaction is committed. Throws fs::filesystem_error, or
+  // std::system_error for a file that could not be moved or an earlier one that could not be removed; all is
+  // then left to the next call.
   void carry_out(RunListener& listener, FileRemoval& removal);
 
  private:
@@ -55,18 +54,17 @@ class AfterCommit {
   std::vector<Telling> to_tell_;
 };
 
-// Files that a realisation left beside its result. Their rows are stored with the result, and they get their
-// places after that commit, before the spool file of the result goes. What was checked is what gets there: it
-// is held open meanwhile. So whatever is killed when, the spool file is found again, as a result that is
-// known by then, and the moving goes on from there.
+// Takes the files that a realisation left beside its result, inside the transaction of the result, which is
+// stored now or was known before. `keep` says whether files of a new result are kept. Throws ResultError if a
+// file of a new result is absent or differs, std::system_error if the machine fails.
 //
-// Takes the files of a result that has been stored, or that is known, inside its transaction. With `keep`
-// files of a new one are kept. Throws ResultError if a file of a new one is absent or another one;
-// std::system_error if the machine fails.
+// The rows of the files are stored with the result. The files get their places after that commit, before the
+// spool file is removed. Each file stays open from its check on, so what was checked is what is kept. If the
+// process is killed, the next run finds the spool file, whose result is known by then, and continues.
 void take_files(Connection& connection, const CampaignDirectory& directory, const RealisationResult& result,
                 const fs::path& spool, const StoredResult& stored, bool keep, AfterCommit& after);
 
-// Removes files in the spool of attempts that gave no result and whose processes no longer run.
+// Removes files in the spool whose attempts gave no result and whose processes have ended.
 void remove_files_of_the_dead(Database& database, const CampaignDirectory& directory);
 
 }  // namespace peclet::runner

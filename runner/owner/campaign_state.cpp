@@ -27,7 +27,7 @@ struct Out {
   std::vector<std::string> bundles;
 };
 
-// "a-0001, a-0002 and 3 more"
+// Returns "a-0001, a-0002 and 3 more".
 std::string listed(const std::vector<std::string>& names) {
   constexpr std::size_t most = 3;
   const std::string text = fmt::format(
@@ -43,7 +43,7 @@ double cost_of(const RealisationResult& result, const char* which) {
   return result.document["cost"][which].get<double>();
 }
 
-// Whether it is the result's own fault; what fails for want of room or of a sound disk is not.
+// True if the result itself is at fault, not a full or failing disk.
 bool is_of_the_result(const std::exception& error) {
   if (const auto* const database = dynamic_cast<const DatabaseError*>(&error)) {
     return database->refuses_values();
@@ -70,7 +70,7 @@ CampaignState::CampaignState(Database& database, const Campaign& campaign, Campa
   point_states_.read_points(database_);
   ingest_spool();
   if (const int recovered = seeds_.recover(); recovered > 0) {
-    listener_.note(fmt::format("{} seeds that an earlier run left unfinished go on", recovered));
+    listener_.note(fmt::format("{} seeds that an earlier run left unfinished are queued again", recovered));
   }
   remove_files_of_the_dead(database_, directory_);
   read_point_states();
@@ -81,8 +81,8 @@ CampaignState::CampaignState(Database& database, const Campaign& campaign, Campa
   after_commit();
 }
 
-// A worker that outlived its owner may have saved one after its seed had ended elsewhere. Files are few where
-// seeds are many.
+// Removes checkpoints that a worker of a dead owner saved after the seed had ended elsewhere. The loop is
+// over files, which are few where seeds are many.
 void CampaignState::remove_late_checkpoints() {
   for (const fs::path& file : whole_files(directory_.checkpoints())) {
     const std::optional<SeedId> id = seed_of_checkpoint(checkpoint_of(file));
@@ -98,7 +98,7 @@ std::optional<SeedId> CampaignState::seed_of_checkpoint(const fs::path& file) co
   int seed = 0;
   std::from_chars(name.data() + hyphen + 1, name.data() + name.size(), seed);
   for (const PointRecord& known : point_states_.points()) {
-    // However the name is to be read: there is one way to write it.
+    // Compares the whole name, because from_chars() also accepts other spellings of a seed.
     if (known.hash.starts_with(hash) && directory_.checkpoint(known.hash, seed) == file)
       return SeedId{*known.place, seed};
   }
@@ -124,7 +124,7 @@ void CampaignState::roll_back() {
   read_point_states();
 }
 
-// `known` looks of the point are stored already.
+// Stores the stop tests of a point, and tells of those after the first `known`, which are stored already.
 void CampaignState::store_stop_tests(int place, std::size_t known) {
   const std::vector<StopTest>& stop_tests = scheduler().stop_tests(place);
   results_.store_stop_tests(point(place).id, stop_tests);
@@ -258,7 +258,7 @@ RunReport CampaignState::report(int workers) {
   }
   report.spent_seconds = spent_seconds();
   report.budget_seconds = point_states_.bounds().budget_seconds;
-  // No forecast under a budget or a ceiling: not every point will be decided.
+  // A forecast assumes that every point will be decided, which a budget or a ceiling may prevent.
   if (point_states_.bounds().ceiling || report.budget_seconds) return report;
   report.to_go = time_to_go(point_states_.forecasts(database_.unfinished()), campaign_.target,
                             campaign_.minimum_realisations, campaign_.maximum_realisations, workers);
@@ -271,7 +271,7 @@ std::string CampaignState::name(SeedId id) const {
 
 PointName CampaignState::point_name(int place) const { return {point(place).label, point(place).hash}; }
 
-// A point that has left the sweep is known by its hash alone.
+// Names a point that has left the sweep by its hash alone.
 PointName CampaignState::point_name(const GivenSeed& given_seed) const {
   return {given_seed.id.point == nowhere ? given_seed.job.point : point(given_seed.id.point).label,
           given_seed.job.point};
@@ -296,7 +296,7 @@ std::optional<SeedId> CampaignState::next() const {
 }
 
 void CampaignState::ingest_spool() {
-  removal_.finish();  // of what has been taken already
+  removal_.finish();  // files of results taken earlier
   ingest_spool_of(directory_);
   const BundleStore book(database_.connection());
   std::map<std::string, Out> shared;
@@ -357,7 +357,7 @@ void CampaignState::end_handed_over(SeedId id, int task, const AttemptReport& re
   if (has_ended(id)) return;
   const SeedFate fate = judge(seeds_.history(about.id, id.seed), retries_);
   if (fate.discard_checkpoint) changes_.after.discard(checkpoint);
-  // A drain with a message is a failure that a full disk excuses.
+  // A drained attempt with a message failed because a disk was full, which is not blamed.
   const bool is_excused = report.outcome == AttemptOutcome::drained && !report.message.empty();
   if (is_blamed(report.outcome) || is_excused) {
     changes_.after.warn(fmt::format("{} on {}: {}{}{}; {}", name(id), report.host, to_string(report.outcome),
@@ -408,7 +408,7 @@ int CampaignState::accept_engine(const std::string& identity) {
     changes_.after.note(
         fmt::format("{}: results of engine {} are set aside", about.label, about.engine_identity));
     ++points;
-    // Another engine could not go on from where they stand.
+    // Another engine cannot continue from these checkpoints.
     for (const RealisationRecord& record : database_.realisations(about.id)) {
       for (const std::string& folder : folders) {
         changes_.after.discard(CampaignDirectory(folder).checkpoint(about.hash, record.seed));
@@ -421,12 +421,8 @@ int CampaignState::accept_engine(const std::string& identity) {
   return points;
 }
 
-// How the state takes a result in: wholly or not at all.
-//
-// A result comes from outside, and what is done with it touches six tables, the scheduler's picture and what
-// is to happen after the commit. Whatever fails on the way, nothing of it may stay: what was half stored
-// would be counted.
-
+// A result comes from outside. Booking it changes six tables, the scheduler and the effects that follow the
+// commit. After a failure none of these changes may stay, because a half-stored result would be counted.
 std::string CampaignState::take_whole(const fs::path& spool, const Reading& read, const Booking& book) {
   Changes of_others = std::exchange(changes_, {});
   bool is_taken = false;
@@ -489,7 +485,7 @@ void CampaignState::take(const RealisationResult& result, const fs::path& spool)
   const std::optional<double> value = is_lost ? std::nullopt : std::optional(stored.outcome.value);
   const double cpu_seconds = cost_of(result, "cpu_seconds");
   changes_.after.tell(SeedEnded{point_name(*place), result.seed, stored.cause, value, cpu_seconds});
-  if (!point_states_.has_seeds()) return;  // it is found when they are read
+  if (!point_states_.has_seeds()) return;  // read_point_states() reads it with the others
   changes_.have_changed_points = true;
   point_states_.add_cost(*place, cost_of(result, "wall_seconds"), cpu_seconds);
   if (is_lost) {
@@ -509,7 +505,7 @@ void CampaignState::note_lacking(const RealisationResult& result) {
 void CampaignState::turn_down(const fs::path& spool, const std::string& why) {
   const std::string message = fmt::format("{} is not taken: {}", plain_name(spool), why);
   events_.write("rejected", message);
-  // Of a crowd nobody reads every name.
+  // Only the first few are told of; the table `event` has all.
   if (++turned_down_ <= most_told) {
     changes_.after.warn(
         fmt::format("{}; it is kept in {}", message, home_of_spool_file(spool).rejected().string()));
@@ -519,7 +515,7 @@ void CampaignState::turn_down(const fs::path& spool, const std::string& why) {
 
 void CampaignState::ingest_spool_of(const CampaignDirectory& directory) {
   turned_down_ = 0;
-  // Some at a time, because each commit waits for the disk: a crash in between finds the rest where it was.
+  // Each commit waits for the disk, so files are booked in groups. After a crash the rest is still there.
   const std::vector<fs::path> files = spool_files(directory);
   for (std::size_t next = 0; next < files.size();) {
     const std::size_t end = std::min(files.size(), next + files_at_a_time);
@@ -537,7 +533,7 @@ void CampaignState::ingest_spool_of(const CampaignDirectory& directory) {
 void CampaignState::ingest(const fs::path& file) {
   const auto read = [&file] {
     RealisationResult result = read_spool_file(file, "");
-    // An engine that answers with another seed's result may die before it is found out.
+    // An engine that answered with another seed's result may have died before that was noticed.
     if (belongs_to_another(file, result)) throw ResultError("it is named for another point or seed");
     return result;
   };

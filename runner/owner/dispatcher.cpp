@@ -17,25 +17,23 @@ namespace {
 using std::chrono::seconds;
 
 constexpr seconds report_interval{1};
-// A lock of another program is a pause, in which workers and signals are to be heard.
+// Longest wait for another program's lock. A longer lock is a pause, in which workers and signals are heard.
 constexpr std::chrono::milliseconds lock_patience{500};
 constexpr seconds lease_display_interval{2};
-// Workers that have not checkpointed and left by then are killed; the seeds lose what came after the last
-// checkpoint.
+// Workers that have not left by then are killed; their seeds lose the steps since the last checkpoint.
 constexpr seconds drain_patience{60};
 constexpr seconds extra_patience{10};
-// An engine that exits by itself this often before it is given anything to do will not do better the next
-// time.
+// Exits before any job, in a row, after which the engine is given up.
 constexpr int most_early_exits = 3;
-// The same for kills from outside, which may be somebody's fault drill.
+// Kills from outside before any job, in a row, that are allowed: a fault drill may cause several.
 constexpr int most_early_kills = 100;
 
-// Mean seconds of jobs that it is worth having another one wait for. A commit takes some hundredth of a
-// second, for which a worker with longer jobs need not have one; and a seed behind a long one would make the
-// decision of its point wait, while workers become idle that could run it.
+// Mean wall time of jobs [s] below which a second job waits behind the first. A commit takes some hundredths
+// of a second, so workers with longer jobs need no second one. A seed behind a long job would delay the
+// decision of its point although idle workers could run it.
 constexpr double longest_job_to_queue_behind = 1;
 
-// The longest that a turn waits: leases and the time limit are judged at least this often.
+// Longest wait of a turn. Leases and the time limit are judged at least this often.
 constexpr std::chrono::milliseconds longest_wait{500};
 
 int worker_of(const WorkerEvent& event) {
@@ -50,7 +48,7 @@ int worker_of(const WorkerEvent& event) {
       event);
 }
 
-// The news of a worker's progress that `later` makes old, if that is what it said last; otherwise null.
+// Returns the unbooked progress that `later` replaces, if it is the last event of its worker; otherwise null.
 Progressed* superseded(std::vector<WorkerEvent>& news, const Progressed& later) {
   const auto last = std::find_if(news.rbegin(), news.rend(),
                                  [&](const WorkerEvent& event) { return worker_of(event) == later.worker; });
@@ -93,7 +91,7 @@ Dispatcher::Ending Dispatcher::run() {
   return state_.scheduler().finished() ? Ending::finished : Ending::stopped;
 }
 
-// A process that has ended is no longer there, even if that could not be booked yet.
+// True if a process of a worker still runs. An exit counts before it is booked.
 bool Dispatcher::anyone_there() const {
   const auto present = std::count_if(now_.workers.begin(), now_.workers.end(),
                                      [](const Worker& worker) { return worker.watch.is_there(); });
@@ -103,7 +101,7 @@ bool Dispatcher::anyone_there() const {
   return present > ended;
 }
 
-// Nobody here has work, there is none to give out, and yet some point is open.
+// True if no worker is busy, no seed is available, and a point is undecided.
 bool Dispatcher::has_nothing_to_do() const {
   return busy() == 0 && !unbooked_ && !state_.scheduler().finished() && !state_.next();
 }
@@ -228,7 +226,7 @@ void Dispatcher::handle(const ResultSpooled& event) {
   const Assignment& about = *worker.assignment;
   std::string why;
   if (event.spool != about.given_seed.job.spool) {
-    condemn(event.worker, {AttemptOutcome::garbled, "spooled its result elsewhere"});
+    condemn(event.worker, {AttemptOutcome::garbled, "wrote its result to another file than the job names"});
   } else if (state_.take_result(about.given_seed, event.sha256, worker.watch.progress().step,
                                 processor_seconds_since(about.given), why)) {
     ++now_.results;
@@ -251,8 +249,8 @@ void Dispatcher::handle(const JobFailed& event) {
 void Dispatcher::handle(const Drained& event) {
   if (!has_job(event.worker, event.job)) return;
   Worker& worker = at(event.worker);
-  if (stopping_ == Stopping::no && !worker.watch.is_recalled()) {  // it could do so for ever
-    condemn(event.worker, {AttemptOutcome::garbled, "gave back a job that nobody wanted back"});
+  if (stopping_ == Stopping::no && !worker.watch.is_recalled()) {  // it could do so again and again
+    condemn(event.worker, {AttemptOutcome::garbled, "gave back a job without being asked to"});
     return;
   }
   worker.watch.leave_at(event.step);
@@ -261,7 +259,7 @@ void Dispatcher::handle(const Drained& event) {
   pool_.drain(event.worker);  // an idle engine leaves
 }
 
-// It keeps its work and stands still: as long as there really is no room, that is not its fault.
+// The engine keeps its work and waits. It is not blamed as long as the disk is full.
 void Dispatcher::handle(const ShortOfRoom& event) {
   if (!has_job(event.worker, event.job)) return;
   const Job& job = at(event.worker).assignment->given_seed.job;
@@ -270,7 +268,7 @@ void Dispatcher::handle(const ShortOfRoom& event) {
       folder == left_folder(job.spool) && event.path.filename().string().starts_with(left_stem(job.spool));
   if (event.path != job.spool && checkpoint_of(event.path) != job.checkpoint && folder != job.failures &&
       !is_beside_result) {
-    condemn(event.worker, {AttemptOutcome::garbled, "wrote a file that is none of its job"});
+    condemn(event.worker, {AttemptOutcome::garbled, "wrote a file that does not belong to its job"});
     return;
   }
   const int error = lack_of_room(folder, event.bytes);
@@ -332,7 +330,7 @@ void Dispatcher::obey_stop_signal() {
   }
 }
 
-// Idle workers first: a seed waits for none that could begin it.
+// Serves idle workers first, so that no seed waits behind a job while an idle worker could run it.
 void Dispatcher::give_out_seeds() {
   if (stopping_ != Stopping::no || pause_.lasts() || state_.scheduler().finished()) return;
   for (int number = 0; number < pool_.size(); ++number) {
@@ -350,7 +348,7 @@ void Dispatcher::give_out_seeds() {
   }
 }
 
-// Books the next seed as this worker's, to be sent after the commit; nothing when there is none.
+// Books the next seed as this worker's, to be sent after the commit. Returns nothing if there is no seed.
 std::optional<Dispatcher::Assignment> Dispatcher::next_assignment(int number) {
   std::optional<GivenSeed> given_seed = state_.give_out(number, pool_.process(number), at(number).engine);
   if (!given_seed) return std::nullopt;
@@ -376,7 +374,7 @@ bool Dispatcher::has_job(int worker, std::int64_t job) {
   const Worker& about = at(worker);
   if (about.watch.condemned()) return false;
   if (about.assignment && about.assignment->given_seed.job.attempt == job) return true;
-  if (about.finished_job == job) return false;  // said once too often, which does no harm
+  if (about.finished_job == job) return false;  // a repeated message does no harm
   condemn(worker, {AttemptOutcome::garbled, fmt::format("spoke of job {}, which it does not have", job)});
   return false;
 }
@@ -411,7 +409,7 @@ void Dispatcher::end_assignment(int number, const AttemptEnd& end) {
   go_on(number);
 }
 
-// A result may be durable although nobody could announce it any more; one that was turned down stays so.
+// A result may be durable although its worker could not announce it. A rejected result stays rejected.
 bool Dispatcher::left_result(int number, const Assignment& about, std::int64_t step) {
   const std::optional<AttemptReason>& condemned = at(number).watch.condemned();
   std::string why;
@@ -427,19 +425,19 @@ void Dispatcher::give_back(const Assignment& waiting) {
   state_.end_attempt(waiting.given_seed, {AttemptOutcome::drained, 0, {}, "waited behind another job"});
 }
 
-// Signals are obeyed at once, whatever may become of the booking.
+// Obeys signals at once, whatever becomes of the booking.
 void Dispatcher::listen() {
   for (WorkerEvent& event : pool_.wait(longest_wait)) {
     if (std::holds_alternative<StopSignal>(event)) {
       obey_stop_signal();
       continue;
     }
-    if (unbooked_ && std::holds_alternative<ShortOfRoom>(event)) continue;  // it will say so again
+    if (unbooked_ && std::holds_alternative<ShortOfRoom>(event)) continue;  // it repeats this message
     // Tells a drained worker to leave now: booking may take long.
     if (const auto* const drained = std::get_if<Drained>(&event); unbooked_ && drained != nullptr) {
       pool_.drain(drained->worker);
     }
-    // While nothing can be booked, this keeps what was heard short.
+    // Keeps the list of events short while nothing can be booked.
     const auto* const progress = std::get_if<Progressed>(&event);
     if (Progressed* const before = progress != nullptr ? superseded(news_, *progress) : nullptr) {
       *before = *progress;
@@ -451,7 +449,7 @@ void Dispatcher::listen() {
 }
 
 bool Dispatcher::book() {
-  Picture before = now_;
+  Snapshot before = now_;
   try {
     Transaction booking(database_.connection());
     for (const WorkerEvent& event : news_) {
@@ -476,7 +474,7 @@ bool Dispatcher::book() {
 
 bool Dispatcher::follow_up() {
   try {
-    state_.after_commit();  // a checkpoint that is discarded goes before its seed's next attempt begins
+    state_.after_commit();  // removes discarded checkpoints before the next attempts begin
   } catch (const std::exception& error) {
     const std::optional<Hindrance> hindrance = hindrance_in(error, root());
     if (!hindrance) throw;
@@ -490,7 +488,8 @@ bool Dispatcher::follow_up() {
   return true;
 }
 
-// What is booked of a result is about as long as its file, and goes into log and database.
+// Returns the room [bytes] that booking needs: each result takes about the size of its file in the database,
+// and as much again in the write-ahead log.
 std::uint64_t Dispatcher::bytes_of_news() const {
   std::uint64_t bytes = 1 << 20;
   for (const WorkerEvent& event : news_) {
@@ -504,20 +503,21 @@ std::uint64_t Dispatcher::bytes_of_news() const {
 
 fs::path Dispatcher::root() const { return fs::path(database_.connection().path()).parent_path(); }
 
-// Said once, however often it turns out that it is still in the way.
+// Tells of each kind of hindrance once a pause.
 void Dispatcher::begin_pause(const Hindrance& hindrance) {
   pause_.begin(hindrance, clock_());
   if (!told_of_.insert(hindrance.kind()).second) return;
   listener_.happened(ShortageBegan{hindrance.text});
-  listener_.warn(fmt::format(
-      "{}; workers keep what they have, no further seed is given out, and the campaign goes on by itself {}",
-      hindrance.text, hindrance.end));
+  listener_.warn(
+      fmt::format("{}; workers keep what they have, no further seed is given out, and the campaign continues "
+                  "by itself {}",
+                  hindrance.text, hindrance.end));
 }
 
 void Dispatcher::look_whether_it_is_over() {
   if (!pause_.lasts()) return;
   const Time now = clock_();
-  // The write-ahead log keeps its largest size, which on a small disk is most of what there is.
+  // The write-ahead log keeps its largest size, which may fill a small disk.
   if (pause_.is_looked_at(now)) database_.connection().empty_log();
   if (pause_.is_over(now)) {
     unbooked_ = false;
@@ -532,15 +532,13 @@ void Dispatcher::look_whether_it_is_over() {
 
 void Dispatcher::end_pause() {
   told_of_.clear();
-  listener_.note("nothing is in the way any more: the campaign goes on");
+  listener_.note("nothing is in the way any more: the campaign continues");
   listener_.happened(ShortageEnded{});
   for (Worker& worker : now_.workers) {
-    worker.watch.renew(awake_.awake());  // nobody listened meanwhile
+    worker.watch.renew(awake_.awake());  // workers were not heard during the pause
   }
 }
 
-// Whether a worker failed for want of room, or because folders that somebody had deleted or moved were not
-// mended yet. Begins a pause where there is no room now.
 bool Dispatcher::lacked_room(int number) {
   const Assignment& about = *at(number).assignment;
   if (about.lost_a_folder) return true;
@@ -552,20 +550,19 @@ bool Dispatcher::lacked_room(int number) {
   return folder.has_value();
 }
 
-// A worker that outlived an earlier owner may have left a result meanwhile; so may ours, when nothing could
-// be booked any more.
+// Takes in results of earlier owners' workers, and results of this run that could not be booked.
 void Dispatcher::settle_spool() {
   try {
     state_.ingest_spool();
   } catch (const std::exception& error) {
     const std::optional<Hindrance> hindrance = hindrance_in(error, root());
     if (!hindrance) throw;
-    state_.roll_back();  // nothing of it counts: what is decided is what the database says
+    state_.roll_back();  // decisions count only if they are in the database
     listener_.warn(hindrance->text + "; what workers did last is booked by the next run");
   }
 }
 
-// While workers stop, requests wait for the next owner. During a pause they wait as everything does.
+// Requests wait for the next owner while workers stop, and for the end of a pause.
 void Dispatcher::hear_requests() {
   if (stopping_ != Stopping::no || pause_.lasts() || clock_() - requests_heard_ < request_interval) return;
   requests_heard_ = clock_();

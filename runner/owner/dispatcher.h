@@ -1,13 +1,13 @@
-// Gives seeds to workers and hears what becomes of them, until every point is decided or the run is stopped.
+// Dispatcher gives seeds to workers and books their ends, until every point is decided or the run stops.
 //
-// One turn: hear what happened, book all of it in one transaction, and act only after the commit: a job is
-// sent when its attempt is durable, a spool file goes when its result is. When something is in the way that
-// passes (pause.h), what happened is kept and booked again every few seconds, and until that succeeds no seed
-// is given out: workers go on with those they have.
+// Each turn collects events, books all of them in one transaction, and acts only after the commit: a job is
+// sent when its attempt is durable, a spool file is removed when its result is. If something temporary is in
+// the way (pause.h), the events are kept and booked again every few seconds. Until that succeeds no seed is
+// given out, and workers continue with those they have.
 //
-// A worker whose jobs are short would wait for that commit longer than it works. Where its engine can do it,
-// it has a second job, which it begins by itself when the first has ended; until then that one has not begun,
-// and whatever the worker does is not its fault.
+// A worker whose jobs are shorter than a commit would mostly wait for commits. If its engine allows, it holds
+// a second job, which it begins by itself when the first has ended. Until then the second job has not begun,
+// and is not blamed for anything that the worker does.
 #pragma once
 
 #include <chrono>
@@ -26,15 +26,15 @@
 namespace peclet::runner {
 
 struct DispatchSettings {
-  int threads = 1;  // of each worker
+  int threads = 1;  // per worker
   std::chrono::duration<double> lease{120};
   double checkpoint_seconds = 60;
   std::optional<std::chrono::duration<double>> time_limit{};
-  // Called at every turn, about twice a second or more often. True when folders into which engines write had
-  // been deleted and were made anew.
+  // Called at every turn, about twice a second or more often. Returns true if folders into which engines
+  // write had been deleted and were made anew.
   std::function<bool()> chore = [] { return false; };
-  // Called about once a second, between two bookings: carries out what people ask for. True when the state's
-  // picture was taken again; a hindrance that passes leaves it taken again, and nothing changed.
+  // Carries out requests, about once a second, between two bookings. Returns true if the state was read
+  // again. It was also read again, with nothing changed, if a temporary hindrance is thrown.
   std::function<bool()> requests = [] { return false; };
 };
 
@@ -48,33 +48,32 @@ class Dispatcher {
              DispatchSettings settings, Clock clock);
 
   enum class Ending { finished, stopped };
-  // Throws IntegrityError (an engine of another identity), InputError (a target that results do not have),
-  // EngineError, DatabaseError. Whatever was reported until then is in the database or in the spool.
+  // Throws IntegrityError (an engine of another identity), InputError (results lack the observable),
+  // EngineError, DatabaseError. Everything reported until then is in the database or in the spool.
   Ending run();
 
  private:
-  // A seed in the hands of a worker.
   struct Assignment {
     GivenSeed given_seed;
     Time given{};                // when the worker got it
-    Time begun{};                // when there was no other before it any more, as far as we know
-    bool shown = false;          // the database says how far it is
-    bool lost_a_folder = false;  // somebody deleted one into which it writes
+    Time begun{};                // when the worker could begin it: no earlier job was left
+    bool shown = false;          // the database has its latest progress
+    bool lost_a_folder = false;  // a folder into which it writes was deleted
   };
   struct Worker {
     WorkerWatch watch{};
     std::int64_t engine = 0;
     bool takes_ahead = false;
-    std::optional<Assignment> assignment{};  // of a busy worker, and of no other
-    std::optional<Assignment> waiting{};     // behind the assignment
-    std::int64_t finished_job = 0;           // the last one; attempts are numbered from 1
+    std::optional<Assignment> assignment{};  // present if and only if the worker is busy
+    std::optional<Assignment> waiting{};     // job behind the assignment
+    std::int64_t finished_job = 0;           // last attempt that ended; attempts are numbered from 1
   };
-  // What booking changes here; a copy takes its place if booking fails.
-  struct Picture {
+  // State that booking changes; a copy is put back if booking fails.
+  struct Snapshot {
     std::vector<Worker> workers;
     int results = 0;
-    int early_exits = 0;                         // of workers without a job, in a row
-    std::vector<std::pair<int, Job>> to_send{};  // after the commit
+    int early_exits = 0;                         // workers that ended without a job, in a row
+    std::vector<std::pair<int, Job>> to_send{};  // jobs to be sent after the commit
   };
   enum class Stopping { no, finished, draining, at_once };
 
@@ -90,9 +89,9 @@ class Dispatcher {
 
   void turn();
   void listen();
-  // Books what was heard. False: something is in the way, and nothing has changed.
+  // Books the events. Returns false if something is in the way; then nothing has changed.
   bool book();
-  // Does what follows the commit. False: something is in the way of the rest.
+  // Does what follows the commit. Returns false if something is in the way of the rest.
   bool follow_up();
   std::uint64_t bytes_of_news() const;
   fs::path root() const;
@@ -102,8 +101,8 @@ class Dispatcher {
   void settle_spool();
   void obey_stop_signal();
   void hear_requests();
-  // Finds the seeds that workers have in the state's new picture, and recalls workers with one that nobody
-  // wants.
+  // Finds the places of the seeds that workers have after the state was read again. Recalls workers with a
+  // seed that is no longer wanted.
   void find_running_seeds();
   void start_workers();
   void give_out_seeds();
@@ -116,18 +115,19 @@ class Dispatcher {
   std::optional<Assignment> next_assignment(int worker);
   bool takes_a_second_job(const Worker& worker) const;
   bool has_job(int worker, std::int64_t job);
-  // Whether the worker may have failed because it could not write: no room, or no folder.
+  // True if the worker may have failed because it could not write: a disk is full, or a deleted folder was
+  // not made anew yet. Begins a pause if a disk is full now.
   bool lacked_room(int worker);
   void mark_lost_folders();
   void condemn(int worker, AttemptReason reason);
-  // The worker is through with its job, and is at the one that waited or idle.
+  // Ends the worker's job; the waiting job begins, or the worker becomes idle.
   void go_on(int worker);
-  // Processor seconds that a worker can have spent since then.
+  // Returns the most processor time [s] that a worker can have spent since `time`.
   double processor_seconds_since(Time time) const;
   void end_assignment(int worker, const AttemptEnd& end);
-  // Takes the result of a worker that has exited at this step of the job. False: it left none.
+  // Takes the result of a worker that exited at this step of its job. Returns false without a valid one.
   bool left_result(int worker, const Assignment& about, std::int64_t step);
-  // Of an assignment that has waited in vain.
+  // Gives back a waiting assignment, which never began.
   void give_back(const Assignment& waiting);
   void exited_during_job(int worker, const ExitStatus& ending);
   void exited_without_job(int worker, const ExitStatus& ending);
@@ -143,13 +143,13 @@ class Dispatcher {
   RunListener& listener_;
   DispatchSettings settings_;
   Clock clock_;
-  Picture now_;
-  std::vector<WorkerEvent> news_;  // and not booked yet
+  Snapshot now_;
+  std::vector<WorkerEvent> news_;  // events not booked yet
   Pause pause_;
-  bool unbooked_ = false;          // something is in the way
-  bool uncarried_ = false;         // booked, and what follows the commit is not done
-  bool request_waits_ = false;     // for something in the way
-  std::set<std::string> told_of_;  // kinds of what was in the way since the campaign last went on
+  bool unbooked_ = false;          // booking is blocked
+  bool uncarried_ = false;         // effects of the last commit are not carried out yet
+  bool request_waits_ = false;     // a request waits for something in the way
+  std::set<std::string> told_of_;  // kinds of hindrances reported in the present pause
   Stopping stopping_ = Stopping::no;
   AwakeClock awake_;
   Time started_, reported_, leases_shown_, requests_heard_{};

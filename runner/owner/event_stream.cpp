@@ -77,7 +77,7 @@ Json json_of(const RunEnded& event) {
           {"message", event.message.empty() ? Json(nullptr) : Json(event.message)}};
 }
 
-// {point}: rows of a point; {stop_test}: of a stop test.
+// {point} stands for the rows of a point, {stop_test} for those of a stop test.
 constexpr const char* event_rows = R"(
 /at | string | UTC, as 2026-11-27T07:31:15Z.
 /schema_version | integer = 1
@@ -115,10 +115,10 @@ constexpr const char* event_rows = R"(
 {stop_test}
 
 -- shortage-begins | The run pauses: a disk or quota is full or fails, or another program has locked the
-    database. May come again, of something else in its way, before shortage-ends.
+    database. May come again, for another hindrance, before shortage-ends.
 /message | string
 
--- shortage-ends | Nothing is in the run's way any more.
+-- shortage-ends | The run continues.
 
 -- end | The last line.
 /exit_code | count
@@ -204,7 +204,7 @@ void EventStream::report(const RunReport& report) {
 void EventStream::append(Json event) {
   if (descriptor_ < 0) return;
   event["at"] = utc_now();
-  // What engines say may be no UTF-8.
+  // Messages of engines need not be valid UTF-8.
   waiting_ += event.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
   write_out(0);
   if (waiting_.size() - taken_ > most_waiting) give_up("their reader does not take them");
@@ -232,7 +232,7 @@ void EventStream::give_up(const std::string& why) {
   descriptor_ = -1;
   waiting_.clear();
   taken_ = 0;
-  audience_.warn(fmt::format("events can no longer be written ({}): the run goes on without them", why));
+  audience_.warn(fmt::format("events can no longer be written ({}): the run continues without them", why));
 }
 
 }  // namespace peclet::runner

@@ -17,7 +17,7 @@
 namespace peclet::runner {
 namespace {
 
-// Folders of campaigns whose file has gone.
+// Returns the campaign folders beside `directory` whose campaign file is gone.
 std::vector<fs::path> orphans_beside(const CampaignDirectory& directory) {
   std::vector<fs::path> orphans;
   const fs::path parent = directory.root().parent_path();
@@ -32,8 +32,7 @@ std::vector<fs::path> orphans_beside(const CampaignDirectory& directory) {
   return orphans;
 }
 
-// Results of the campaign's points in another folder. One that cannot be read is no reason to refuse this
-// one.
+// Returns the number of results of the campaign's points in another folder; 0 if its database cannot be read.
 int results_of(const Campaign& campaign, const fs::path& folder) {
   std::set<std::string> hashes;
   for (const StatePoint& point : campaign.points) hashes.insert(point.hash);
@@ -57,7 +56,7 @@ bool has_been_run(const CampaignDirectory& directory) {
   return !kind_of(directory.database()).empty() || !restore_hint(directory).empty();
 }
 
-// Setting up takes moments. It takes longer where there is no room, or when the run that began has ended.
+// Throws BeingSetUp with the reason if the setup has stopped: its run has ended, or the disk is full.
 void refuse_unfinished_beginning(const CampaignDirectory& directory) {
   const std::string database = directory.database().string();
   if (!current_owner(directory)) {
@@ -83,8 +82,8 @@ void refuse_renamed_file(const Campaign& campaign, const fs::path& file, const C
     const fs::path other = file.parent_path() / orphan.filename();
     throw InputError(
         file.string(), "", "",
-        fmt::format("has not been run under this name, but {4} has {1} results of its points and no file any "
-                    "more: was it renamed? Go on with them: `mv {0} {2} && peclet run {3}`; or start "
+        fmt::format("has not been run under this name, but {4} has {1} results of its points and no campaign "
+                    "file: was it renamed? Continue with them: `mv {0} {2} && peclet run {3}`; or start "
                     "afresh: `peclet run {3} --directory {2}`",
                     shell_word(other.string()), results, shell_word(own.string()), shell_word(file.string()),
                     other.string()));

@@ -1,4 +1,4 @@
-// Finding and opening a campaign that has been run, for those who only look at it.
+// Finds and opens a campaign that has been run, for programs that only read it.
 #pragma once
 
 #include <string>
@@ -10,33 +10,33 @@
 
 namespace peclet::runner {
 
-// A campaign file under a new name has no folder, although its results are there under the old one.
-//
-// Requires `directory` to be the one that follows from the file's name. Throws InputError when nothing has
-// been run in it, but a folder beside it has results of the campaign's points and no file of its own any
-// more.
+// Throws InputError if the campaign file seems to have been renamed: its folder does not exist, but a folder
+// beside it has results of the campaign's points and no campaign file. Requires `directory` to be the one
+// that follows from the file's name.
 void refuse_renamed_file(const Campaign& campaign, const fs::path& file, const CampaignDirectory& directory);
 
 struct OpenCampaign {
   CampaignDirectory directory;
-  Database database;  // a reader's
+  Database database;  // opened for reading
 };
 
-// The folder of a campaign that has been run. Also when its database is gone, but not its backups.
+// Returns the folder of a campaign that has been run, also if its database is gone but has backups. `given`
+// and `chosen` are as in open_campaign(). Throws InputError if no campaign has been run there.
 CampaignDirectory find_campaign(const fs::path& given, const fs::path& chosen);
 
-// Whether `given` is a file, of which there may be a campaign once it is run.
+// True if `given` is a file whose campaign has not been run.
 bool awaits_its_first_run(const fs::path& given, const fs::path& chosen);
 
-// Reads the file of a campaign that awaits its first run. Throws InputError as read_campaign(), and for a
-// file that was renamed since its campaign was run.
+// Reads the file of a campaign that awaits its first run. Throws InputError as read_campaign(), and if the
+// file was renamed since its campaign was run.
 Campaign read_new_campaign(const fs::path& given, const fs::path& chosen);
 
-// `given` is a campaign's folder, or its file (whose folder is `chosen`, or beside it when that is empty).
-// Throws InputError when there is no campaign there that has been run, IntegrityError, DatabaseError.
+// Opens a campaign for reading. `given` is its folder or its file; the folder of a file is `chosen`, or
+// beside it if that is empty. Throws InputError if no campaign has been run there, IntegrityError,
+// DatabaseError.
 OpenCampaign open_campaign(const fs::path& given, const fs::path& chosen);
 
-// What a person should know when the campaign file is no longer what was run: a sentence, or nothing.
+// Returns a sentence if the campaign file differs from what was run last, or has a fault; "" otherwise.
 std::string difference_from_file(const fs::path& given, const fs::path& chosen,
                                  const CampaignRecord& campaign);
 

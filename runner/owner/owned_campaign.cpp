@@ -20,19 +20,20 @@ namespace peclet::runner {
 
 namespace {
 
-constexpr std::size_t fewest_digits = 6;  // of a hash that names an engine
+constexpr std::size_t fewest_digits = 6;  // digits of a hash that names an engine
 
 CampaignDirectory directory_for(const Campaign& campaign, const fs::path& file, const fs::path& chosen) {
   if (chosen.empty() && !fs::is_regular_file(file)) {
-    throw InputError(file.string(), "", "",
-                     "is no file beside which the campaign could be kept: name its folder with --directory");
+    throw InputError(
+        file.string(), "", "",
+        "is not a regular file, so the campaign has no place beside it: name its folder with --directory");
   }
   CampaignDirectory directory = campaign_directory(file, chosen);
   if (chosen.empty()) refuse_renamed_file(campaign, file, directory);
   return directory;
 }
 
-// Returns the engine itself, when `name` is one of its names or empty.
+// Returns the engine if `name` is empty or one of its names; otherwise throws InputError.
 const Json& accepted(const Json& engine, const std::string& name) {
   const std::string version = engine.at("version"), hash = engine.at("binary_sha256");
   const bool is_name =
@@ -44,7 +45,7 @@ const Json& accepted(const Json& engine, const std::string& name) {
                                fewest_digits, engine_identity(engine)));
 }
 
-// Returns the folder itself. From its creation on things are written.
+// Creates the folder and returns it. Throws InputError for a network file system unless `force` is set.
 const CampaignDirectory& created(const CampaignDirectory& directory, bool force) {
   const std::optional<std::string> kind = network_file_system(directory.root());
   if (kind && !force) {
@@ -63,7 +64,7 @@ const CampaignDirectory& created(const CampaignDirectory& directory, bool force)
   return directory;
 }
 
-// A database that knows of fewer attempts than its backup is an older copy.
+// Throws IntegrityError if the database has fewer attempts than its backup: then it is an older copy.
 void refuse_older_copy(const CampaignDirectory& directory, Database& database) {
   const fs::path backup = newest_backup(directory.backup());
   if (kind_of(backup).empty()) return;
@@ -86,7 +87,7 @@ void refuse_older_copy(const CampaignDirectory& directory, Database& database) {
       shell_word(directory.root().string())));
 }
 
-// What the campaign's owner should hear once a changed sweep has been taken up.
+// Tells the owner of results at points that a changed sweep has left out.
 void tell_of_points_left_behind(Database& database, const std::function<void(const std::string&)>& tell) {
   const std::vector<PointRecord> left = database.inactive_points();
   int results = 0;
@@ -142,8 +143,8 @@ void accept_engine(CampaignState& state, const Json& engine, RunListener& listen
 
 std::string acceptance_hint(const std::string& verb_and_file, const Json& engine) {
   return fmt::format(
-      ". Run with the engine it was begun with, or accept this one with `peclet {} --accept-engine {}`: what "
-      "points that are still to be run have is then set aside, and they begin again",
+      ". Run with the engine it was begun with, or accept this one with `peclet {} --accept-engine {}`: the "
+      "results of points that are still to be run are then set aside, and these points begin again",
       verb_and_file, engine.at("binary_sha256").get<std::string>().substr(0, 12));
 }
 
@@ -184,7 +185,7 @@ void FolderWatch::refuse_deletion() const {
 bool FolderWatch::mend_folders() const {
   std::vector<std::string> gone;
   for (const fs::path& folder : folders_below(directory_)) {
-    // One that went with the folder above it is not named.
+    // A folder that went with the one above it is not named.
     if (kind_of(folder).empty() && !kind_of(folder.parent_path()).empty())
       gone.push_back(folder.lexically_relative(directory_.root()).string() + "/");
   }
@@ -193,11 +194,12 @@ bool FolderWatch::mend_folders() const {
     create_folders(directory_);
   } catch (const fs::filesystem_error& error) {
     if (!means_machine_fault(error.code().value())) throw;
-    return false;  // looked at again in a second
+    return false;  // checked again in a second
   }
   listener_.warn(
-      fmt::format("{}: somebody deleted {} while the campaign runs; made anew: the database keeps what it "
-                  "has, and a seed whose checkpoint or unbooked result was there runs again",
+      fmt::format("{}: these folders were deleted while the campaign runs and are made anew: {}; the "
+                  "database keeps what it has, and a seed whose checkpoint or unbooked result was there runs "
+                  "again",
                   directory_.root().string(), fmt::join(gone, ", ")));
   return true;
 }

@@ -1,4 +1,4 @@
-// A campaign in the hands of the process that may write it.
+// OwnedCampaign is a campaign that this process may write.
 #pragma once
 
 #include <chrono>
@@ -17,29 +17,29 @@
 
 namespace peclet::runner {
 
-// A seed may fail so often beyond the first time.
+// Failures of a seed that are allowed beyond the first.
 constexpr int retries = 2;
 
-// Checked and locked: nobody else may write it now.
+// A campaign that is checked and locked: no other process may write it.
 struct ClaimedCampaign {
   Campaign campaign;
   EngineCommand command;
-  std::vector<SceneAnswer> scenes;  // of its points
+  std::vector<SceneAnswer> scenes;  // the engine's answers about its points
   Json engine;                      // provenance of the engine here
   CampaignDirectory directory;
   OwnerLock lock;
 
-  // Checks the campaign file and its scenes, makes the folder and takes the lock. `directory` as in
-  // campaign_directory(); `force`: on a network file system, too; `accepted_engine`: a name of the engine
-  // here, its version or 6 or more leading digits of its binary's hash, or nothing. Throws InputError before
+  // Checks the campaign file and its scenes, makes the folder and takes the lock. `chosen` is as in
+  // campaign_directory(); `force` allows a network file system. `accepted_engine` is "" or a name of the
+  // engine here: its version, or 6 or more leading digits of its binary's hash. Throws InputError before
   // anything is written, OwnedByAnother.
   ClaimedCampaign(const fs::path& file, const fs::path& chosen, bool force,
                   const std::string& accepted_engine = "");
 };
 
-// Opens or creates the database and makes it that of the campaign file, after what a dead owner left
-// unfinished has been removed. `tell`: what a person should know about it. Throws IntegrityError, which says
-// how to restore it from a backup where there is one, InputError, DatabaseError.
+// Removes what a dead owner left unfinished, opens or creates the database, and adopts the campaign. `tell`
+// gets messages for people. Throws IntegrityError, which says how to restore the database if there is a
+// backup, InputError, DatabaseError.
 Database open_for_owner(
     const ClaimedCampaign& claimed, const std::function<void(const std::string&)>& tell = [](const auto&) {});
 
@@ -49,16 +49,15 @@ struct OwnedCampaign : ClaimedCampaign {
                 const std::string& accepted_engine = "");
 };
 
-// Keeps the results of other engines than this one apart at the points that are still to be run.
+// Sets aside the results of other engines than this one at the points that are still to be run.
 void accept_engine(CampaignState& state, const Json& engine, RunListener& listener);
 
-// What accepts the engine that an OtherEngine was thrown for: "; accept it with `peclet run FILE
-// --accept-engine 1a2b3c4d5e6f`: ...".
+// Returns the sentence that follows the message of an OtherEngine and says how to accept the engine.
 std::string acceptance_hint(const std::string& verb_and_file, const Json& engine);
 
-// The files that the owner has open live on without their names until it ends, and all that was committed
-// with them: so a database whose name is gone is copied before that. Requires folder and database to be
-// whole.
+// FolderWatch stops a run whose folder or database was moved or deleted. Files that the owner has open live
+// on without their names until it ends, so a deleted database is saved before that. Requires folder and
+// database to be whole.
 class FolderWatch {
  public:
   using Time = std::chrono::steady_clock::time_point;
@@ -67,9 +66,9 @@ class FolderWatch {
   FolderWatch(const CampaignDirectory& directory, const OwnerLock& lock, Database& database,
               RunListener& listener);
 
-  // Looks about once a second. Makes folders below anew, says so, and returns whether it did. Throws
-  // IntegrityError when folder or database are no longer where they were: it says what was saved where, and
-  // how to go on.
+  // Checks about once a second. Makes deleted folders below anew, warns, and returns whether it did. Throws
+  // IntegrityError if the folder or the database was moved or deleted: it says what was saved where, and how
+  // to continue.
   bool attend(Time now);
 
  private:

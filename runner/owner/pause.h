@@ -1,5 +1,5 @@
-// What keeps a campaign's owner from booking for a while, and whether that is over: a full disk, a lock of
-// another program, a disk that fails. No engine is to blame for it.
+// Hindrance and Pause say what keeps a campaign's owner from booking for a while, and whether that is over.
+// It is a full disk, another program's lock or a failing disk; no engine is to blame.
 #pragma once
 
 #include <chrono>
@@ -13,21 +13,21 @@
 namespace peclet::runner {
 
 struct Hindrance {
-  std::string text;   // a sentence without its end: what it is
+  std::string text;   // the hindrance as a sentence without its full stop
   std::string end;    // "when there is room"
-  fs::path folder{};  // that lacks room for `bytes`; empty: it is not room that is lacking
+  fs::path folder{};  // folder that lacks room for `bytes`; empty for other hindrances
   std::uint64_t bytes = 0;
 
-  // Returns what is in the way, the same text for as long as it is: `text` has figures that change. A full
-  // file system is one hindrance, whichever of its folders is named.
+  // Returns a key that stays the same while the figures in `text` change. All folders of one full file system
+  // have the same key.
   std::string kind() const;
 };
 
-// Too little room for `bytes` in `folder`, for which `error` is ENOSPC or EDQUOT.
+// Returns the hindrance of too little room for `bytes` in `folder`; `error` is ENOSPC or EDQUOT.
 Hindrance lack_of_room_in(const fs::path& folder, std::uint64_t bytes, int error);
 
-// The hindrance that an exception tells of, in the way of an owner whose database is in `root`; nothing if it
-// is none that passes. `bytes` were to be written where the exception does not say how many.
+// Returns the temporary hindrance behind an exception, for an owner whose database is in `root`; nothing if
+// it is not temporary. `bytes` were to be written where the exception does not say how many.
 std::optional<Hindrance> hindrance_in(const std::exception& error, const fs::path& root,
                                       std::uint64_t bytes = 0);
 
@@ -38,14 +38,14 @@ class Pause {
   void begin(Hindrance hindrance, Time now);
   bool lasts() const { return hindrance_.has_value(); }
 
-  // Whether is_over() would look now.
+  // True if is_over() would check now.
   bool is_looked_at(Time now) const;
-  // Looks whether there is room, or whether it is time to try again, every few seconds at most. True when
-  // there just turned out to be.
+  // Checks, every few seconds at most, whether there is room or it is time to try again. Returns true if the
+  // pause has just ended.
   bool is_over(Time now);
 
-  // Why waiting in the campaign's folder `root` is in vain; "" unless that has been so for twenty seconds,
-  // in which workers may have ended and freed what they had.
+  // Returns why waiting cannot help the campaign in folder `root`; "" unless this has held for twenty
+  // seconds, in which workers that ended may have freed room.
   std::string in_vain(const fs::path& root, Time now);
 
  private:

@@ -50,7 +50,7 @@ void PointStates::set_bounds(Bounds bounds) {
 void PointStates::apply_bounds() {
   scheduler_->set_allocation(bounds_.budget_seconds ? Allocation::steepest_first : Allocation::longest_first);
   scheduler_->set_ceiling(bounds_.ceiling.value_or(maximum_));
-  // A point whose work is not known is taken for an average one.
+  // A point of unknown work counts as an average one.
   double all = 0;
   for (const auto& [hash, work] : bounds_.work) all += work;
   const double average = bounds_.work.empty() ? 1 : all / static_cast<double>(bounds_.work.size());
@@ -83,7 +83,7 @@ void PointStates::begin(SeedId id) {
   ++running_[static_cast<std::size_t>(id.point)];
 }
 
-// Workers are occupied for the wall time of a seed; a budget is of processor time.
+// A budget limits processor time; without one, the wall time of seeds decides how long workers are busy.
 void PointStates::tell_cost(int place) {
   const auto number = static_cast<std::size_t>(place);
   const Cost& cost = bounds_.budget_seconds ? processor_[number] : forecasts_[number].cost;

@@ -1,5 +1,6 @@
-// Where every point of a running campaign stands: its record, the scheduler's picture, what its seeds cost
-// and how many of them workers have. In memory only; the state keeps it in step with the database.
+// PointStates holds the state of every point of a running campaign: its record, the scheduler, the cost of
+// its seeds and the number of them that workers have. It is kept in memory only; CampaignState keeps it in
+// step with the database.
 #pragma once
 
 #include <map>
@@ -14,33 +15,33 @@
 
 namespace peclet::runner {
 
-// What bounds a run beside the campaign itself.
+// Bounds of a run beside those of the campaign.
 struct Bounds {
-  std::optional<int> ceiling{};            // only so many seeds of each point
+  std::optional<int> ceiling{};            // most seeds of each point
   std::optional<double> budget_seconds{};  // processor time
-  std::map<std::string, double> work{};    // of a realisation, in any unit, by the point's hash
+  std::map<std::string, double> work{};    // work of one realisation, in any unit, by hash of the point
 };
 
 constexpr int nowhere = -1;
 
 class PointStates {
  public:
-  // Reads the records of the points in the sweep, without what their seeds did.
+  // Reads the records of the points in the sweep, without their seeds.
   void read_points(Database& database);
-  // Reads what the seeds did and which of them workers have, and makes the scheduler's picture from it. Seeds
-  // in the hands of a batch system are then to be begun. Requires read_points().
+  // Reads outcomes, costs and running seeds, and makes the scheduler from them. The caller then begins the
+  // seeds that a batch system has. Requires read_points().
   void read_seeds(Database& database, const Campaign& campaign);
-  // Whether read_seeds() has been called.
+  // True once read_seeds() has been called.
   bool has_seeds() const { return scheduler_.has_value(); }
 
-  // From now on, also after the next read_seeds().
+  // Sets the bounds from now on, also after the next read_seeds().
   void set_bounds(Bounds bounds);
   const Bounds& bounds() const { return bounds_; }
 
   int size() const { return static_cast<int>(points_.size()); }
   const std::vector<PointRecord>& points() const { return points_; }
   const PointRecord& point(int place) const { return points_.at(static_cast<std::size_t>(place)); }
-  // Nothing for a point that is not in the sweep.
+  // Returns nothing if the point is not in the sweep.
   std::optional<int> place_of(const std::string& hash) const;
   std::optional<int> place_of(std::int64_t point_id) const;
   bool is_to_be_run(const PointRecord& about) const {
@@ -50,16 +51,16 @@ class PointStates {
   Scheduler& scheduler() { return *scheduler_; }
   const Scheduler& scheduler() const { return *scheduler_; }
 
-  // A seed of the point has ended that took so long; the scheduler hears of the new mean.
+  // Adds the cost of a seed of the point that has ended, and tells the scheduler the new mean.
   void add_cost(int place, double wall_seconds, double cpu_seconds);
-  // Mean wall time of the point's seeds; nothing while there are none.
+  // Returns the mean wall time [s] of the point's ended seeds, if there are any.
   std::optional<double> wall_seconds(int place) const;
-  // A worker has the seed from now on, and then no more.
+  // begin() counts the seed as held by a worker, leave() as no longer held.
   void begin(SeedId id);
   void leave(SeedId id) { --running_[static_cast<std::size_t>(id.point)]; }
-  // Processor seconds that the seeds which workers have are expected to cost.
+  // Returns the processor time [s] that the seeds that workers have are expected to cost.
   double expected_seconds() const { return scheduler_->expected_seconds(running_); }
-  // `unfinished`: as Database::unfinished().
+  // Returns the forecast of each point; `unfinished` is as in Database::unfinished().
   const std::vector<PointForecast>& forecasts(std::map<std::int64_t, std::vector<Unfinished>> unfinished);
 
  private:
@@ -69,9 +70,9 @@ class PointStates {
   std::vector<PointRecord> points_;
   std::map<std::string, int> places_;  // by hash
   std::optional<Scheduler> scheduler_;
-  std::vector<Cost> processor_;           // of the seeds of each point
-  std::vector<PointForecast> forecasts_;  // of each point, with its cost on the wall
-  std::vector<int> running_;
+  std::vector<Cost> processor_;           // processor time of the seeds, for each point
+  std::vector<PointForecast> forecasts_;  // for each point, with its cost in wall time
+  std::vector<int> running_;              // seeds that workers have, for each point
   Bounds bounds_;
   int maximum_ = 0;  // realisations of a point
 };

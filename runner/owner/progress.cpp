@@ -17,7 +17,7 @@ namespace peclet::runner {
 
 namespace {
 
-// Off a terminal somebody reads a file: one line in so many seconds is enough.
+// Interval of log lines if stderr is not a terminal.
 constexpr double seconds_between_lines = 30;
 
 bool colour_wanted() {

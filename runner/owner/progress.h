@@ -1,5 +1,5 @@
-// How a run looks to the person who started it: one line that keeps itself up to date on a terminal, log
-// lines elsewhere; always on stderr.
+// Progress shows a run to the person who started it, on stderr: one line that is kept up to date on a
+// terminal, log lines elsewhere. RunLog writes the run's log file.
 #pragma once
 
 #include <spdlog/logger.h>
@@ -13,13 +13,13 @@
 
 namespace peclet::runner {
 
-// "points 2/6 converged, 1 otherwise decided | seeds 143/210 | 12.3/min | 12 min to go (10 to 18 min)"
+// Returns "points 2/6 converged, 1 not | seeds 143/210 | 12.3/min | 12 min to go (10 to 18 min)".
 std::string progress_line(const RunReport& report);
 
 class Progress : public RunListener {
  public:
   enum class Style { terminal, lines, quiet };
-  // Style for stderr as it is: quiet when asked for, else by what it is connected to.
+  // Returns the style for stderr: quiet if asked for, else by what stderr is connected to.
   static Style style_of_stderr(bool quiet);
 
   explicit Progress(Style style);
@@ -27,7 +27,7 @@ class Progress : public RunListener {
   Progress& operator=(Progress&&) = delete;
 
   void note(const std::string& message) override;
-  void warn(const std::string& message) override;  // also when quiet
+  void warn(const std::string& message) override;  // printed even if quiet
   void report(const RunReport& report) override;
 
  private:
@@ -36,12 +36,11 @@ class Progress : public RunListener {
 
   Style style_;
   std::shared_ptr<spdlog::logger> log_;
-  std::string line_;      // what the terminal's last line shows
-  double next_line_ = 0;  // seconds of the run at which a log line is due
+  std::string line_;      // text of the terminal's last line
+  double next_line_ = 0;  // time of the run [s] at which a log line is due
 };
 
-// The run's own log, logs/peclet.log: one line an event, times in UTC, bounded in size. Writes down what a
-// run tells, and passes it on.
+// Writes what a run tells into logs/peclet.log, of bounded size, one line an event, and passes it on.
 class RunLog : public RunListener {
  public:
   // `audience` must outlive the log.
@@ -50,9 +49,9 @@ class RunLog : public RunListener {
   void note(const std::string& message) override;
   void warn(const std::string& message) override;
   void happened(const RunEvent& event) override { audience_.happened(event); }
-  void report(const RunReport& report) override;  // into the file once in ten minutes
+  void report(const RunReport& report) override;  // writes to the file once in ten minutes
 
-  // For the file alone: how the run began and ended.
+  // Writes to the file only: how the run began and ended.
   void record(const std::string& message) { write("info", message); }
 
  private:
@@ -60,7 +59,7 @@ class RunLog : public RunListener {
 
   RunListener& audience_;
   RotatingFile file_;
-  double next_report_ = 0;  // seconds of the run
+  double next_report_ = 0;  // time of the run [s] at which a report is due
 };
 
 }  // namespace peclet::runner

@@ -24,10 +24,11 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Retry, points, seeds)
 namespace {
 
 constexpr int request_version = 1;
-// Of the names of a thousand points and their seeds there are some 100 kB.
+// The names of a thousand points and their seeds take some 100 kB.
 constexpr std::uint64_t largest_request = 1 << 20;
 
-// "20261122T031500.123456-4711-9f3a6c21": by time, and different even if two are made at once.
+// Returns a name that sorts by time and is unique, even if two are made at once:
+// "20261122T031500.123456-4711-9f3a6c21".
 std::string new_name() {
   using namespace std::chrono;
   const auto now = system_clock::now();
@@ -54,16 +55,16 @@ const KindTables& request_keys() {
                                  R"(
 /version | integer = 1
 
--- take-over | The campaign is that of its file from now on.
+-- take-over | The campaign is taken over from its file.
 /file | string
-/sha256 | string | Of the text whose scenes the engine has been asked about.
+/sha256 | string | Hash of the text whose scenes the engine has checked.
 
 -- prioritise | Points come earlier or later.
 /points | array | Labels, or digits of the hash.
 /points/* | string
 /priority | integer >= -2147483648 and <= 2147483647
 
--- cancel | Points get no more seeds; with undo they do.
+-- cancel | Points get no more seeds; with undo they get seeds again.
 /points | array | Labels, or digits of the hash.
 /points/* | string
 /undo | true or false
@@ -97,7 +98,7 @@ Request read_request(const fs::path& file) {
     Json json = parse_json(read_regular(file, largest_request), "");
     if (json.is_object() && json.value("version", Json(request_version)) != request_version) {
       throw RequestError(
-          fmt::format("is of another version than {}, which this peclet knows", request_version));
+          fmt::format("has another version than {}, which this peclet reads", request_version));
     }
     return {file.stem().string(), wish_of(request_keys().validate(std::move(json), ""))};
   } catch (const UnsuitableFile& error) {
@@ -121,7 +122,7 @@ std::vector<fs::path> waiting_requests(const CampaignDirectory& directory) {
 
 std::optional<fs::path> set_request_aside(const fs::path& file) {
   const fs::path aside = free_name(file.string() + ".rejected");
-  std::error_code error;  // somebody may have removed it
+  std::error_code error;  // the file may have been removed meanwhile
   fs::rename(file, aside, error);
   if (error && error != std::errc::no_such_file_or_directory) return std::nullopt;
   return aside;

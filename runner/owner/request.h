@@ -1,5 +1,5 @@
-// What somebody asks of a campaign whose database another process may own: one file in requests/, written
-// durably by the verb and removed by the owner when it has carried it out.
+// Request is what a verb asks of a campaign that another process may own: one file in requests/, written
+// durably by the verb and removed by the owner once it is carried out.
 #pragma once
 
 #include <optional>
@@ -14,12 +14,12 @@
 
 namespace peclet::runner {
 
-// The campaign is that of its file from now on.
+// Takes the campaign over from its file.
 struct TakeOver {
   fs::path file;
-  std::string sha256;  // of the text whose scenes the engine has been asked about
+  std::string sha256;  // hash of the text whose scenes the engine has checked
 };
-// Points are named as people name them: by label, or by digits of the hash.
+// In the following, points are named by label or by digits of the hash.
 struct Prioritise {
   std::vector<std::string> points;
   int priority = 0;
@@ -29,27 +29,26 @@ struct Cancel {
   bool undo = false;
 };
 struct Retry {
-  std::vector<std::string> points;  // none: all
-  std::vector<int> seeds;           // none: all that were given up
+  std::vector<std::string> points;  // all if empty
+  std::vector<int> seeds;           // all that were given up if empty
 };
 using Wish = std::variant<TakeOver, Prioritise, Cancel, Retry>;
 
 struct Request {
-  std::string name;  // of the file, without .json: names are in order of time, and no two are equal
+  std::string name;  // file name without .json; names sort by time and are unique
   Wish wish;
 };
 
-// Keys of a request, by its "verb".
+// Returns the keys of a request, by its "verb".
 const KindTables& request_keys();
 
-// The file is no request that this program can read.
+// Thrown if a file is not a request that this program can read.
 class RequestError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-// Writes the request durably, makes the folder when it is not there, and returns it with its name.
-// Throws NoRoomError, std::system_error.
+// Writes the request durably and returns it with its name. Throws NoRoomError, std::system_error.
 Request write_request(const CampaignDirectory& directory, const Wish& wish);
 
 // Throws RequestError.
@@ -57,11 +56,10 @@ Request read_request(const fs::path& file);
 
 fs::path request_file(const CampaignDirectory& directory, const std::string& name);
 
-// The requests that wait, oldest first.
+// Returns the waiting requests, oldest first.
 std::vector<fs::path> waiting_requests(const CampaignDirectory& directory);
 
-// Gives a file that is no request a name under which it waits no longer, and says where it is now. Nothing:
-// it may not be moved.
+// Renames a file that is not a request, so that it no longer waits. Returns its new path, or nothing.
 std::optional<fs::path> set_request_aside(const fs::path& file);
 
 }  // namespace peclet::runner

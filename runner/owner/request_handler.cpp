@@ -29,7 +29,7 @@ std::string listed(const std::vector<Item>& items, const char* separator = ", ")
   return text;
 }
 
-// "10 0.5" of "peclet=10 volume_fraction=0.5": what stands in the row of a table.
+// Returns the values in a label, as in a row of a table: "10 0.5" for "peclet=10 volume_fraction=0.5".
 std::string values_in(const std::string& label) {
   std::istringstream words(label);
   std::string values;
@@ -46,7 +46,7 @@ bool has_name(const PointRecord& point, const std::string& name) {
 
 constexpr const char* would_repeat = "ended with the engine's own verdict, and would end so again";
 
-// Why a seed that was named cannot be retried; "" when it can.
+// Returns why a named seed cannot be retried; "" if it can.
 std::string obstacle(const std::vector<RealisationRecord>& realisations, int seed) {
   const auto found = std::find_if(realisations.begin(), realisations.end(),
                                   [&](const RealisationRecord& record) { return record.seed == seed; });
@@ -84,7 +84,8 @@ void compare(std::vector<std::string>& changes, const char* what, const std::str
 
 std::string also_text(const Target& target) { return target.also.empty() ? "none" : to_string(target.also); }
 
-// "minimum 10 -> 20"; where one of both is fixed, "realisations 8 to 100 -> 16".
+// Adds changes of the numbers of realisations: "minimum 10 -> 20", or "realisations 8 to 100 -> 16" if one of
+// the campaigns has a fixed number.
 void compare_realisations(std::vector<std::string>& changes, const TargetRecord& before,
                           const Campaign& after) {
   const int minimum = after.minimum_realisations, maximum = after.maximum_realisations;
@@ -113,7 +114,7 @@ void compare_points(std::vector<std::string>& changes, Database& database, const
     changes.push_back(counted(left, "point") + " left out");
 }
 
-// One that is larger is not taken over while the campaign runs; `peclet run` reads it.
+// A larger file is not taken over while the campaign runs; `peclet run` reads it.
 constexpr std::uint64_t largest_campaign_file = 64 << 20;
 
 std::vector<PointRecord> named(const std::vector<PointRecord>& points,
@@ -136,15 +137,14 @@ std::optional<std::int64_t> only(const std::vector<PointRecord>& points) {
   return points.size() == 1 ? std::optional(points.front().id) : std::nullopt;
 }
 
-// Which seeds a retry queues again.
 struct RetryPlan {
   std::map<std::int64_t, std::vector<int>> seeds;  // by PointRecord::id
-  std::string message;                             // what is done, and why not more
+  std::string message;                             // the seeds, and why no more are queued
 };
 
-// The seeds of `points` that were given up, or of these the `seeds` that are named. Throws InputError for
-// named seeds of more than one point, and for one that was not given up: a seed that ended with the engine's
-// own verdict would end so again.
+// Plans to retry the given-up seeds of `points`, or only `seeds` if any are named. Throws InputError if seeds
+// are named for more than one point, or one of them was not given up: a seed that ended with the engine's own
+// verdict would end so again.
 RetryPlan plan_retry(Database& database, const std::vector<PointRecord>& points,
                      const std::vector<int>& seeds) {
   check_named(database, points, seeds);
@@ -172,7 +172,7 @@ RetryPlan plan_retry(Database& database, const std::vector<PointRecord>& points,
   return plan;
 }
 
-// Returns in words what a campaign file changes: "tolerance 5 % -> 3 %; 2 points added, 1 left out"; "nothing
+// Returns what a campaign file changes: "tolerance 5 % -> 3 %; 2 points added; 1 point left out", or "nothing
 // differs". Requires that the database holds a campaign and has not taken this one over yet.
 std::string describe_changes(Database& database, const Campaign& campaign) {
   const CampaignRecord known = database.campaign();
@@ -189,7 +189,8 @@ std::string describe_changes(Database& database, const Campaign& campaign) {
   compare(changes, "files kept", kept(known.document), kept(campaign.document));
   compare_points(changes, database, campaign);
   if (!changes.empty()) return fmt::format("{}", fmt::join(changes, "; "));
-  return known.document == campaign.document ? "nothing differs" : "the file, in nothing that decides";
+  return known.document == campaign.document ? "nothing differs"
+                                             : "parts of the file that affect no decision";
 }
 
 }  // namespace
@@ -228,7 +229,7 @@ bool RequestHandler::carry_out() {
       const std::optional<fs::path> aside = set_request_aside(file);
       if (!aside) left_alone_.insert(file);
       const std::string now = aside ? "set aside as " + plain_name(*aside) : "left alone";
-      listener_.warn(fmt::format("requests/{}: is no request: {}; it is {}", plain_name(file),
+      listener_.warn(fmt::format("requests/{}: is not a valid request: {}; it is {}", plain_name(file),
                                  plain(error.what()), now));
     } catch (const DatabaseError&) {
       state_.roll_back();
@@ -268,10 +269,12 @@ RequestHandler::Done RequestHandler::apply(const TakeOver& wish) {
   } catch (const std::system_error& error) {
     throw InputError(wish.file.string(), "", "", error.what());
   }
-  // Whoever changed it since asks for that to be taken over, or is yet to do so: what was checked is no more.
+  // The file changed after the check; its author will send another request.
   if (sha256(text) != wish.sha256) {
-    return {"set", fmt::format("left to what {} says since; `peclet set` or `peclet run` takes that over",
-                               wish.file.string())};
+    return {"set",
+            fmt::format(
+                "not taken over: {} changed after it was checked; `peclet set` or `peclet run` takes it over",
+                wish.file.string())};
   }
   const Campaign campaign = parse_campaign(parse_json(text, wish.file.string()), wish.file.string());
   if (state_.has_engine() && campaign.engine != state_.campaign().engine) {

@@ -1,5 +1,5 @@
-// What people ask for, carried out by the campaign's owner: once each, whatever is killed when, because the
-// event that says what was done names its request and is committed together with it.
+// RequestHandler carries out what people ask of a running campaign. Each request is carried out once, even if
+// a process is killed: the event that records it names the request and is committed with its effects.
 #pragma once
 
 #include <cstddef>
@@ -18,9 +18,9 @@
 
 namespace peclet::runner {
 
-// Returns the index of the point that people name so: by its label, or else the only one with these values
-// ("10 0.5", as in the row of a table) or with those 4 or more leading digits of its hash. Throws InputError
-// for a name that no point, or more than one, has.
+// Returns the index of the named point: by its label, or else as the only point with these values ("10 0.5",
+// as in a row of a table) or with these 4 or more leading digits of its hash. Throws InputError if no point,
+// or more than one, matches.
 std::size_t find_point(const std::vector<PointRecord>& points, const std::string& name);
 
 class RequestHandler {
@@ -31,15 +31,15 @@ class RequestHandler {
 
   bool any_waits() const { return !waiting_requests(directory_).empty(); }
 
-  // Carries out what waits, each request in a transaction of its own. One that cannot be carried out becomes
-  // an event `refused` that says why; a file that is no request is set aside with a warning. True when the
-  // state's picture was taken again: the seeds that workers have are then to be found again. Throws
-  // DatabaseError: the request it came with waits on, and the state's picture was taken again.
+  // Carries out the waiting requests, each in a transaction of its own. A request that cannot be carried out
+  // becomes an event `refused` with the reason; a file that is not a request is set aside with a warning.
+  // Returns true if the state was read again: the seeds that workers have then need
+  // CampaignState::find_place(). Throws DatabaseError: the request still waits, and the state was read again.
   bool carry_out();
 
  private:
   void carry_out(const Request& request);
-  // The kind of event that says so, the point when it is a single one, and in words what was done.
+  // Kind of the event, message for people, and the point if there is a single one.
   struct Done {
     std::string kind, message;
     std::optional<std::int64_t> point{};
@@ -53,7 +53,7 @@ class RequestHandler {
   CampaignState& state_;
   CampaignDirectory directory_;
   RunListener& listener_;
-  std::set<fs::path> left_alone_;  // no requests, and could not be set aside
+  std::set<fs::path> left_alone_;  // files that are not requests and could not be set aside
 };
 
 }  // namespace peclet::runner

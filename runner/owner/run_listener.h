@@ -1,4 +1,4 @@
-// What a run tells about itself. The dispatcher reports; progress.cpp alone puts it into words on a terminal.
+// RunListener hears what a run tells about itself. Only progress.cpp puts it into words on a terminal.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@
 
 namespace peclet::runner {
 
-// What happens in a run, for programs that follow it: schema/events.schema.json describes each as JSON.
+// Events of a run, for programs that follow it; schema/events.schema.json describes each as JSON.
 struct RunBegan {
   std::string campaign;
   fs::path directory;
@@ -27,11 +27,11 @@ struct SeedEnded {
   PointName point;
   int seed = 0;
   std::string cause;            // "completed", "overlap", ..., "crashed"
-  std::optional<double> value;  // of the target's observable
+  std::optional<double> value;  // value of the target's observable
   std::optional<double> cpu_seconds;
 };
 
-// An attempt that gave no result: the seed is tried again, or given up (then it has ended as well).
+// An attempt that gave no result. The seed is tried again, or is given up and has then ended, too.
 struct AttemptFailed {
   PointName point;
   int seed = 0;
@@ -45,14 +45,13 @@ struct StopTestMade {
   StopTest stop_test;
 };
 
-// No more seeds are needed: the last stop test is within the tolerance, or all seeds that are allowed have
-// ended.
+// The point needs no more seeds: its last stop test is within the tolerance, or all allowed seeds have ended.
 struct Decided {
   PointName point;
   StopTest stop_test;
 };
 
-// Something is in the run's way: it pauses. Told again of whatever else gets in its way before ShortageEnded.
+// The run pauses because something is in its way. Sent once for each kind of hindrance until ShortageEnded.
 struct ShortageBegan {
   std::string message;
 };
@@ -60,34 +59,34 @@ struct ShortageEnded {};
 
 struct RunEnded {
   int exit_code = 0;
-  std::string message;  // of the error that ended it, or ""
+  std::string message;  // error that ended the run, or ""
 };
 
 using RunEvent = std::variant<RunBegan, SeedEnded, AttemptFailed, StopTestMade, Decided, ShortageBegan,
                               ShortageEnded, RunEnded>;
 
 struct RunReport {
-  int points = 0, decided = 0, converged = 0;  // converged, or complete: also with losses
+  int points = 0, decided = 0, converged = 0;  // converged or complete, also with losses
   bool has_target = true;
-  int cancelled = 0;                      // before they were decided
-  int seeds_ended = 0, seeds_wanted = 0;  // of the stop tests that are next or have decided
+  int cancelled = 0;                      // points cancelled before they were decided
+  int seeds_ended = 0, seeds_wanted = 0;  // seeds of the next or the deciding stop tests
   int workers = 0, busy = 0;
-  int results = 0;     // of this run
-  double elapsed = 0;  // seconds of this run
+  int results = 0;     // results in this run
+  double elapsed = 0;  // time of this run [s]
   std::optional<TimeToGo> to_go;
-  double spent_seconds = 0;  // processor time of this run
+  double spent_seconds = 0;  // processor time of this run [s]
   std::optional<double> budget_seconds;
 };
 
 class RunListener {
  public:
   virtual ~RunListener() = default;
-  // Something happened that a person may want to know (may have to know).
+  // Tells a person what happened: note() what is good to know, warn() what may need action.
   virtual void note(const std::string& message) = 0;
   virtual void warn(const std::string& message) = 0;
-  // The same for programs, once each and after it is durable.
+  // Tells programs about an event, once and after it is durable.
   virtual void happened(const RunEvent&) {}
-  // How far the run is; comes about once a second.
+  // Tells how far the run is, about once a second.
   virtual void report(const RunReport& report) = 0;
 };
 

@@ -22,21 +22,21 @@
 namespace peclet::runner {
 namespace {
 
-// Copied at a time, with a breath in between: the owner's commits go to the same disk.
+// Size of a portion and pause after it, because the owner's commits go to the same disk.
 constexpr std::int64_t bytes_at_a_time = 1 << 20;
 constexpr std::chrono::milliseconds breath{1};
 
 // SQLite's files beside a database.
 constexpr std::array<const char*, 4> companions{"", "-journal", "-wal", "-shm"};
 
-// NAME.PROCESS.COUNT.tmp, as write_durably() names its own: what a dead process leaves is found by that.
+// Returns NAME.PROCESS.COUNT.tmp as write_durably() does, so that leftovers of a dead process are found.
 fs::path temporary_name(const fs::path& path) {
   static std::atomic<unsigned> count{0};
   return fmt::format("{}.{}.{}.tmp", path.string(), getpid(), count++);
 }
 
 void remove_database(const fs::path& path) {
-  std::error_code ignored;  // it is already in the way of a worse error
+  std::error_code ignored;  // a worse error is on its way
   for (const char* const suffix : companions) fs::remove(path.string() + suffix, ignored);
 }
 
@@ -44,7 +44,7 @@ void copy_pages(Connection& from, Connection& to) {
   // One snapshot for all steps: otherwise every commit of the owner would start the copy again.
   const Transaction snapshot(from, Transaction::Kind::snapshot);
   from.integer("SELECT count(*) FROM sqlite_schema");
-  errno = 0;  // an older one would be taken for the reason of a failure
+  errno = 0;  // an older value would be taken for the reason of a failure
   const std::unique_ptr<sqlite3_backup, int (*)(sqlite3_backup*)> backup(
       sqlite3_backup_init(to.handle(), "main", from.handle(), "main"), sqlite3_backup_finish);
   if (!backup) to.fail("copying " + from.path());
@@ -61,7 +61,7 @@ void copy_pages(Connection& from, Connection& to) {
 
 void write_copy(Connection& source, const fs::path& to) {
   Connection copy(to.string(), Connection::Access::create, 0);
-  // Nobody reads the copy before it is published, and a torn one is thrown away: it needs no journal.
+  // The copy is not read before it is published, and a torn copy is thrown away: it needs no journal.
   copy.execute("PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF");
   copy_pages(source, copy);
 }
@@ -75,7 +75,7 @@ void finish_copy(const fs::path& path, const std::function<void(Connection&)>& a
   }
 }
 
-// When the campaign was set up, and the first point that it ever had, never change.
+// The origin consists of what never changes: the time of setup and the first point.
 void read_identity(Connection& database, Contents& contents) {
   contents.name = database.text("SELECT name FROM campaign");
   contents.created_at = database.text("SELECT created_at FROM campaign");
@@ -90,7 +90,7 @@ std::string damage(Connection& connection) {
     std::replace(found.begin(), found.end(), '\n', ' ');
     return found;
   }
-  // With other tables than ours in their places, references cannot even be looked at.
+  // References can be checked only if all tables are ours.
   try {
     check_tables(connection);
   } catch (const IntegrityError& error) {
@@ -139,7 +139,7 @@ Contents campaign_in(const fs::path& path) {
 Contents examine(const fs::path& path) {
   Connection database(path.string(), Connection::Access::read_only, 10'000);
   if (!is_campaign_database(database)) {
-    throw IntegrityError(path.string() + ": is no database of a peclet campaign");
+    throw IntegrityError(path.string() + ": is not the database of a peclet campaign");
   }
   if (const std::string why = other_version(database); !why.empty()) {
     throw IntegrityError(fmt::format("{}: {}", path.string(), why));
@@ -174,7 +174,7 @@ void refuse_lost_database(const CampaignDirectory& directory) {
                   directory.database().string(), absent ? "gone" : "empty", hint, directory.root().string()));
 }
 
-// A sound database may be refused for another reason, and there a backup would not help.
+// A sound database may be refused for another reason; a backup would not help then.
 std::string hint_if_damaged(const CampaignDirectory& directory) {
   try {
     examine(directory.database());

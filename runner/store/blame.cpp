@@ -12,9 +12,9 @@ namespace {
 constexpr int most_kills_in_a_row = 20;
 
 constexpr std::array names{"running", "result",  "crashed", "hung",     "garbled",
-                           "refused", "drained", "killed",  "abandoned"};  // as AttemptOutcome
+                           "refused", "drained", "killed",  "abandoned"};  // in the order of AttemptOutcome
 
-// Kills since the seed last came further than it had ever been.
+// Counts the kills since the seed last came further than ever before.
 int kills_without_progress(std::span<const PastAttempt> attempts) {
   int kills = 0;
   std::int64_t furthest = -1;

@@ -37,7 +37,7 @@ constexpr std::array<std::pair<unsigned long, const char*>, 11> network_kinds{{{
                                                                                {0x5346414f, "AFS"},
                                                                                {0x6b414653, "AFS"},
                                                                                {0xaad7aaea, "PanFS"}}};
-// File systems of which the number does not say whether they are of a network or of this machine.
+// File systems whose number does not say whether they are on a network.
 constexpr std::array<std::pair<unsigned long, const char*>, 8> doubtful_kinds{
     {{0x65735546, "FUSE (sshfs, DAOS, Gluster and others)"},
      {0x01021997, "9P (a virtual machine's host)"},
@@ -50,7 +50,7 @@ constexpr std::array<std::pair<unsigned long, const char*>, 8> doubtful_kinds{
 
 constexpr std::string_view suffix_of_growing = "@growing";
 
-// The kind of the file system among `kinds`, of the path or of the nearest folder above it that exists.
+// Returns the kind among `kinds` of the file system of the path, or of the nearest existing folder above it.
 template <typename Kinds>
 std::optional<std::string> kind_among(const Kinds& kinds, const fs::path& path) {
   fs::path existing = fs::absolute(path);
@@ -59,7 +59,7 @@ std::optional<std::string> kind_among(const Kinds& kinds, const fs::path& path) 
   if (statfs(existing.c_str(), &about) != 0) {
     throw std::system_error(errno, std::generic_category(), existing.string());
   }
-  // The field is signed or not, 32 or 64 bits wide, depending on the machine.
+  // The field is signed or unsigned, 32 or 64 bits wide, depending on the machine.
   const unsigned long magic = static_cast<unsigned long>(about.f_type) & 0xffffffffUL;
   for (const auto& [number, name] : kinds) {
     if (number == magic) return name;
@@ -69,10 +69,10 @@ std::optional<std::string> kind_among(const Kinds& kinds, const fs::path& path) 
 
 struct Guarded {
   fs::path folder;
-  std::set<std::string> own_folders;  // that belong in it
+  std::set<std::string> own_folders;  // subfolders that belong in it
 };
 
-// As restore() leaves them, a folder of backups may hold checkpoints and a spool.
+// A folder of backups may hold copies of checkpoints, spool and files.
 std::vector<Guarded> guarded_folders(const CampaignDirectory& directory) {
   return {
       {directory.spool(), {directory.rejected().filename().string(), directory.left().filename().string()}},
@@ -109,7 +109,7 @@ std::string listed(const std::vector<fs::path>& found) {
   return found.size() > most ? fmt::format("{} and {} more", text, found.size() - most) : text;
 }
 
-// A build tree, with its programs in bin/, says in CMakeCache.txt where its source is.
+// Returns the source of the build tree whose bin/ has this program, from CMakeCache.txt.
 std::optional<fs::path> source_of_build() {
   constexpr std::string_view entry = "CMAKE_HOME_DIRECTORY:INTERNAL=";
   std::ifstream cache(own_folder().parent_path() / "CMakeCache.txt");
@@ -141,7 +141,7 @@ fs::path CampaignDirectory::spool_file(const std::string& hash, int seed, std::i
   return spool() / fmt::format("{}-{}.json", stem(hash, seed), attempt);
 }
 
-// As the view `files` spells it.
+// The view `files` spells the same path.
 fs::path CampaignDirectory::left_files(const std::string& hash, std::int64_t point_id, int seed) const {
   return files() / fmt::format("{}-{}", hash.substr(0, 16), point_id) / fmt::format("{:06}", seed);
 }
@@ -181,7 +181,7 @@ ScratchFolder::ScratchFolder(const std::string& name) {
 }
 
 ScratchFolder::~ScratchFolder() {
-  std::error_code ignored;  // what is left of it lies where temporary files are
+  std::error_code ignored;  // remnants stay among temporary files
   fs::remove_all(path_, ignored);
 }
 
@@ -216,7 +216,7 @@ void move_intruders_aside(const CampaignDirectory& directory,
     const std::string names = listed(found);
     const fs::path aside = make_folder_aside(directory);
     for (const fs::path& path : found) fs::rename(path, aside / path.filename());
-    tell(fmt::format("{}/ had what is no file: {}; moved to {}/{}/",
+    tell(fmt::format("{}/ had entries that are not regular files: {}; moved to {}/{}/",
                      guarded.folder.lexically_relative(directory.root()).string(), names,
                      directory.aside().filename().string(), aside.filename().string()));
   }

@@ -18,7 +18,7 @@
 namespace peclet::runner {
 namespace {
 
-// Of each table its columns, as "name TYPE", generated ones marked.
+// Columns of each table as "name TYPE", with generated ones marked.
 using Tables = std::map<std::string, std::set<std::string>>;
 
 std::set<std::string> columns_of(Connection& connection, const std::string& table) {
@@ -41,23 +41,24 @@ Tables make_tables() {
 }
 
 [[noreturn]] void refuse(const Connection& connection, const std::string& name, const char* what) {
-  throw IntegrityError(fmt::format("{}: {} {}; somebody else made or changed this file", connection.path(),
+  throw IntegrityError(fmt::format("{}: {} {}; another program made or changed this file", connection.path(),
                                    plain(name), what));
 }
 
-// As in schema/campaign.sql.
+// Values of schema/campaign.sql.
 constexpr std::int64_t our_application = 1346587724;
 constexpr std::int64_t our_version = 1;
 
-constexpr std::array state_names{"queued", "running", "done", "failed", "quarantined"};  // as SeedState
+// In the order of SeedState.
+constexpr std::array state_names{"queued", "running", "done", "failed", "quarantined"};
 
-// An owner that died between creating the file and filling it leaves nothing in it.
+// True if the owner died between creating the file and filling it.
 bool is_empty(Connection& connection) {
   return connection.integer("PRAGMA application_id") == 0 &&
          connection.integer("SELECT count(*) FROM sqlite_schema") == 0;
 }
 
-// The tables are made before the campaign is written into them.
+// True if a campaign was written; the tables are made before.
 bool holds_anything(Connection& connection) {
   return connection.integer("SELECT EXISTS (SELECT 1 FROM campaign) OR EXISTS (SELECT 1 FROM point)") != 0;
 }
@@ -77,23 +78,22 @@ void create_tables(Connection& connection) {
   connection.execute(campaign_sql);
   connection.execute(views_sql);
   creation.commit();
-  connection.empty_log();  // what is to become larger later has its place now
+  connection.empty_log();  // the database file takes the room of its tables now
 }
 
 bool may_write(const fs::path& folder) { return faccessat(AT_FDCWD, folder.c_str(), W_OK, AT_EACCESS) == 0; }
 
 bool may_read(const fs::path& file) { return faccessat(AT_FDCWD, file.c_str(), R_OK, AT_EACCESS) == 0; }
 
-// A log of some 4 MB, and less on a small disk: a full one whose log takes most of it has no room to bring
-// the log into the database either, and nobody could ever go on.
+// Returns the pages after which the log is brought into the database: some 4 MB, less on a small disk. On a
+// disk that the log has filled there is no room to do that.
 int pages_of_log(const fs::path& database) {
   constexpr std::uintmax_t page = 16384, part = 8, least = 8, most = 250;
   const std::uintmax_t available = fs::space(database.parent_path()).available;
   return static_cast<int>(std::clamp(available / (part * page), least, most));
 }
 
-// SQLite keeps an index of its log beside a database that somebody reads, and cannot where nothing may be
-// written.
+// Opens a database for reading. SQLite's index of the log needs a folder that may be written.
 std::unique_ptr<Connection> connection_of_reader(const fs::path& path) {
   constexpr int busy_milliseconds = 5'000;
   const bool is_frozen = is_frozen_for_us(path);
@@ -120,7 +120,7 @@ Target stored_target(const std::string& observable, const std::string& criterion
   try {
     return target_of(observable, Json::parse(criterion), confidence);
   } catch (const std::exception&) {
-    throw IntegrityError("the database holds a target that is none: " + plain(criterion));
+    throw IntegrityError("the database holds an invalid target: " + plain(criterion));
   }
 }
 
@@ -158,7 +158,7 @@ std::vector<ObservableStopTest> stored_observables(const std::string& text) {
   try {
     return observables_of(Json::parse(text));
   } catch (const std::exception&) {
-    throw IntegrityError("the database holds a stop test that is none: " + plain(text));
+    throw IntegrityError("the database holds an invalid stop test: " + plain(text));
   }
 }
 
@@ -166,7 +166,7 @@ constexpr const char* stop_test_columns =
     "seeds, lost, count, mean, standard_error, half_width, plain_mean, plain_standard_error, "
     "plain_half_width, verdict, skewness, transient, observables ";
 
-// Of a query of stop_test_columns.
+// Reads a row of a query of stop_test_columns.
 StopTest read_stop_test(const Statement& query) {
   StopTest stop_test;
   stop_test.seeds = query.number(0);
@@ -187,7 +187,7 @@ StopTest read_stop_test(const Statement& query) {
   return stop_test;
 }
 
-// Of a query of result_columns.
+// Reads a row of a query of result_columns.
 std::string read_text(const Statement& query) {
   try {
     return result_text(query, 1, 2);
@@ -229,7 +229,7 @@ void check_tables(Connection& connection) {
   std::set<std::string> found;
   while (query.step()) {
     const std::string name = query.text(0), type = query.text(1);
-    if (type == "trigger") refuse(connection, name, "is a trigger, of which this program makes none");
+    if (type == "trigger") refuse(connection, name, "is a trigger, and this program makes no triggers");
     if (type != "index" && ours.count(name) != 0) {
       const bool is_plain = type == "table" && query.text(2).starts_with("CREATE TABLE");
       if (!is_plain) refuse(connection, name, "is not the table that this program makes");
@@ -260,12 +260,11 @@ Database Database::open_owner(const fs::path& path) {
   Connection& connection = database.connection();
   const bool fresh = is_empty(connection);
   if (!fresh) check_kind(connection);
-  // Results take some 2 kB, of which pages of 4 kB would hold one each. Ignored where there are tables.
+  // Results take some 2 kB, and pages of 4 kB would hold one each. Ignored if tables exist.
   connection.execute("PRAGMA page_size = 16384");
   connection.execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON");
   connection.execute(fmt::format("PRAGMA wal_autocheckpoint = {}", pages_of_log(path)));
-  // Beside a reader that does not come to an end the log grows; when that one is gone, the file shrinks
-  // again.
+  // The log grows while a reader does not finish; afterwards the file shrinks again.
   connection.execute("PRAGMA journal_size_limit = 8388608");
   if (connection.text("PRAGMA journal_mode") != "wal") {
     throw DatabaseError(connection.path() + ": cannot keep a write-ahead log on this file system", 0);
@@ -281,7 +280,7 @@ Database Database::open_owner(const fs::path& path) {
 Database Database::open_reader(const fs::path& path) {
   if (kind_of(path).empty()) {
     throw InputError(path.string(), "", "",
-                     "no such database; has the campaign been started with `peclet run`?");
+                     "there is no database; has the campaign been started with `peclet run`?");
   }
   Database database(connection_of_reader(path));
   database.snapshot_ = std::make_unique<Transaction>(database.connection(), Transaction::Kind::snapshot);
@@ -442,9 +441,9 @@ std::vector<LeaseRecord> Database::leases(std::int64_t point) {
 }
 
 std::map<std::int64_t, std::vector<Unfinished>> Database::unfinished() {
-  constexpr double shortest = 0.1;  // share of the steps before which their rate says little
-  // A seed that was recalled goes on from the step at which it left. After any other end of an attempt its
-  // first step is not known.
+  constexpr double shortest = 0.1;  // share of the steps below which their rate is unreliable
+  // A drained seed continues from the step at which it left. After any other end of an attempt the first step
+  // of the next is unknown.
   Statement query(*connection_,
                   "SELECT l.point_id, strftime('%s', l.renewed_at) - strftime('%s', a.started_at), l.step, "
                   "l.steps, l.phase, (SELECT CASE WHEN total(b.outcome != 'drained' AND b.step > 0) = 0 THEN "

@@ -1,8 +1,8 @@
-// The campaign's database: opening it safely, and reading it.
+// Database opens a campaign's database safely and reads it.
 //
-// One process writes (it holds campaign.lock and opens with open_owner); any number of others read with
-// open_reader. The stores write it: point_store, seed_store, result_store and the like. The tables are those
-// of schema/campaign.sql; no other folder has SQL.
+// One process writes: it holds campaign.lock and opens with open_owner(). Any number of others read with
+// open_reader(). The stores write: point_store, seed_store, result_store and others. The tables are those of
+// schema/campaign.sql; no other folder has SQL.
 #pragma once
 
 #include <array>
@@ -23,9 +23,9 @@
 
 namespace peclet::runner {
 
-// The texts of schema/*.sql.
-extern const char* const campaign_sql;  // the tables
-extern const char* const views_sql;     // what people read
+// Texts of schema/*.sql.
+extern const char* const campaign_sql;  // tables
+extern const char* const views_sql;     // views for people
 
 enum class SeedState { queued, running, done, failed, quarantined };
 const char* to_string(SeedState state);
@@ -33,19 +33,19 @@ SeedState seed_state(const std::string& text);
 
 struct PointRecord {
   std::int64_t id = 0;
-  std::optional<int> place;  // in the sweep; none: no longer part of it
+  std::optional<int> place;  // in the sweep; absent if it is no longer part of it
   std::string hash;
   Json scene;
   Json settings;
   std::string label;
   std::string engine_identity;  // "" before the first result, unless it was accepted by name
   bool suspect = false;         // a seed gave two different results
-  int priority = 0;             // points of a higher one are served first
+  int priority = 0;             // points of higher priority are served first
   bool cancelled = false;       // gets no more seeds
-  bool set_aside = false;       // its engine was replaced by name; another row is the scene's
+  bool set_aside = false;       // its engine was replaced by name; another row is the scene's point
 };
 
-// A seed with the columns that were taken from its result. Numbers that do not exist are absent.
+// A seed with the columns taken from its result. Undefined numbers are absent.
 struct RealisationRecord {
   int seed = 0;
   SeedState state = SeedState::queued;
@@ -57,7 +57,7 @@ struct RealisationRecord {
 
 struct StateCounts {
   int queued = 0, running = 0, done = 0, failed = 0, quarantined = 0;
-  double cpu_seconds = 0;  // of done and failed together
+  double cpu_seconds = 0;  // processor time of the seeds that have ended
   int& of(SeedState state) {
     return *std::array{&queued, &running, &done, &failed, &quarantined}.at(static_cast<std::size_t>(state));
   }
@@ -68,16 +68,16 @@ struct AttemptRecord {
   int seed = 0;
   int worker = 0;
   std::int64_t process = 0;
-  std::string host, started_at, ended_at;  // ended_at empty: still running
-  std::string outcome;                     // the list is in schema/campaign.sql
+  std::string host, started_at, ended_at;  // ended_at is empty while it runs
+  std::string outcome;                     // listed in schema/campaign.sql
   bool blamed = false;
-  bool pardoned = false;  // from before a retry: no longer counts
+  bool pardoned = false;  // made before a retry: no longer counts
   std::int64_t step = 0;
   std::optional<std::int64_t> exit_status, signal;
   std::string message;
 };
 
-// From when to when an attempt lasted. One that runs has no end but when it was last heard of.
+// Time span of an attempt. A running one ends at its last news.
 struct AttemptSpan {
   std::int64_t point = 0;
   int seed = 0, worker = 0;
@@ -102,7 +102,7 @@ struct TargetRecord {
   Target target;
   int minimum = 0, maximum = 0;
 
-  // The confidence level of every interval that is shown of a point.
+  // Returns the confidence level of every interval that is shown for a point.
   double level() const { return adjusted_confidence(target.confidence, minimum, maximum); }
 };
 
@@ -112,11 +112,11 @@ struct StopTestRecord {
   std::string made_at;
 };
 
-// A prediction that was stored before the seeds came, to be judged by what became of them.
+// A prediction that was stored before the seeds ran, to be compared with what they gave.
 struct StoredPrediction {
-  int pilot = 0;           // seeds that it was made from
-  Expected<int> seeds;     // of the deciding stop test
-  double cpu_seconds = 0;  // of one seed
+  int pilot = 0;           // seeds used
+  Expected<int> seeds;     // seeds of the deciding stop test
+  double cpu_seconds = 0;  // processor time of one seed
   std::string made_at;
 
   double likely_cpu_seconds() const { return seeds.likely * cpu_seconds; }
@@ -136,7 +136,7 @@ struct EngineRecord {
   Json provenance;
 };
 
-// Results of a scene that are no part of the campaign any more.
+// Results of a scene that no longer belong to the campaign.
 struct SetAside {
   std::string engine;  // identity
   int results = 0;
@@ -149,24 +149,22 @@ struct CampaignRecord {
   std::string created_at, updated_at;
 };
 
-// Whether a file that SQLite can open is a campaign's database, of whatever version.
+// True if the database is a campaign's, of any version.
 bool is_campaign_database(Connection& connection);
-// Says that the tables of a campaign's database are of a version that this program does not know; ""
-// otherwise.
+// Returns a message if the tables have a version that this program does not know; "" otherwise.
 std::string other_version(Connection& connection);
 
-// Whether a reader reads this database without locks and without a log: there is no log, and its folder may
-// not be written, so that a run of ours cannot write it. Its owner may: what is read while a run begins may
-// then look damaged.
+// True if a reader opens this database without locks and without a log: there is no log, and this user may
+// not write its folder. The owner of the folder may write it; what is read while his run begins may look
+// damaged.
 bool is_frozen_for_us(const fs::path& path);
 
-// A file that calls itself a campaign's database may have been made by anybody: where a table should be there
-// may be a view that never ends, and a trigger may write what nobody asked for. Nothing of such a file is
-// read. Requires that its kind and version are known. Throws IntegrityError.
+// Checks tables, columns and triggers before anything is read. A file from outside may have a view that never
+// ends in the place of a table, or a trigger that writes. Requires that kind and version are known. Throws
+// IntegrityError.
 void check_tables(Connection& connection);
 
-// A database that its owner has made, and not yet filled.
-// For whoever can wait, which takes moments.
+// Thrown if an owner has made the database but not filled it yet, which takes moments. The caller may wait.
 class BeingSetUp : public InputError {
  public:
   explicit BeingSetUp(
@@ -177,65 +175,63 @@ class BeingSetUp : public InputError {
 
 class Database {
  public:
-  // Opens or creates the database for its owner. Requires the campaign's lock.
-  // Throws IntegrityError for a file that is no campaign database or is damaged, InputError for one of
-  // another version, and DatabaseError.
+  // Opens or creates the database for its owner. Requires the campaign's lock. Throws IntegrityError if the
+  // file is not a campaign's database or is damaged, InputError if it has another version, DatabaseError.
   static Database open_owner(const fs::path& path);
-  // Opens it for reading. All that one Database reads is one snapshot, taken at the first read.
-  // In a folder that may not be written, and without a log, the file is read as it is. Throws as above;
-  // InputError when there is no such file, or a log beside it that cannot be read there.
+  // Opens it for reading. Everything that one Database reads is one snapshot, taken at the first read.
+  // Without a log, in a folder that may not be written, the file is read as it is. Throws as open_owner();
+  // InputError also if there is no file, or its log cannot be read there.
   static Database open_reader(const fs::path& path);
 
   CampaignRecord campaign();
-  // The points that the sweep contains, in its order.
+  // Returns the points of the sweep, in its order.
   std::vector<PointRecord> points();
-  // Points of earlier versions of the sweep, and those that are set aside, in order of their first
-  // appearance.
+  // Returns the points of earlier sweeps and those that are set aside, in order of their first appearance.
   std::vector<PointRecord> inactive_points();
 
-  // The stop tests of each point for the present target, by PointRecord::id.
+  // Returns the stop tests of each point for the present target, by PointRecord::id.
   std::map<std::int64_t, std::vector<StopTest>> stop_tests_by_point();
 
-  // All functions below take PointRecord::id. Lists are in order of the seeds (then of time).
+  // The functions below take PointRecord::id. Their lists are in order of the seeds, then of time.
   StateCounts counts(std::int64_t point);
   std::vector<RealisationRecord> realisations(std::int64_t point);
-  // Index is the seed; as long as the largest seed asks for that a campaign can have. The input of
-  // replay_stop_tests(). Throws IntegrityError if the numbers are not as their layout says.
+  // Returns how each seed has ended, for replay_stop_tests(). The index is the seed; the last one is the
+  // largest that has ended. Throws IntegrityError if the numbers do not match their layout.
   std::vector<std::optional<Outcome>> outcomes(std::int64_t point);
-  // The text of a result as the engine wrote it; nothing for a seed without one. Throws IntegrityError.
+  // Returns the engine's text of a result, without white space, if there is a result. Throws IntegrityError.
   std::optional<std::string> result_text(std::int64_t point, int seed);
-  // The same, read.
+  // Returns result_text() as JSON.
   std::optional<Json> result(std::int64_t point, int seed);
-  // The results of the seeds below `end`, one at a time.
+  // Visits the results of the seeds below `end`, one at a time.
   void for_each_result(std::int64_t point, int end, const std::function<void(int seed, const Json&)>& visit);
   std::vector<AttemptRecord> attempts(std::int64_t point);
-  // The process that makes, or has made, an attempt; nothing for an attempt that never was.
+  // Returns the process of an attempt; nothing if the attempt is unknown.
   std::optional<std::int64_t> process_of(std::int64_t attempt);
-  // The most recent attempts at all points, at most `limit`, in the order in which they began.
+  // Returns the last `limit` attempts at all points, in the order in which they began.
   std::vector<AttemptSpan> last_attempts(int limit);
-  // Machines that have made attempts, by name.
+  // Returns the names of the machines that made attempts, sorted.
   std::vector<std::string> hosts();
-  // When a seed last ended; before the first one "".
+  // Returns when an attempt last ended; "" before the first.
   std::string last_end();
-  // The seeds below `end` that have completed.
+  // Returns the seeds below `end` that have completed.
   std::vector<int> completed(std::int64_t point, int end);
-  // Mean steps of the seeds that are done; NaN without one.
+  // Returns the mean steps of the seeds that are done; NaN if there are none.
   MeanSteps mean_steps(std::int64_t point);
   std::vector<LeaseRecord> leases(std::int64_t point);
-  // The seeds that workers were running when they last gave news, by PointRecord::id.
+  // Returns the running seeds as of their workers' last news, by PointRecord::id.
   std::map<std::int64_t, std::vector<Unfinished>> unfinished();
-  // How many workers the last run had, as far as they were needed; 0 where nothing was run here.
+  // Returns how many workers had seeds when the last attempt began; 0 before the first.
   int last_workers();
-  // Predictions for the present target, by PointRecord::id.
+  // Returns the predictions for the present target, by PointRecord::id.
   std::map<std::int64_t, StoredPrediction> predictions();
-  // Looks for the present target, by number of seeds.
+  // Returns the stop tests for the present target, by number of seeds.
   std::vector<StopTestRecord> stop_tests(std::int64_t point);
-  // The most recent `limit` events, oldest first.
+  // Returns the last `limit` events, oldest first.
   std::vector<EventRecord> events(int limit);
-  // What became of a request; nothing while it waits.
+  // Returns the event that answered a request; nothing while it waits.
   std::optional<EventRecord> event_of(const std::string& request);
   std::vector<EngineRecord> engines();
-  // What other engines did for the scene of that hash before another one was accepted.
+  // Returns the results of the scene with that hash that were set aside, by engine.
   std::vector<SetAside> set_aside(const std::string& hash);
 
   Connection& connection() { return *connection_; }
@@ -243,7 +239,7 @@ class Database {
  private:
   explicit Database(std::unique_ptr<Connection> connection);
   std::unique_ptr<Connection> connection_;
-  std::unique_ptr<Transaction> snapshot_;  // of a reader
+  std::unique_ptr<Transaction> snapshot_;  // present if opened for reading
 };
 
 }  // namespace peclet::runner

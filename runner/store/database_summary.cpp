@@ -21,10 +21,10 @@ namespace {
 struct Aggregate {
   StateCounts counts;
   RunningEstimate all_seeds;
-  std::vector<int> ended;         // seeds, in order
-  std::vector<int> tested;        // the first few seeds with blocks, as many as a test for transients needs
-  std::vector<double> seconds;    // of processor time that each of these took
-  std::vector<int> jammed, lost;  // those of these that have jammed, or have no value for another reason
+  std::vector<int> ended;         // in order of the seeds
+  std::vector<int> tested;        // first seeds with blocks, as many as a test for transients needs
+  std::vector<double> seconds;    // processor time of each ended seed
+  std::vector<int> jammed, lost;  // ended seeds that jammed, or have no value for another reason
 
   void count(SeedState state, int seed, const std::string& cause, double cpu_seconds) {
     ++counts.of(state);
@@ -45,7 +45,7 @@ struct Aggregate {
   Endings endings_below(int seed) const {
     return {below(ended, seed), below(jammed, seed), below(lost, seed)};
   }
-  // Whether the stop test could not be tested for transients.
+  // True if the stop test had too few seeds with blocks for a test for transients.
   bool lacks_blocks_of(const StopTest& stop_test) const {
     return lacks_blocks(stop_test.estimate.count, below(tested, stop_test.seeds));
   }
@@ -56,8 +56,7 @@ struct Aggregate {
   }
 };
 
-// One pass over the seeds in the order in which they are stored: of a large campaign it is what takes the
-// time.
+// Reads the seeds in one pass in stored order, which takes most of the time of a large campaign.
 std::map<std::int64_t, Aggregate> read_aggregates(Connection& connection) {
   Statement query(connection,
                   "SELECT point_id, seed, state, numbers, cpu_seconds, cause FROM realisation "
@@ -78,7 +77,7 @@ std::map<std::int64_t, Aggregate> read_aggregates(Connection& connection) {
 
 using CountsByPoint = std::map<std::int64_t, std::map<std::string, int>>;
 
-// Of rows of point, name and count.
+// Counts the rows of a query of point, name and count.
 CountsByPoint counts_by_point(Connection& connection, const char* sql) {
   Statement query(connection, sql);
   CountsByPoint counts;
@@ -86,7 +85,8 @@ CountsByPoint counts_by_point(Connection& connection, const char* sql) {
   return counts;
 }
 
-// What engines said of results without a value, and the last attempts of seeds that were given up.
+// Returns what engines said of results without a value, and the last messages of attempts at given-up seeds,
+// by point and cause. The first seed of each cause counts.
 std::map<std::int64_t, std::map<std::string, std::string>> read_loss_reasons(Connection& connection) {
   Statement query(
       connection,
@@ -103,8 +103,7 @@ std::map<std::int64_t, std::map<std::string, std::string>> read_loss_reasons(Con
   return reasons;
 }
 
-// Returns, by point, the largest number of seeds at a stop test that was made for an earlier target of the
-// campaign.
+// Returns the largest number of seeds at a stop test for an earlier target, by point.
 std::map<std::int64_t, int> read_largest_earlier_stop_tests(Connection& connection) {
   Statement query(connection,
                   "SELECT point_id, max(seeds) FROM stop_test WHERE target_id != (SELECT target_id FROM "
@@ -115,7 +114,7 @@ std::map<std::int64_t, int> read_largest_earlier_stop_tests(Connection& connecti
   return largest;
 }
 
-// What is not stored of a stop test. Outcomes are read only where it has no interval, which is rare.
+// Restores what is not stored of the last stop test. Outcomes are read only for one without an interval.
 void make_again(Database& database, const PointRecord& point, const TargetRecord& target,
                 PointSummary& summary) {
   if (summary.stop_tests.empty()) return;
@@ -128,7 +127,7 @@ void make_again(Database& database, const PointRecord& point, const TargetRecord
       std::span(outcomes).first(std::min(outcomes.size(), static_cast<std::size_t>(stop_test.seeds))));
 }
 
-// NaN: does not exist, or is beyond what a number can be.
+// NaN stands for a number that is undefined or too large.
 bool is_same(double one, double other) { return one == other || (std::isnan(one) && std::isnan(other)); }
 
 bool agree(const std::vector<ObservableStopTest>& stored, const std::vector<ObservableStopTest>& replayed) {
@@ -218,7 +217,7 @@ std::vector<PointForecast> forecasts_of(Database& database, const std::vector<Po
   std::vector<PointForecast> forecasts;
   for (const PointSummary& summary : points) {
     const std::int64_t id = summary.point.id;
-    // Equal values may be those of a share, which only the outcomes tell.
+    // Equal values may come from a share, which only the outcomes show.
     const bool is_simple = observables == 1 && summary.all_seeds.values != Estimate::Values::equal;
     forecasts.push_back({Cost(std::move(seconds[id])),
                          is_simple || !summary.open() ? std::vector{summary.all_seeds}
@@ -234,7 +233,7 @@ std::optional<StopTest> checked_stop_test(Database& database, const PointRecord&
   const std::vector<StopTestRecord> stored = database.stop_tests(point.id);
   const std::vector<StopTest> replayed =
       replay_stop_tests(database.outcomes(point.id), target.target, target.minimum, target.maximum);
-  // An owner that was killed between a result and its stop test leaves fewer looks than there could be.
+  // An owner that was killed after a result may have left fewer stop tests than the results allow.
   for (std::size_t i = 0; i < stored.size(); ++i) {
     if (i < replayed.size() && agrees(stored[i].stop_test, replayed[i])) continue;
     throw IntegrityError(fmt::format(

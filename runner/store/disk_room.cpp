@@ -16,12 +16,12 @@
 namespace peclet::runner {
 namespace {
 
-// Less than this is no room: a campaign that goes on with the last free block stops again at the next result.
+// Least room [bytes] that is asked for: with less, a campaign would stop again at the next result.
 constexpr std::uint64_t least = 1 << 20;
-// More than this is not tried, so that looking costs nothing.
+// Most room [bytes] that is tried, so that a trial is cheap.
 constexpr std::uint64_t most = 64 << 20;
 
-// Blocks are really taken; not every file system has a quick way to do that.
+// Takes blocks on the disk. Writes zeros if the file system cannot allocate blocks. Returns 0 or an errno.
 int try_to_write(int descriptor, std::uint64_t bytes) {
   const int error = posix_fallocate(descriptor, 0, static_cast<off_t>(bytes));
   if (error != EOPNOTSUPP && error != EINVAL) return error;
@@ -40,7 +40,7 @@ double megabytes(std::uintmax_t bytes) { return 1e-6 * static_cast<double>(bytes
 }  // namespace
 
 int lack_of_room(const fs::path& folder, std::uint64_t bytes) {
-  // Named as write_durably() names its temporary files, so that it is cleared away after a crash.
+  // Named like the temporary files of write_durably(), so that it is removed after a crash.
   const fs::path trial = folder / fmt::format(".room.{}.0.tmp", getpid());
   unlink(trial.c_str());
   const int descriptor = open(trial.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
@@ -74,10 +74,10 @@ std::string why_in_vain(const fs::path& root, const fs::path& folder, std::uint6
   if (statvfs(folder.c_str(), &whole) != 0 || stat(folder.c_str(), &place) != 0) return "";
   const std::uint64_t size = std::uint64_t{whole.f_blocks} * whole.f_frsize;
   std::uint64_t own = 0;
-  std::error_code gone;  // files come and go meanwhile
+  std::error_code gone;  // files may vanish meanwhile
   for (fs::recursive_directory_iterator file(root, gone), end; !gone && file != end; file.increment(gone)) {
     struct stat about {};
-    // What lies there besides the campaign's own files may be taken away.
+    // Other files at the top of the folder are not the campaign's and may be taken away.
     const bool is_ours = file.depth() > 0 || file->path().filename().string().starts_with("campaign.");
     const bool counts = is_ours && lstat(file->path().c_str(), &about) == 0 && S_ISREG(about.st_mode) &&
                         about.st_dev == place.st_dev;
@@ -87,7 +87,7 @@ std::string why_in_vain(const fs::path& root, const fs::path& folder, std::uint6
   if (size >= own + needed) return "";
   return fmt::format(
       "{}: its file system has {:.1f} MB in all, of which the campaign takes {:.1f} MB; {:.1f} MB more are "
-      "needed, for which nobody can make room: move the campaign to a larger one",
+      "needed, for which no room can be made: move the campaign to a larger one",
       folder.string(), megabytes(size), megabytes(own), megabytes(needed));
 }
 

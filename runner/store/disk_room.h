@@ -1,4 +1,4 @@
-// Room on the file systems of a campaign: whether something fits, and why it does not.
+// Checks whether something fits on the file systems of a campaign, and says why not.
 #pragma once
 
 #include <cstdint>
@@ -8,17 +8,18 @@
 
 namespace peclet::runner {
 
-// Returns why `bytes` cannot be written in `folder` now, ENOSPC or EDQUOT; 0 if they can be, or if that
-// cannot be tried for another reason. It is tried, not asked for: quotas do not show in statvfs.
+// Returns ENOSPC or EDQUOT if `bytes` (1 MB to 64 MB are tried) cannot be written in `folder` now; 0 if they
+// can, or if another error prevents the trial. The room is really taken for a moment, because statvfs() does
+// not show quotas.
 int lack_of_room(const fs::path& folder, std::uint64_t bytes);
 inline bool has_room(const fs::path& folder, std::uint64_t bytes) { return lack_of_room(folder, bytes) == 0; }
 
-// Says what is used up, for which `error` is ENOSPC or EDQUOT: the quota, the inodes or the bytes.
+// Returns what is used up: the quota, the inodes or the bytes. `error` is ENOSPC or EDQUOT.
 // "/data/friction.peclet/spool is full: 0.0 MB are free there, 1.1 MB are needed"
 std::string shortage_text(const fs::path& folder, std::uint64_t bytes, int error);
 
-// Why waiting for `bytes` in `folder` is in vain: its file system, without all that is not of the campaign in
-// `root`, would still be too small. "" where somebody could make room, and where quotas hide the truth.
+// Returns why waiting for `bytes` in `folder` cannot help: its file system would be too small even with only
+// the campaign in `root` on it. "" if room can be made; quotas are not considered.
 std::string why_in_vain(const fs::path& root, const fs::path& folder, std::uint64_t bytes);
 
 }  // namespace peclet::runner

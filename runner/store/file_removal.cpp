@@ -7,7 +7,7 @@
 
 namespace peclet::runner {
 
-// Signals are for the thread that waits for them.
+// Blocks all signals in the new thread, so that they reach the thread that waits for them.
 FileRemoval::FileRemoval() {
   sigset_t all, before;
   sigfillset(&all);

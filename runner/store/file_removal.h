@@ -1,8 +1,8 @@
-// Removes files in the background.
+// FileRemoval removes files in the background.
 //
-// While many workers make files durable, the file system lets every removal wait for its journal, about a
-// millisecond each: more than the booking of the result whose spool file it is. A file whose removal was
-// forgotten because the process died is removed by the next one, which finds it again.
+// While many workers make files durable, each removal waits for the file system's journal for about a
+// millisecond. This is longer than booking the result takes. If the process dies, the next run finds the
+// remaining files and removes them.
 #pragma once
 
 #include <condition_variable>
@@ -22,21 +22,21 @@ class FileRemoval {
   ~FileRemoval();
   FileRemoval& operator=(FileRemoval&&) = delete;
 
-  // Removes the files soon, in this order; one that is not there is no matter. Throws std::system_error for
-  // an earlier one that could not be removed.
+  // Removes the files soon, in this order; absent files are ignored. Throws std::system_error for an earlier
+  // file that could not be removed.
   void add(const std::vector<fs::path>& files);
-  // Returns when none is left. Throws as add().
+  // Returns when all removals have been tried. Throws as add().
   void finish();
 
  private:
   void work();
   void throw_error();
 
-  std::mutex mutex_;  // of all below
+  std::mutex mutex_;  // guards the members below
   std::condition_variable changed_;
   std::vector<fs::path> files_;
   bool busy_ = false, ends_ = false;
-  fs::path path_;  // that could not be removed, and why
+  fs::path path_;  // file that could not be removed, and the error
   std::error_code error_;
   std::thread thread_;
 };

@@ -28,7 +28,8 @@ std::string host_name() {
   return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
 }
 
-// "1: POSIX  ADVISORY  WRITE 4711 fe:01:1234 120 120", "2: FLOCK  ADVISORY  WRITE 4711 fe:01:1234 0 EOF".
+// Lines of /proc/locks: "1: POSIX  ADVISORY  WRITE 4711 fe:01:1234 120 120", "2: FLOCK  ADVISORY  WRITE 4711
+// fe:01:1234 0 EOF".
 std::int64_t process_that_locks(std::uint64_t inode, const std::string& kind, std::uint64_t at) {
   const std::string place_ends = fmt::format(":{}", inode);
   std::ifstream locks("/proc/locks");
@@ -48,7 +49,7 @@ std::int64_t process_that_locks(std::uint64_t inode, const std::string& kind, st
 
 namespace {
 
-// Whether the file still has its name.
+// True if the file still has its name.
 bool is_there(int descriptor, const fs::path& file) {
   struct stat held {
   }, named{};
@@ -56,7 +57,7 @@ bool is_there(int descriptor, const fs::path& file) {
          held.st_ino == named.st_ino;
 }
 
-// Returns the file or folder, open and locked.
+// Opens and locks the file or folder, and returns it.
 Descriptor locked(const fs::path& path) {
   for (;;) {
     Descriptor file = open_file(path, O_RDONLY);
@@ -64,7 +65,7 @@ Descriptor locked(const fs::path& path) {
     while (!is_locked()) {
       if (errno != EINTR) throw std::system_error(errno, std::generic_category(), path.string());
     }
-    // One that was replaced while we waited is nothing to hold.
+    // A file that was replaced during the wait is opened again.
     if (is_there(file.number(), path)) return file;
   }
 }
@@ -73,7 +74,7 @@ Descriptor open_folder(const CampaignDirectory& directory) {
   return open_file(directory.root(), O_RDONLY | O_DIRECTORY);
 }
 
-// Below 0: it is not there, or not ours to read.
+// Returns a descriptor below 0 if the file is absent or may not be read.
 Descriptor open_for_viewing(const fs::path& file) {
   require_regular(file);
   return open_file(file, O_RDONLY | O_NOFOLLOW | O_NONBLOCK);
@@ -87,8 +88,8 @@ std::int64_t written_owner(const CampaignDirectory& directory) {
   return number_in<std::int64_t>(take_line(said)).value_or(0);
 }
 
-// Who has locked the folder, by the kernel's list: for an owner whose campaign.lock was deleted. 0: the list
-// does not say.
+// Returns the process that has locked the folder by the kernel's list, also if campaign.lock was deleted; 0
+// if the list does not name it.
 std::int64_t listed_owner(int folder) {
   struct stat about {};
   return fstat(folder, &about) == 0 ? process_that_locks(about.st_ino, "FLOCK") : 0;
@@ -101,7 +102,7 @@ std::int64_t owner_of(const CampaignDirectory& directory, int folder) {
 
 enum class Attempt { locked, owned, impossible };
 
-// Readers that ask current_owner() hold the lock for an instant; an owner holds it for longer than this.
+// Tries for 0.2 s: readers that ask current_owner() hold the lock for an instant, an owner for longer.
 Attempt lock_patiently(int descriptor) {
   for (int attempt = 0; attempt < 20; ++attempt) {
     if (flock(descriptor, LOCK_EX | LOCK_NB) == 0) return Attempt::locked;
@@ -121,7 +122,7 @@ Attempt lock_patiently(int descriptor) {
                                    stop));
 }
 
-// A campaign that was run as root is not its author's to go on with.
+// Throws an error that says how to continue a campaign of another user, such as one run as root.
 [[noreturn]] void fail(const fs::path& path, int error) {
   struct stat about {};
   const bool foreign =
@@ -138,7 +139,7 @@ Descriptor owned_folder(const CampaignDirectory& directory) {
   require_own_folders(directory);
   Descriptor folder = open_folder(directory);
   if (folder.number() < 0) fail(directory.lock(), errno);
-  // Some network file systems, where a campaign is at its user's own risk, lock no folders.
+  // Some network file systems, allowed at the user's own risk, cannot lock folders.
   if (lock_patiently(folder.number()) == Attempt::owned) refuse_owned(directory, folder.number());
   return folder;
 }
@@ -163,7 +164,7 @@ OwnerLock::OwnerLock(const CampaignDirectory& directory)
   const bool written =
       ftruncate(file_.number(), 0) == 0 &&
       pwrite(file_.number(), process.data(), process.size(), 0) == static_cast<ssize_t>(process.size());
-  // On a full disk the lock is worth as much without the number.
+  // On a full disk the lock is valid without the number.
   if (!written && !peclet::means_no_room(errno)) fail(directory.lock(), errno);
 }
 

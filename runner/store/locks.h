@@ -1,4 +1,5 @@
-// Locks: who may write a campaign, one process at a time at the files of a folder, and who holds a lock.
+// Locks that one process at a time may hold: OwnerLock to write a campaign, FileLock to write the files of a
+// folder.
 #pragma once
 
 #include <cstdint>
@@ -12,16 +13,16 @@
 
 namespace peclet::runner {
 
-// What this machine calls itself; "unknown" where it has no name.
+// Returns this machine's name; "unknown" if it has no name.
 std::string host_name();
 
-// Returns the process that holds a write lock of this kind ("FLOCK", "POSIX") on the file with this inode, on
-// the byte `at`; 0 if the list names none. Nothing is opened: closing a file takes a process's own locks
-// away.
+// Returns the process that holds a write lock of this kind ("FLOCK", "POSIX") on byte `at` of the file with
+// this inode; 0 if the kernel's list does not name it. No file is opened, because closing one would release
+// this process's own locks.
 std::int64_t process_that_locks(std::uint64_t inode, const std::string& kind, std::uint64_t at = 0);
 
-// A lock on a folder, or on a file that its holder may replace by another of its name. Held from
-// construction, which waits for it, to destruction or to the end of the process. Leaves no file.
+// FileLock is a lock on a folder, or on a file that its holder may replace by another of its name. It is held
+// from construction, which waits for it, to destruction or to the end of the process. It leaves no file.
 class FileLock {
  public:
   // Throws std::system_error naming the path.
@@ -31,30 +32,30 @@ class FileLock {
   Descriptor file_;
 };
 
-// Another process owns the campaign. Exit code 5.
+// Thrown if another process owns the campaign. Exit code 5.
 class OwnedByAnother : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-// The right to write a campaign, held from construction to destruction or to the end of the process. It is a
-// lock on the folder itself, which cannot be deleted and made anew beneath its owner unnoticed as a file can,
-// and on campaign.lock, which says who holds it.
+// OwnerLock is the right to write a campaign, held from construction to destruction or to the end of the
+// process. It locks the folder itself, which cannot be replaced unnoticed as a file can, and campaign.lock,
+// which names the holder.
 class OwnerLock {
  public:
   // Requires the folder to exist. Throws OwnedByAnother naming the owner's process, UnsuitableFile as
-  // require_own_folders() or when the lock is no regular file, std::system_error.
+  // require_own_folders() or if campaign.lock is not a regular file, std::system_error.
   explicit OwnerLock(const CampaignDirectory& directory);
 
-  // Where the folder is now: another place when it was moved; nothing when it was deleted.
+  // Returns the present path of the folder, which changes if it is moved; nothing if it was deleted.
   std::optional<fs::path> folder() const;
 
  private:
   Descriptor folder_, file_;
 };
 
-// The process that owns the campaign now, without waiting for it or disturbing it; nothing when nobody does.
-// The number is 0 while the owner has not written it yet.
+// Returns the process that owns the campaign, without waiting for it or disturbing it; nothing if no process
+// does. The number is 0 until the owner has written it.
 std::optional<std::int64_t> current_owner(const CampaignDirectory& directory);
 
 }  // namespace peclet::runner

@@ -13,7 +13,7 @@
 namespace peclet::runner {
 namespace {
 
-// The shortest digits that give the same number again.
+// Writes each number with the fewest digits that give the same number again.
 std::string text_of(const std::vector<double>& numbers) {
   std::string text = "[";
   for (const double number : numbers) {
@@ -23,7 +23,7 @@ std::string text_of(const std::vector<double>& numbers) {
   return text + ']';
 }
 
-// Reads the first `most` numbers of such a text, or all if there are fewer. Returns false if it is none.
+// Reads the first `most` numbers of a text of text_of(). Returns false if the text has another form.
 bool read_numbers(std::string_view text, std::size_t most, std::vector<double>& numbers) {
   constexpr std::string_view null = "null";
   numbers.clear();
@@ -73,7 +73,7 @@ Observation leading_observation(std::string_view text) {
   thread_local std::vector<double> numbers;
   if (text.empty()) return {};
   if (!read_numbers(text, numbers_of_observation, numbers) || numbers.size() < numbers_of_observation) {
-    throw IntegrityError("the database holds numbers that are none: " + std::string(text.substr(0, 100)));
+    throw IntegrityError("the database holds invalid numbers: " + std::string(text.substr(0, 100)));
   }
   return observation_of(numbers, false);
 }

@@ -1,5 +1,5 @@
-// The few numbers of each result (number_layout.h) in a table of their own, as a JSON array: looks and means
-// of any quantity over all seeds of a point take a reader a thousandth of the time that the results would
+// NumberStore keeps the few numbers of each result (number_layout.h) in a table of their own, as JSON arrays.
+// Stop tests and means over all seeds then take a reader a thousandth of the time that the results would
 // take.
 #pragma once
 
@@ -18,18 +18,18 @@
 
 namespace peclet::runner {
 
-// The numbers of a result as they are stored, and what they say of the seed. One that has not completed has
-// none and is lost.
+// Numbers of a result as they are stored, and its outcome. A result that has not completed has no numbers and
+// is lost.
 struct ResultNumbers {
   std::string layout, numbers;
   Outcome outcome;
 };
 ResultNumbers numbers_of(const Json& result, const std::vector<std::string>& observables);
-// Stores the numbers of a seed in place of those that are there. Inside a Transaction of the caller.
+// Stores the numbers of a seed, in place of earlier ones. For use inside a Transaction of the caller.
 void store_numbers(Connection& connection, std::int64_t point, int seed, const ResultNumbers& numbers);
 
-// Reads the observation of the leading observable off stored numbers; without a value for "". Whether it is a
-// share is not said. Throws IntegrityError.
+// Returns the observation of the leading observable from stored numbers; without a value for "". It does not
+// say whether it is a share. Throws IntegrityError.
 Observation leading_observation(std::string_view numbers);
 
 class NumberStore {
@@ -37,14 +37,14 @@ class NumberStore {
   // The connection must outlive it.
   explicit NumberStore(Connection& connection) : connection_(connection) {}
 
-  // The numbers of one seed. The layout lives as long as the book.
+  // Numbers of one seed. The layout lives as long as the NumberStore, the numbers until the next visit.
   struct Entry {
     int seed;
     bool has_jammed;
     const NumberLayout& layout;
     std::span<const double> numbers;
   };
-  // Visits the entries of the seeds below `end`, in their order. Throws IntegrityError.
+  // Visits the seeds below `end` that have numbers, in their order. Throws IntegrityError.
   using Visit = std::function<void(const Entry& entry)>;
   void for_each(std::int64_t point, int end, const Visit& visit);
 
@@ -52,7 +52,7 @@ class NumberStore {
   // Throws IntegrityError.
   std::vector<std::optional<Outcome>> outcomes(std::int64_t point);
 
-  // Whether what is stored of the seed are the numbers of this result, bit by bit.
+  // True if the stored numbers of the seed equal those of this result, bit by bit.
   bool agrees(std::int64_t point, int seed, const Json& result, const std::vector<std::string>& observables);
 
  private:

@@ -39,7 +39,7 @@ std::string text_in(const Json& object, const char* member) {
   return found != object.end() && found->is_string() ? found->get<std::string>() : "";
 }
 
-// The schema of what lies one step below; null unless it is described.
+// Returns the schema one step below; null unless it is described.
 const Json* below(const Json& schema, const std::string& step) {
   if (const auto items = schema.find("items"); items != schema.end()) return &*items;
   const auto properties = schema.find("properties");
@@ -103,7 +103,7 @@ void PointStore::adopt_points(const Campaign& campaign) {
   }
 }
 
-// Another observable: its numbers are taken from the results that are there.
+// Takes the numbers of other observables from the stored results.
 void PointStore::observe_again(const Campaign& campaign) {
   Statement done(
       connection_,
@@ -148,8 +148,8 @@ void PointStore::store_prediction(std::int64_t point, const Prediction& predicti
 
 void PointStore::set_aside(const PointRecord& point, const std::string& engine) {
   connection_.run("UPDATE point SET place = NULL, set_aside = 1 WHERE point_id = ?", point.id);
-  // What the engine did for the scene before, if it did, is the campaign's again. The row is the engine's
-  // from now on, not only from its first result on: the one that was replaced must not take it up.
+  // Results of `engine` for this scene that were set aside before belong to the campaign again. The row is
+  // that engine's at once, so that the replaced engine cannot take it before the first result.
   connection_.run(
       "INSERT INTO point (hash, scene, settings, label, place, engine_identity, priority, cancelled) "
       "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8) ON CONFLICT (hash, engine_identity) DO UPDATE SET "

@@ -52,8 +52,8 @@ void must_have_name(const std::string& name, const std::string& pointer) {
   refuse(pointer, fmt::format("must have a name of 1 to {} bytes without control characters", longest_name));
 }
 
-// What a mean consists of is the engine's business; the runner takes numbers from it by their paths, and
-// shows these.
+// Checks a mean, whose structure is the engine's choice: the runner takes numbers from it by their paths, and
+// shows these paths.
 void check_mean(const Json& mean, const std::string& pointer) {
   for (const auto& [name, value] : mean.items()) {
     if (value.is_number()) continue;
@@ -66,7 +66,7 @@ void check_mean(const Json& mean, const std::string& pointer) {
   for (const auto& [name, value] : mean.items()) must_have_name(name, pointer + '/' + name);
 }
 
-// Lists within lists as long as the axes from `axis` on, of numbers and nulls.
+// True if the value is lists within lists of numbers and nulls, as long as the axes from `axis` on.
 bool has_shape(const Json& value, const std::vector<QuantityAxis>& axes, std::size_t axis = 0) {
   if (axis == axes.size()) return value.is_number() || value.is_null();
   return value.is_array() && value.size() == axes[axis].values.size() &&
@@ -74,7 +74,7 @@ bool has_shape(const Json& value, const std::vector<QuantityAxis>& axes, std::si
                      [&](const Json& element) { return has_shape(element, axes, axis + 1); });
 }
 
-// Estimates have room for as many numbers as the axes say, whatever the mean has.
+// Limits the numbers that the axes describe, because estimates take room for all of them.
 void check_sizes(const std::vector<Quantity>& all) {
   std::size_t together = 0;
   for (const Quantity& quantity : all) {
@@ -89,16 +89,16 @@ void check_sizes(const std::vector<Quantity>& all) {
   }
 }
 
-// A campaign aims at a number by its path: no two may have the same.
+// Checks that no two numbers have the same path, by which a campaign names its target.
 void check_paths(const std::vector<Quantity>& all) {
   std::set<std::string_view> paths;
   for (const Quantity& quantity : all) {
     if (!paths.insert(quantity.name).second)
-      refuse("/mean/" + quantity.name, "must not be there by two ways");
+      refuse("/mean/" + quantity.name, "must not be there in two ways");
   }
 }
 
-// Whether its values in the mean are what the description says.
+// Checks that the quantity's values in the mean have the shape of its description.
 void check_values(const Quantity& quantity, const std::vector<Quantity>& all, const Json& mean) {
   const auto must_be_there = [&](const std::string& path, bool or_scalar) {
     const Json* const value = at_path(mean, path);
@@ -131,7 +131,7 @@ void check_values(const Quantity& quantity, const std::vector<Quantity>& all, co
 
 void check_quantities(const Json& document) {
   const auto quantities = document.find("quantities");
-  if (quantities == document.end() || quantities->empty()) return;  // the engine does not say
+  if (quantities == document.end() || quantities->empty()) return;  // the engine describes nothing
   if (!document["mean"].is_object()) refuse("/quantities", "must be null after this ending");
   for (const auto& [name, about] : quantities->items()) must_have_name(name, "/quantities/" + name);
   const std::vector<Quantity> all = quantities_of(document);
@@ -154,8 +154,8 @@ void check_ending(const Json& document) {
   if (descriptions == document.end() || descriptions->empty()) check_paths(quantities_of(document));
 }
 
-// The pointer of a number that is too large; the reader has refused those that are not finite. It is put
-// together on the way back, because a result has thousands of numbers, and none of them should be.
+// Returns the pointer of a number that is too large; the JSON reader has refused infinite ones. The pointer
+// is put together on the way back, because usually none of thousands of numbers is too large.
 std::optional<std::string> too_large(const Json& value) {
   if (value.is_number_float() && !(std::abs(value.get<double>()) <= largest_number)) return "";
   if (!value.is_structured()) return std::nullopt;
@@ -169,10 +169,10 @@ std::optional<std::string> too_large(const Json& value) {
   return std::nullopt;
 }
 
-// Time is no part of the physics; the machine, and where it keeps the state of a blow-up, is none either. Nor
-// are the files beside the result: a log among them has times in it.
+// Returns the hash of what repetitions must share. Times and machine are left out, and so are the place of a
+// blow-up's state and the files beside the result, whose logs have times in them.
 std::string content_hash(Json& document) {
-  // A result may be large, so these parts are laid aside, not the others copied.
+  // These parts are set aside instead of copying the others, because a result may be large.
   const auto take = [](Json& object, const char* key) {
     Json part = std::move(object[key]);
     object.erase(key);
@@ -190,7 +190,7 @@ std::string content_hash(Json& document) {
   return hash;
 }
 
-// Requires JSON. What is left takes an eighth less room when it is deflated.
+// Removes white space between the parts of a JSON text, which then takes an eighth less room deflated.
 std::string without_white_space(std::string_view json) {
   std::string text;
   text.reserve(json.size());
@@ -205,8 +205,8 @@ std::string without_white_space(std::string_view json) {
   return text;
 }
 
-// Throws ResultError naming the first value that is not as it must be, and what is allowed. Realisations with
-// results have means, others none. Returns engine_identity().
+// Checks a result and returns its engine_identity(). Realisations with results have means, others do not.
+// Throws ResultError naming the first invalid value and what is allowed.
 std::string check_shape(Json& document) {
   document = checked_part(std::move(document), "");
   check_ending(document);

@@ -26,7 +26,7 @@ namespace {
 
 constexpr const char* letters_and_digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789";
 
-// Neither hidden nor an option, no path, and not how unfinished files are called.
+// True if the name is not hidden, an option, a path, or a temporary file's.
 bool is_plain_file_name(const std::string& name) {
   const std::string allowed = std::string(letters_and_digits) + "._-";
   return !name.empty() && name.size() <= longest_left_name &&
@@ -35,16 +35,16 @@ bool is_plain_file_name(const std::string& name) {
          name.find("..") == std::string::npos && !name.ends_with(".tmp");
 }
 
-// A row becomes the name of a file that is read and written, and the database may come from anywhere.
+// Checks a row that names a file to be read and written, because the database may come from anywhere.
 FileRecord checked(FileRecord record) {
   try {
     check_left_files(Json::array(
         {{{"name", record.file.name}, {"bytes", record.file.bytes}, {"sha256", record.file.sha256}}}));
   } catch (const ResultError& error) {
-    throw IntegrityError(fmt::format("the table file has a row that is none: {}", error.what()));
+    throw IntegrityError(fmt::format("the table file has an invalid row: {}", error.what()));
   }
   if (record.hash.find_first_not_of("0123456789abcdef") != std::string::npos) {
-    throw IntegrityError("the table file has a row of a point whose hash is none: " + plain(record.hash));
+    throw IntegrityError("the table file has a row of a point with an invalid hash: " + plain(record.hash));
   }
   return record;
 }
@@ -63,7 +63,7 @@ std::vector<FileRecord> files_where(Connection& connection, const char* conditio
   });
 }
 
-// write_durably() names its temporary files NAME.PROCESS.COUNT.tmp. Nothing: not such a name.
+// Returns PROCESS of a temporary file of write_durably(), NAME.PROCESS.COUNT.tmp; nothing for another name.
 std::optional<int> writer_of(const fs::path& temporary) {
   const std::string process = temporary.stem().stem().extension().string();  // ".PROCESS"
   const auto number = process.empty() ? std::nullopt : number_in<int>(process.substr(1));
@@ -187,7 +187,7 @@ RealisationResult read_spool_file(const fs::path& path, const std::string& sha25
 }
 
 bool belongs_to_another(const fs::path& path, const RealisationResult& result) {
-  // As CampaignDirectory::spool_file() spells it, apart from the attempt.
+  // The form of CampaignDirectory::spool_file(), for any attempt.
   static const std::regex ours("([0-9a-f]{16})-([0-9]{6,9})-[0-9]+[.]json");
   const std::string name = path.filename().string();
   std::smatch parts;
@@ -246,7 +246,7 @@ std::vector<fs::path> unfinished_files(const fs::path& folder) {
 
 void remove_unfinished_files(const fs::path& folder) {
   for (const fs::path& file : unfinished_files(folder)) {
-    // SQLite may have been at it.
+    // A copy of a database may have SQLite's files beside it.
     for (const char* const suffix : {"", "-wal", "-shm", "-journal"}) fs::remove(file.string() + suffix);
   }
 }

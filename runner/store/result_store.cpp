@@ -16,7 +16,7 @@
 namespace peclet::runner {
 namespace {
 
-// zlib only reads its input, but takes it as a pointer to what may be written.
+// zlib only reads its input, but takes it as a pointer to mutable bytes.
 Bytef* bytes_of(std::string_view text) {
   return const_cast<Bytef*>(reinterpret_cast<const Bytef*>(text.data()));
 }
@@ -26,7 +26,7 @@ uInt size_of(std::string_view text) { return static_cast<uInt>(text.size()); }
 class Deflation {
  public:
   Deflation() {
-    // Digits repeat by chance: matches that short are no gain, and the filtered strategy leaves them out.
+    // Digits repeat by chance; such short matches are no gain, and the filtered strategy leaves them out.
     if (deflateInit2(&stream_, 5, Z_DEFLATED, MAX_WBITS, MAX_MEM_LEVEL - 1, Z_FILTERED) != Z_OK) {
       throw std::bad_alloc();
     }
@@ -34,7 +34,7 @@ class Deflation {
   ~Deflation() { deflateEnd(&stream_); }
   Deflation& operator=(Deflation&&) = delete;
 
-  // As if it had never run before.
+  // Deflates as a stream does that has never run before.
   std::string run(std::string_view text, std::string_view dictionary) {
     if (deflateReset(&stream_) != Z_OK) throw std::logic_error("zlib cannot begin anew");
     if (!dictionary.empty() &&
@@ -85,7 +85,7 @@ class Inflation {
   }
 
  private:
-  // False: it is not the one with which the bytes were made.
+  // Returns false if the bytes were made with another dictionary.
   bool is_taken(std::string_view dictionary) {
     return inflateSetDictionary(&stream_, bytes_of(dictionary), size_of(dictionary)) == Z_OK;
   }
@@ -109,8 +109,8 @@ std::optional<Number> number_at(const Json& document, const char* pointer) {
 }  // namespace
 
 std::string deflated(std::string_view text, std::string_view dictionary) {
-  // A stream has a quarter of a megabyte: taken and given back for each result, it makes the process give its
-  // memory back, too, and fault it in again.
+  // A stream takes a quarter of a megabyte. If it were allocated for each result, the process would give its
+  // memory back and fault it in again.
   thread_local Deflation deflation;
   return deflation.run(text, dictionary);
 }
@@ -149,7 +149,7 @@ void store_result_text(Connection& connection, std::int64_t point, int seed, std
 std::string result_text(const Statement& query, int document, int dictionary) {
   std::string text = inflated(query.text(document), query.text(dictionary));
   if (const std::string excess = excess_of(text); !excess.empty()) {
-    throw IntegrityError("is none that this program stores: " + excess);
+    throw IntegrityError("exceeds what this program stores: " + excess);
   }
   return text;
 }
@@ -228,7 +228,8 @@ void ResultStore::withdraw(std::int64_t point, int seed) {
 }
 
 void ResultStore::store_stop_tests(std::int64_t point, const std::vector<StopTest>& stop_tests) {
-  // Looks only ever grow, except when a late result replaces a quarantined seed: then they are made again.
+  // Stop tests only grow in number, unless a late result replaces a quarantined seed; then they are made
+  // again.
   connection_.run(
       "DELETE FROM stop_test WHERE point_id = ? AND target_id = (SELECT target_id FROM campaign) AND seeds > "
       "?",

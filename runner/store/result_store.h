@@ -1,4 +1,4 @@
-// Results, and the stop tests at them.
+// ResultStore stores results and the stop tests of points.
 #pragma once
 
 #include <cstdint>
@@ -13,53 +13,50 @@
 
 namespace peclet::runner {
 
-// The texts of results as engines wrote them, deflated (zlib, RFC 1950) against an earlier result of
-// their point, of which they repeat every name and most of what does not fluctuate.
-//
-// `dictionary`: the other result, or nothing.
+// Deflates the text of a result (zlib, RFC 1950). `dictionary` is the text of an earlier result of its point,
+// or "". Results of a point share every name and most values that do not fluctuate.
 std::string deflated(std::string_view text, std::string_view dictionary);
-// Throws IntegrityError when the bytes are not what deflated() made of some text with the same dictionary, or
-// when the text exceeds what a result may have (excess_of()).
+// Returns the text that deflated() was given. Throws IntegrityError if the bytes are damaged, the dictionary
+// is another one, or the text is larger than largest_result.
 std::string inflated(std::string_view bytes, std::string_view dictionary);
 
-// Stores the text of a result that has none yet. That of the first completed realisation becomes its point's
-// dictionary, which stays for good, whatever becomes of that realisation.
+// Stores the text of a result that has none yet. The text of the first completed realisation becomes its
+// point's dictionary, which stays even if that realisation is withdrawn.
 void store_result_text(Connection& connection, std::int64_t point, int seed, std::string_view text,
                        bool completed);
 
-// Whether the bytes were made with this dictionary, or with none.
+// True if the bytes were deflated with this dictionary, or without one.
 bool was_deflated_with(std::string_view bytes, std::string_view dictionary);
 
-// Returns the text of a result, from a query of `document` and `dictionary` of
-// result LEFT JOIN dictionary USING (point_id), in these columns. Throws IntegrityError.
+// Returns the text of a result from a query with the columns `document` and `dictionary` of result LEFT JOIN
+// dictionary USING (point_id). Throws IntegrityError.
 std::string result_text(const Statement& query, int document, int dictionary);
 
-// What became of a result that was offered.
+// Fate of an offered result.
 enum class Stored {
   stored,
-  stored_apart,  // in the row of an engine that another one has replaced, now or before: no part of the
-                 // campaign
-  duplicate,     // the seed has this very content already
+  stored_apart,  // its engine was set aside, so it is not part of the campaign; also for a repetition
+  duplicate,     // the seed has this content already
   conflict,      // the seed has another content: the point is now suspect
   mixed_engine,  // the point has results of another engine
   unknown_point
 };
 
-// The same, and what the result counts for; of a result that is stored only.
+// Fate of an offered result, and how it counts if it was stored.
 struct StoredResult {
   Stored what;
   Outcome outcome{};
   std::string cause{};     // see cause_of()
-  std::int64_t point = 0;  // the row of its point, where it has one
-  bool is_new = false;     // not known before
-  std::string reason{};    // of a loss, in the engine's words
+  std::int64_t point = 0;  // row of its point, if it has one
+  bool is_new = false;     // stored for the first time
+  std::string reason{};    // reason of a loss in the engine's words
 };
 
-// The cause of a completed realisation that has no number for the campaign's observable: it is lost to its
-// point as one that blew up is.
+// Cause of a completed realisation without a number for the campaign's observable. It is lost to its point
+// like one that blew up.
 inline constexpr const char* no_value = "no-value";
 
-// Returns how a realisation with this ending counts for a campaign that has seen this outcome in it.
+// Returns the cause of a realisation with this ending and this outcome for the campaign.
 inline std::string cause_of(const std::string& ending, const Outcome& outcome) {
   return has_results(ending) && outcome.is_lost() ? no_value : ending;
 }
@@ -67,22 +64,23 @@ inline const char* state_of(const Outcome& outcome) {
   return to_string(outcome.is_lost() ? SeedState::failed : SeedState::done);
 }
 
-// The engine's row, new when it was never seen before; inside a Transaction of the caller. Throws ResultError
-// when the provenance does not say what the engine is.
+// Returns the row of an engine, a new one if the engine was never seen. For use inside a Transaction of the
+// caller. Throws ResultError if the provenance does not say what the engine is.
 std::int64_t engine_row(Database& database, const Json& provenance);
 
 class ResultStore {
  public:
-  // Requires a Database of open_owner, which must outlive it. All is for use inside a Transaction of the
-  // caller.
+  // Requires a Database of open_owner(), which must outlive it. All functions are for use inside a
+  // Transaction of the caller.
   explicit ResultStore(Database& database)
       : database_(database), connection_(database.connection()), events_(connection_) {}
 
-  // One without a number for the leading observable is lost with the cause no_value.
+  // Stores a result. A completed one without a number for the leading observable is lost with the cause
+  // no_value.
   StoredResult store(const RealisationResult& result, const Target& target);
-  // The seed of a stored result is queued again; nothing of the result stays.
+  // Removes the result of a seed and queues the seed again.
   void withdraw(std::int64_t point, int seed);
-  // The stop tests at a point for the present target, in place of those that are stored.
+  // Replaces the stored stop tests of a point for the present target.
   void store_stop_tests(std::int64_t point, const std::vector<StopTest>& stop_tests);
 
  private:

@@ -23,7 +23,7 @@ RotatingFile::~RotatingFile() {
 void RotatingFile::reopen(int flags) {
   try {
     descriptor_ = open_regular(path_, O_WRONLY | O_CREAT | O_APPEND | flags, 0644).take();
-  } catch (const std::exception&) {  // then it is counted as dropped
+  } catch (const std::exception&) {  // append() counts the bytes as dropped
     descriptor_ = -1;
   }
 }
@@ -41,7 +41,7 @@ void RotatingFile::rotate() {
   const auto name = [this](int age) {
     return age == 0 ? path_.string() : fmt::format("{}.{}", path_.string(), age);
   };
-  std::error_code failed;  // then the file that is there is written over
+  std::error_code failed;  // on failure the present file is overwritten
   for (int age = older_; age > 0; --age) fs::rename(name(age - 1), name(age), failed);
   size_ = 0;
   reopen(O_TRUNC);

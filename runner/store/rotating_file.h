@@ -1,4 +1,4 @@
-// A log file of bounded size: NAME is written, NAME.1 is older, NAME.2 older still.
+// RotatingFile is a log file of bounded size: NAME is written, NAME.1 is older, NAME.2 older still.
 #pragma once
 
 #include <cstdint>
@@ -8,12 +8,12 @@
 
 namespace peclet::runner {
 
-// Not thread-safe. Logs are never worth a campaign: what cannot be written, because the disk is full or
-// something else than a regular file bears the name, is
-// dropped and counted, and the next line that can be written is preceded by how much was lost.
+// Not thread-safe. A log never stops a campaign: bytes that cannot be written, because the disk is full or
+// the name is not a regular file's, are dropped and counted. The next line that can be written is preceded by
+// their number.
 class RotatingFile {
  public:
-  // Each file has at most `limit` bytes; `older` of them are kept beside the one that is written.
+  // Each file has at most `limit` bytes; `older` files are kept beside the one that is written.
   RotatingFile(fs::path path, std::uint64_t limit, int older);
   ~RotatingFile();
   RotatingFile& operator=(RotatingFile&&) = delete;

@@ -1,4 +1,5 @@
-// Seeds and the attempts at them: which are queued, which run and how far, and how each attempt ended.
+// SeedStore records seeds and the attempts at them: which are queued, which run and how far, and how each
+// attempt ended.
 #pragma once
 
 #include <cstdint>
@@ -13,32 +14,32 @@ namespace peclet::runner {
 
 class SeedStore {
  public:
-  // Requires a Database of open_owner, which must outlive it. recover() commits by itself; the others are for
-  // use inside one Transaction of the caller, who so decides what becomes durable together.
+  // Requires a Database of open_owner(), which must outlive it. recover() commits by itself. The others are
+  // for use inside a Transaction of the caller, who decides what becomes durable together.
   explicit SeedStore(Database& database)
       : database_(database), connection_(database.connection()), events_(connection_) {}
 
-  // Puts the seeds that a dead owner left running back, without blame. Returns how many.
+  // Queues again the seeds that a dead owner left running, without blame. Returns how many.
   int recover();
 
-  // The seeds 0 .. end - 1 that are not known yet become queued.
+  // Queues the seeds 0 .. end - 1 that are not known yet.
   void enqueue(std::int64_t point, int end);
-  // The seed runs; returns the attempt's number.
+  // Marks the seed as running. Returns the attempt's number.
   std::int64_t begin_attempt(std::int64_t point, int seed, int worker, std::int64_t process,
                              std::int64_t engine);
-  // An attempt that a batch system's node made, and that has ended; the seed's state is the caller's to
-  // change.
+  // Stores an ended attempt of a batch system's node. The caller changes the seed's state.
   void attempt_elsewhere(std::int64_t point, int seed, int task, const AttemptReport& report);
   void renew_lease(std::int64_t attempt, const char* phase, std::int64_t step, std::int64_t steps,
                    double strain);
   void end_attempt(std::int64_t attempt, const AttemptEnd& end);
-  // Attempts that count: not those from before a retry.
+  // Returns the attempts that count, without those made before a retry.
   std::vector<PastAttempt> history(std::int64_t point, int seed);
   bool has_ended(std::int64_t point, int seed);
   void requeue(std::int64_t point, int seed);
   void quarantine(std::int64_t point, int seed, const std::string& cause);
 
-  // A seed that was given up is queued again, and its attempts no longer count against it. False: it was not.
+  // Queues a given-up seed again; its attempts no longer count against it. Returns false if it was not given
+  // up.
   bool retry(std::int64_t point, int seed);
 
  private:

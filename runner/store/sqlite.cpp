@@ -23,15 +23,15 @@ namespace {
 
 int primary(int code) { return code & 0xff; }
 
-// Whether SQLite's code comes with an errno that says why.
+// True if SQLite's code comes with an errno that gives the reason.
 bool comes_from_the_system(int code) {
   return primary(code) == SQLITE_IOERR || primary(code) == SQLITE_CANTOPEN || primary(code) == SQLITE_FULL;
 }
 
-// Says who has locked a database: "campaign.db: is locked by sqlite3 (process 4711), which writes to it:
+// Returns who has locked a database: "campaign.db: is locked by sqlite3 (process 4711), which writes to it:
 // ...".
 //
-// In WAL mode the writer locks byte 120 of the -shm file; in other modes, and to the exclusion of readers,
+// In WAL mode the writer locks byte 120 of the -shm file. In other modes, and to exclude readers, it locks
 // bytes of the database from 0x40000000 on (SQLite's os_unix.c and wal.c).
 std::string lock_text(const std::string& database) {
   constexpr std::uint64_t write_lock = 120, pending = 0x40000000;
@@ -56,8 +56,8 @@ std::string lock_text(const std::string& database) {
       database, name.empty() ? "another program" : plain(name), process);
 }
 
-// `error` is the errno after the call, which began with 0: what SQLite remembers by itself may be older, and
-// after COMMIT it remembers nothing.
+// `error` is the errno after the call, which began with 0. SQLite's own copy of errno may be older, and is
+// lost after COMMIT.
 [[noreturn]] void complain(const std::string& path, sqlite3* handle, int code, std::string_view doing,
                            int error) {
   if (primary(code) == SQLITE_BUSY) throw DatabaseError(lock_text(path), code);
@@ -78,7 +78,7 @@ int flags_of(Connection::Access access) {
   return SQLITE_OPEN_READONLY | (access == Connection::Access::frozen ? SQLITE_OPEN_URI : 0);
 }
 
-// What has a meaning in a URI (https://sqlite.org/uri.html) is escaped.
+// Escapes characters that have a meaning in a URI (https://sqlite.org/uri.html).
 std::string uri_of_frozen(const std::string& path) {
   std::string uri = "file:";
   for (const char c : path) {
@@ -91,10 +91,10 @@ std::string uri_of_frozen(const std::string& path) {
   return uri + "?immutable=1";
 }
 
-// SQLITE_OPEN_NOFOLLOW minds links anywhere in the path; the folder is where its user wanted it to be.
+// Resolves links in the folder of the path, because SQLITE_OPEN_NOFOLLOW refuses links anywhere in it.
 std::string without_links_above(const fs::path& path) {
-  if (path == Connection::in_memory) return path.string();  // no file at all
-  std::error_code absent;                                   // then SQLite says so
+  if (path == Connection::in_memory) return path.string();  // not a file
+  std::error_code absent;                                   // SQLite reports it
   const fs::path folder = fs::canonical(path.has_parent_path() ? path.parent_path() : ".", absent);
   return absent ? path.string() : (folder / path.filename()).string();
 }
@@ -121,8 +121,7 @@ bool DatabaseError::refuses_values() const {
 
 Connection::Connection(const std::string& path, Access access, int busy_milliseconds)
     : path_(path), busy_milliseconds_(busy_milliseconds) {
-  // StopTestMade at beforehand, because SQLite would wait for a FIFO; that it never follows a link is its own
-  // rule.
+  // Checked beforehand, because SQLite would wait for a FIFO. SQLITE_OPEN_NOFOLLOW refuses links.
   for (const char* const suffix : {"", "-wal", "-shm", "-journal"}) require_regular(path + suffix);
   const std::string place = without_links_above(path);
   const int code = sqlite3_open_v2(
@@ -160,11 +159,11 @@ sqlite3_stmt* Connection::take(std::string_view sql) {
   return statement;
 }
 
-// Some pragmas act when they are compiled, so those are never kept.
+// Pragmas are never kept, because some act when they are compiled.
 void Connection::put_back(sqlite3_stmt* statement) noexcept {
   const char* const sql = sqlite3_sql(statement);
   const bool is_pragma = sql == nullptr || std::string_view(sql).starts_with("PRAGMA");
-  sqlite3_reset(statement);  // the code is that of the last step, which has been dealt with
+  sqlite3_reset(statement);  // returns the code of the last step, which was handled
   sqlite3_clear_bindings(statement);
   try {
     if (!is_pragma) {
@@ -184,7 +183,7 @@ void Connection::execute(const std::string& sql) {
 
 std::int64_t Connection::last_insert_id() const { return sqlite3_last_insert_rowid(handle_); }
 
-// Without waiting for a reader: it is only tried.
+// Tries once, without waiting for a reader.
 void Connection::empty_log() {
   sqlite3_busy_timeout(handle_, 0);
   errno = 0;
@@ -253,7 +252,7 @@ bool Statement::step() {
   if (code != SQLITE_DONE) {
     const int system_error = errno;
     const std::string sql = sqlite3_sql(statement_);
-    // Read the message before the statement is reset.
+    // Reads the message before the statement is reset.
     try {
       complain(connection_.path(), connection_.handle(), code, sql, system_error);
     } catch (...) {
@@ -299,7 +298,7 @@ Transaction::Transaction(Connection& connection, Kind kind) : connection_(connec
 }
 
 Transaction::~Transaction() {
-  // Also after a failed commit; SQLite may have rolled back by itself, and then there is nothing to undo.
+  // Rolls back after a failed commit, too, unless SQLite has rolled back by itself.
   if (open_ && sqlite3_get_autocommit(connection_.handle()) == 0) {
     sqlite3_exec(connection_.handle(), "ROLLBACK", nullptr, nullptr, nullptr);
   }
@@ -315,8 +314,8 @@ Savepoint::Savepoint(Connection& connection) : connection_(connection) {
 }
 
 Savepoint::~Savepoint() {
-  // Where SQLite has rolled the whole transaction back by itself, or cannot do it, the caller's Transaction
-  // does: nothing is ever committed of what could not be taken back.
+  // If the part cannot be rolled back, the whole transaction is, so nothing of it can be committed. SQLite
+  // may have rolled back by itself.
   if (!open_ || sqlite3_get_autocommit(connection_.handle()) != 0) return;
   if (sqlite3_exec(connection_.handle(), "ROLLBACK TO part; RELEASE part", nullptr, nullptr, nullptr) !=
       SQLITE_OK) {

@@ -1,6 +1,5 @@
-// SQLite with every return code checked: a connection, a prepared statement, a transaction.
-//
-// Not thread-safe: a connection and its statements belong to one thread.
+// Connection, Statement and Transaction wrap SQLite with every return code checked. They are not thread-safe:
+// a connection and its statements belong to one thread.
 #pragma once
 
 #include <cstdint>
@@ -17,68 +16,66 @@ struct sqlite3_stmt;
 
 namespace peclet::runner {
 
-// What SQLite said, where, its extended result code, and the errno behind it (0: none). Nothing is retried or
-// swallowed; a file that is damaged or no database at all is an IntegrityError instead.
+// Error of SQLite with its extended result code and the errno behind it (0 if there is none). Nothing is
+// retried or swallowed. A damaged file, or one that is not a database, is an IntegrityError instead.
 class DatabaseError : public std::runtime_error {
  public:
   DatabaseError(const std::string& message, int code, int system_error = 0)
       : std::runtime_error(message), code_(code), system_error_(system_error) {}
   int code() const { return code_; }
-  // The errno behind it, if there is one.
   int system_error() const { return system_error_; }
-  // The file system, or the user's quota of it, is full: nothing was changed, and it may be tried again.
+  // True if the file system or the user's quota is full: nothing was changed, and the call may be repeated.
   bool no_room() const;
-  // Another program has locked the database: nothing was changed, and it may be tried again.
+  // True if another program has locked the database: nothing was changed, and the call may be repeated.
   bool is_locked() const;
-  // What was to be written is not what the tables hold: the statement changed nothing, and never will.
+  // True if the tables do not accept these values: nothing was changed, and repeating cannot help.
   bool refuses_values() const;
 
  private:
   int code_, system_error_;
 };
 
-// Whether an exception says that there was no room to write something.
 bool means_no_room(const std::exception& error);
 
 class Connection {
  public:
-  // `frozen`: reads a file that nobody writes meanwhile, without its log and without locks.
+  // `frozen` reads a file without its log and without locks. Requires that no process writes it meanwhile.
   enum class Access { create, read_write, read_only, frozen };
-  // The name of a database that is no file and ends with its connection.
+  // Name of a database in memory, which ends with its connection.
   static constexpr const char* in_memory = ":memory:";
 
-  // Waits up to `busy_milliseconds` for other connections' locks. Throws DatabaseError, and UnsuitableFile
-  // when the database or a file of SQLite's beside it is no regular file.
+  // Waits up to `busy_milliseconds` for other connections' locks. Throws DatabaseError, and UnsuitableFile if
+  // the database or a file of SQLite beside it is not a regular file.
   Connection(const std::string& path, Access access, int busy_milliseconds);
   ~Connection();
   Connection& operator=(Connection&&) = delete;
 
-  // Waits so long for other connections' locks from now on.
+  // Sets how long to wait for other connections' locks from now on.
   void wait_for_locks(int busy_milliseconds);
 
   // Runs any number of statements and ignores their rows.
   void execute(const std::string& sql);
-  // Runs one statement with these values in the places of its question marks. Returns how many rows it
-  // changed.
+  // Runs one statement with these values for its question marks. Returns how many rows it changed.
   template <typename... Values>
   int run(std::string_view sql, const Values&... values);
-  // The single integer (text) that a query with these values gives.
+  // Returns the single integer (text) that a query with these values gives.
   template <typename... Values>
   std::int64_t integer(std::string_view sql, const Values&... values);
   template <typename... Values>
   std::string text(std::string_view sql, const Values&... values);
   std::int64_t last_insert_id() const;
-  // Brings what is in the write-ahead log into the database and gives its room back, unless a reader or a
-  // full disk stands in the way. Outside of transactions. Throws DatabaseError.
+  // Brings the write-ahead log into the database and gives its room back, unless a reader or a full disk
+  // prevents it. Not for use inside a transaction. Throws DatabaseError.
   void empty_log();
-  // Throws what SQLite says about its last call, which gave `code` (0: as it remembers), while doing `doing`.
+  // Throws the error of SQLite's last call, which gave `code` (0: as SQLite remembers it), while doing
+  // `doing`.
   [[noreturn]] void fail(const std::string& doing, int code = 0) const;
 
   sqlite3* handle() const { return handle_; }
   const std::string& path() const { return path_; }
 
-  // A compiled statement of this text. put_back() keeps it for the next call with the same text, so that the
-  // statements of every result are compiled once. Throws DatabaseError.
+  // Returns a compiled statement of this text. put_back() keeps it for the next take() of the same text.
+  // Throws DatabaseError.
   sqlite3_stmt* take(std::string_view sql);
   void put_back(sqlite3_stmt* statement) noexcept;
 
@@ -88,10 +85,10 @@ class Connection {
   std::string path_;
   int busy_milliseconds_;
   sqlite3* handle_ = nullptr;
-  std::unordered_multimap<std::string, sqlite3_stmt*> idle_;  // reset and without values
+  std::unordered_multimap<std::string, sqlite3_stmt*> idle_;  // compiled statements without values, by text
 };
 
-// A compiled statement: bind in order of the question marks, step, read columns from 0.
+// Statement is compiled SQL: bind in order of the question marks, step, read columns from 0.
 class Statement {
  public:
   Statement(Connection& connection, std::string_view sql);
@@ -116,16 +113,16 @@ class Statement {
     return value ? bind(*value) : bind(nullptr);
   }
 
-  // True when there is a row to read. After the last row the statement is ready to be bound again.
+  // Returns true if there is a row to read. After the last row the statement is ready to be bound again.
   bool step();
-  // Runs a statement that gives no rows, with these values.
+  // Runs a statement without rows, with these values.
   template <typename... Values>
   void run(const Values&... values) {
     (bind(values), ...);
     while (step()) {
     }
   }
-  // What read(*this) returns for each row.
+  // Returns read(*this) for each row.
   template <typename Read>
   auto rows(const Read& read) {
     std::vector<decltype(read(*this))> rows;
@@ -171,12 +168,12 @@ std::string Connection::text(std::string_view sql, const Values&... values) {
   return query.text(0);
 }
 
-// To be bound: NULL if the text is empty.
+// Returns the text for binding; NULL if it is empty.
 inline std::optional<std::string_view> unless_empty(std::string_view text) {
   return text.empty() ? std::nullopt : std::optional(text);
 }
 
-// BEGIN IMMEDIATE for a writer, BEGIN for a reader's snapshot; rolled back unless committed.
+// Transaction is BEGIN IMMEDIATE for a writer, BEGIN for a reader's snapshot. It rolls back unless committed.
 class Transaction {
  public:
   enum class Kind { write, snapshot };
@@ -190,7 +187,7 @@ class Transaction {
   bool open_ = true;
 };
 
-// A part of a transaction that is taken back unless it is kept. Not more than one at a time.
+// Savepoint is a part of a transaction that is rolled back unless it is kept. At most one exists at a time.
 class Savepoint {
  public:
   explicit Savepoint(Connection& connection);

@@ -158,7 +158,7 @@ def too_small(programs, folder, size, reference):
     mount(drill.data, size)
     try:
         code = drill.start().wait(300)
-        said = drill.log().count("for which nobody can make room")
+        said = drill.log().count("for which no room can be made")
         moved = drill.place("larger.peclet")
         subprocess.run(["cp", "-a", drill.data, moved], check=True)
     finally:

@@ -18,7 +18,7 @@
 namespace peclet::runner {
 namespace {
 
-// As main.cpp does it.
+// Runs the verb as main.cpp does.
 int run_as_program(const RunOptions& options, std::optional<int> pilot) {
   try {
     return pilot ? plan_campaign({options, pilot}) : run_campaign(options);
@@ -102,7 +102,7 @@ void CampaignOnDisk::wait_until(const std::string& what, const std::function<boo
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
-  throw std::runtime_error(fmt::format("waited in vain for {}:\n{}", what, log()));
+  throw std::runtime_error(fmt::format("waited a minute for {}:\n{}", what, log()));
 }
 
 std::int64_t CampaignOnDisk::count(const std::string& sql) const {
@@ -116,7 +116,7 @@ std::string CampaignOnDisk::answer() const {
   for (const PointRecord& point : database.points()) {
     const std::vector<StopTestRecord> stop_tests = database.stop_tests(point.id);
     for (const StopTestRecord& record : stop_tests) {
-      answer += fmt::format("{} look {} {} {} {}\n", point.label, record.stop_test.seeds,
+      answer += fmt::format("{} stop test {} {} {} {}\n", point.label, record.stop_test.seeds,
                             record.stop_test.estimate.mean, record.stop_test.half_width,
                             to_string(record.stop_test.verdict));
     }

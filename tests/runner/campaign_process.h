@@ -1,4 +1,4 @@
-// `peclet run` of a campaign with the fake engine in a process of its own, to be signalled and killed.
+// CampaignOnDisk runs a campaign with the fake engine in processes of their own, to be signalled and killed.
 #pragma once
 
 #include <sys/types.h>
@@ -26,30 +26,28 @@ class CampaignOnDisk {
 
   Json document;  // written at each start
   RunOptions options;
-  std::optional<int> pilot;  // of `peclet plan --pilot`, which is then run instead
+  std::optional<int> pilot;  // seeds of `peclet plan --pilot`, which is then run instead
 
   // Starts a run in a child process; finish() waits for it.
   void start(const Environment& environment = {});
-  // Its exit code as the program's; -N when signal N killed it.
+  // Returns the exit code of the run; -N if signal N killed it.
   int finish();
   int run(const Environment& environment = {});
-  // The environment in which no seed from this one on ends before release(): no run of it is over before the
-  // test says so, however slow the machine is. Of the seeds before, the run gives its results.
+  // Returns an environment in which no seed from `seed` on ends before release(): the run is not over before
+  // the test says so, however slow the machine is. Earlier seeds give their results.
   Environment held_from(int seed, Environment environment = {}) const;
   void release() const;
   void signal(int number) const;
-  // Kills all of its workers.
   void kill_workers() const;
-  // Waits until so many realisations are done. Throws when that takes a minute.
+  // Waits until this number of realisations is done. Throws if that takes a minute.
   void wait_for_results(int count) const;
-  // Waits until that is so; throws when it takes a minute, too.
+  // Waits until the condition holds. Throws if that takes a minute.
   void wait_until(const std::string& what, const std::function<bool()>& is_so) const;
 
   const CampaignDirectory& directory() const { return directory_; }
   Database reader() const { return Database::open_reader(directory_.database()); }
   std::int64_t count(const std::string& sql) const;
-  // What must not depend on what happened to the processes: all stop tests, and the contents of the seeds
-  // that decided.
+  // Returns all stop tests and the contents of the seeds that decided, which must not depend on disturbances.
   std::string answer() const;
   std::string log() const;
 

@@ -15,7 +15,7 @@ TemporaryFolder::TemporaryFolder() {
 }
 
 TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;  // the system's own cleaning gets what is left
+  std::error_code ignored;  // the system removes what is left among temporary files
   std::filesystem::remove_all(path_, ignored);
 }
 

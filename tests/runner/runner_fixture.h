@@ -15,7 +15,7 @@
 
 namespace peclet::runner {
 
-// Removed with everything in it at the end.
+// TemporaryFolder is removed at its end, with everything in it.
 class TemporaryFolder {
  public:
   TemporaryFolder();
@@ -28,32 +28,31 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-// As many points as asked for, without a file: scenes {"point": 0}, {"point": 1} ...
+// Returns a campaign without a file, with this number of points: scenes {"point": 0}, {"point": 1} ...
 Campaign plain_campaign(int points, int minimum, int maximum, double tolerance);
 
-// A well-formed result of schema/result.schema.json; `identity` names the engine's binary.
+// Returns a well-formed result of schema/result.schema.json; `identity` names the engine's binary.
 Json plain_result(const std::string& point, int seed, double viscosity,
                   const std::string& identity = "engine");
 
-// What a result says of a ratio of means, of members "counts" and "ideal", along an axis with these values.
+// Returns the description of a ratio of "counts" and "ideal" along an axis with these values.
 Json described_ratio(const Json& values);
 
 bool says(const std::string& text, const std::string& part);
 
-// Letters that compress badly: others for each `start`, the same on every platform.
+// Returns letters that compress badly, others for each `start` and the same on every platform.
 std::string noise(std::size_t size, std::uint32_t start = 1);
 
-// The engine that plain_result() names.
+// Returns the engine that plain_result() names.
 Json plain_engine(const std::string& identity = "engine");
 
-// Keeps what it is told.
+// SilentListener keeps what it is told.
 class SilentListener : public RunListener {
  public:
   void note(const std::string& message) override { notes.push_back(message); }
   void warn(const std::string& message) override { warnings.push_back(message); }
   void happened(const RunEvent& event) override { events.push_back(event); }
   void report(const RunReport& report) override { last = report; }
-  // How many events of a kind there were.
   template <typename Event>
   std::ptrdiff_t count() const {
     return std::count_if(events.begin(), events.end(),

@@ -27,11 +27,11 @@ void StoredCampaign::store(int point, const Json& result) {
       SeedStore(database_).begin_attempt(id(point), result["seed"].get<int>(), 1, 4711, engine);
   ResultStore(database_).store(parse_result(result.dump()), campaign_.target);
   SeedStore(database_).end_attempt(attempt, {AttemptOutcome::result, 100});
-  stop_test(point);
+  store_stop_tests(point);
   booking.commit();
 }
 
-void StoredCampaign::stop_test(int point) {
+void StoredCampaign::store_stop_tests(int point) {
   ResultStore(database_).store_stop_tests(
       id(point), replay_stop_tests(database_.outcomes(id(point)), campaign_.target,
                                    campaign_.minimum_realisations, campaign_.maximum_realisations));
@@ -47,7 +47,7 @@ void StoredCampaign::set_target(const Target& target) {
   campaign_.target = target;
   PointStore(database_).adopt(campaign_);
   Transaction booking(database_.connection());
-  for (int point = 0; point < static_cast<int>(campaign_.points.size()); ++point) stop_test(point);
+  for (int point = 0; point < static_cast<int>(campaign_.points.size()); ++point) store_stop_tests(point);
   booking.commit();
 }
 
@@ -97,7 +97,7 @@ void StoredCampaign::crash(int point, int seed) {
   SeedStore(database_).end_attempt(attempt,
                                    {AttemptOutcome::crashed, 42, {}, "signal 11 (Segmentation fault)"});
   SeedStore(database_).quarantine(id(point), seed, "crashed");
-  stop_test(point);
+  store_stop_tests(point);
   booking.commit();
 }
 

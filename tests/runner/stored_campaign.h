@@ -1,4 +1,4 @@
-// A campaign whose database is filled by hand, for tests of those who only read it.
+// StoredCampaign is a campaign whose database is filled by hand, for tests of its readers.
 #pragma once
 
 #include <functional>
@@ -11,26 +11,26 @@ namespace peclet::runner {
 
 class StoredCampaign {
  public:
-  // plain_campaign() with a tolerance of 5 %, and these beside it.
+  // Stores plain_campaign() with a tolerance of 5 % and further targets.
   StoredCampaign(int points, int minimum, int maximum, const std::vector<Criterion>& also = {});
   explicit StoredCampaign(const Campaign& campaign);
 
-  // A result of plain_result(), with an attempt of its own, and the stop tests that it allows.
+  // Stores a result of plain_result(), with an attempt of its own, and the stop tests that follow.
   void complete(int point, int seed, double viscosity, const Json& warnings = Json::array());
-  // The same after a change of the result.
+  // Does as complete() after a change of the result.
   void complete_with(int point, int seed, double viscosity, const std::function<void(Json&)>& change);
-  // The same with a window whose halves differ; its control variate is zero.
+  // Does as complete() with a window whose halves differ; the control variate is zero.
   void complete_in_halves(int point, int seed, double first, double second);
-  // As `peclet set --tolerance`, with the stop tests that follow.
+  // Does as `peclet set --tolerance`, with the stop tests that follow.
   void set_tolerance(double tolerance);
-  // As a campaign file with another target, with the stop tests that follow.
+  // Does as a campaign file with another target, with the stop tests that follow.
   void set_target(const Target& target);
-  // One more result of a seed that has ended.
+  // Offers one more result of a seed that has ended.
   void repeat(int point, int seed, double viscosity);
   void blow_up(int point, int seed, const std::string& cause = "overlap");
-  // A worker has the seed.
+  // Gives the seed to a worker.
   void begin(int point, int seed);
-  // One attempt that crashed, after which the seed is given up.
+  // Stores one attempt that crashed, after which the seed is given up.
   void crash(int point, int seed);
 
   Database& database() { return database_; }
@@ -38,7 +38,7 @@ class StoredCampaign {
 
  private:
   void store(int point, const Json& result);
-  void stop_test(int point);
+  void store_stop_tests(int point);
   std::int64_t id(int point) { return database_.points().at(static_cast<std::size_t>(point)).id; }
 
   TemporaryFolder folder_;

@@ -26,7 +26,7 @@ class Way:
 
 RESULT = "spool/{point}-{seed:06}-77.json"
 CHECKPOINT = "checkpoints/{point}-{seed:06}.checkpoint"
-ASIDE = "what is no file"
+ASIDE = "entries that are not regular files"
 ODD_NAME = "a\nb\x1b[2J\udcff.json"
 
 
@@ -77,7 +77,7 @@ REQUESTS = [
         "requests/0.json",
         [things.sparse, things.rubbish, things.empty],
         GOES_ON,
-        "is no request",
+        "is not a valid request",
         quick=[things.sparse],
     ),
     Way(
@@ -92,7 +92,7 @@ REQUESTS = [
         "requests/0.json",
         things.text("[" * 500_000),
         GOES_ON,
-        "is no request",
+        "is not a valid request",
         name="requests: half a million brackets",
     ),
     Way(
@@ -106,10 +106,10 @@ REQUESTS = [
         "requests/" + ODD_NAME,
         things.rubbish,
         GOES_ON,
-        "is no request",
+        "is not a valid request",
         name="requests: a name with a newline, an escape and no UTF-8",
     ),
-    Way("requests", things.crowd(2_000), GOES_ON, "is no request", name="requests: 2000 files of rubbish"),
+    Way("requests", things.crowd(2_000), GOES_ON, "is not a valid request", name="requests: 2000 files of rubbish"),
     Way("requests", things.linked_folder, REFUSED, "requests: is a link"),
 ]
 CHECKPOINTS = [
@@ -162,7 +162,7 @@ DATABASE = [
 ]
 CLOSED = [
     Way(RESULT, things.closed, GOES_ON, "is not taken", humble=True, quick=True),
-    Way("requests/0.json", things.closed, GOES_ON, "is no request", humble=True),
+    Way("requests/0.json", things.closed, GOES_ON, "is not a valid request", humble=True),
     Way(CHECKPOINT, things.closed, GOES_ON, "", humble=True, real=True),
     Way("logs/peclet.log", things.closed, GOES_ON, "", humble=True),
     *ways_with(

@@ -84,7 +84,7 @@ def folders_below_deleted(night):
     night.types("rm -r night.peclet/spool night.peclet/logs night.peclet/checkpoints")
     night.wait_for_answer(run, "made anew")
     night.lets_go()
-    night.waits(run, 0, ["somebody deleted", "spool/", "made anew", "2 converged"])
+    night.waits(run, 0, ["were deleted", "made anew: spool/", "2 converged"])
     night.lost_nothing()
     night.answers_as_undisturbed()
 

@@ -37,7 +37,7 @@ def owner_killed(night):
     night.lets_go()
     night.types("peclet status night.json", 0, ["no process runs the campaign now", "peclet run"])
     night.slow(20)
-    night.types("peclet run night.json", 0, ["an earlier run left unfinished go on", "2 converged"])
+    night.types("peclet run night.json", 0, ["an earlier run left unfinished are queued again", "2 converged"])
     night.lost_nothing()
     night.answers_as_undisturbed()
 

@@ -1,4 +1,4 @@
-// A campaign with the fake engine, and a batch system that is four scripts and does what the test says.
+// BatchFixture has a campaign with the fake engine, and a batch system of four scripts.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@
 
 namespace peclet::runner {
 
-// Looks again and again for a minute. False: it did not come true.
+// Waits up to a minute until the condition holds. Returns false if it does not.
 bool comes_true(const std::function<bool()>& is_so);
 
 class BatchFixture : public testing::Test {
@@ -22,17 +22,16 @@ class BatchFixture : public testing::Test {
   BatchFixture();
   ~BatchFixture() override;
 
-  // For the fake engine, until the end of the test.
+  // Sets a variable of the fake engine until the end of the test.
   void set(const std::string& variable, const std::string& value);
 
-  // What the scripts do with submissions: take them ("ok"), only the first ("one") or none ("refused"); fail
-  // on the way after or before they were taken ("lost", "unheard"), or with all work done ("late"). Queries
+  // Sets what the scripts do with submissions: take all ("ok"), only the first ("one") or none ("refused");
+  // fail on the way after or before one is taken ("lost", "unheard"), or with all work done ("late"). Queries
   // are answered or not.
   void submissions(const std::string& kind) const;
   void queries(bool answered) const;
-  // What a query says of the tasks of every job that was taken: lines of INDEX STATE.
+  // Sets what a query says of the tasks of every job that was taken: lines of INDEX STATE.
   void states(const std::string& lines) const;
-  // Jobs that were taken.
   int submitted() const;
 
   int hand_over() const { return hand_over_campaign(options); }
@@ -41,7 +40,7 @@ class BatchFixture : public testing::Test {
   }
   int cancel() const { return ingest_campaign({options.campaign, {}, true, true, false}); }
   int ingest() const { return ingest_campaign({options.campaign, {}, false, true, false}); }
-  // Runs tasks of the bundle of this number (from 1) here, as a node would.
+  // Runs a task of the bundle of this number (from 1) here, as a node would.
   int run_task(int bundle, int index) const;
   int run_locally() const;
 
@@ -52,7 +51,7 @@ class BatchFixture : public testing::Test {
   std::int64_t count(const std::string& sql) const;
   std::int64_t seeds_out() const { return count("SELECT count(*) FROM bundle_seed WHERE outcome IS NULL"); }
   std::string text(const std::string& sql) const;
-  // The canonical export; that of the same campaign run without a batch system.
+  // Return the canonical exports of the campaign and of the same campaign run without a batch system.
   std::string answer() const;
   std::string local_answer() const;
 

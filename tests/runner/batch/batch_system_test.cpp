@@ -27,7 +27,7 @@ TEST(Command, SaysWhatItPrintedAndHowItLeft) {
   EXPECT_EQ(bad.complaint(), "exit status 3: why");
 }
 
-// Longer than the 64 KiB that a pipe holds.
+// The input is longer than the 64 KiB that a pipe holds.
 TEST(Command, ReadsItsInputToTheEnd) {
   const std::string input(100000, 'x');
   EXPECT_EQ(run_command({"cat"}, std::chrono::seconds(10), input).output, input);
@@ -100,7 +100,7 @@ TEST_F(Query, WithoutAWholeAnswerNobodyKnows) {
   EXPECT_TRUE(answer(":"));
 }
 
-// The built-in scripts, with sbatch, squeue and scancel that know one cluster beside the usual one.
+// The built-in scripts, with sbatch, squeue and scancel that know a second cluster.
 class SlurmScripts : public testing::Test {
  protected:
   SlurmScripts() {

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 using BatchTask = BatchFixture;
 
-// Of a task in a process of its own.
+// A task in a process of its own.
 class TaskProcess {
  public:
   explicit TaskProcess(const std::function<int()>& run) : process_(fork()) {
@@ -65,7 +65,7 @@ TEST_F(BatchTask, ASignalMakesItSaveAndLeave) {
     EXPECT_EQ(task.finish(), 75);
     EXPECT_FALSE(fs::is_empty(shared() / "checkpoints"));
     for (const fs::directory_entry& saved : fs::directory_iterator(shared() / "checkpoints")) {
-      fs::remove(saved);  // so that the next round waits for its own
+      fs::remove(saved);  // the next round must wait for its own
     }
     EXPECT_EQ(read_json(bundle(bundle_number) / "tasks" / "0" / "running.json")["outcome"], "drained");
     ASSERT_EQ(ingest(), 0);

@@ -1,4 +1,4 @@
-// Seeds of which the batch system knows nothing: none of them may be out for good, and none may count twice.
+// Seeds whose state the batch system does not tell: none stays out for good, and none counts twice.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int tasks = 5;  // of two seeds each
+constexpr int tasks = 5;  // two seeds each
 constexpr const char* all_waiting = "0 waiting\n1 waiting\n2 waiting\n3 waiting\n4 waiting\n";
 
 class GivenUp : public BatchFixture {
@@ -34,7 +34,7 @@ class GivenUp : public BatchFixture {
     }
     return "";
   }
-  // Results that nobody has taken in yet.
+  // Returns the number of results that were not taken in yet.
   std::ptrdiff_t spooled() const {
     return std::count_if(fs::directory_iterator(shared() / "spool"), fs::directory_iterator(),
                          [](const fs::directory_entry& entry) { return entry.is_regular_file(); });

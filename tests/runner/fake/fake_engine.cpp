@@ -1,24 +1,22 @@
-// An engine without physics that speaks the frames: the runner's proof that it knows no engine from inside.
+// Fake engine without physics that speaks the frames: the runner knows no engine from inside.
 //
-// A realisation is a chain of mixed 64-bit states, started by point and seed; its relative viscosity is a
-// normal variate made of the last state. So a result depends on every step, and resuming in the wrong place
-// would show.
+// A realisation is a chain of mixed 64-bit states, started by point and seed. Its relative viscosity is a
+// normal variate of the last state. It depends on every step, so a resume at the wrong place would show.
 //
 //   PECLET_FAKE_STEPS (10), PECLET_FAKE_STEP_MS (0)     length of a realisation
-//   PECLET_FAKE_MEAN (10), PECLET_FAKE_DEVIATION (1)    of the relative viscosity
+//   PECLET_FAKE_MEAN (10), PECLET_FAKE_DEVIATION (1)    mean and deviation of the relative viscosity
 //   PECLET_FAKE_PADDING (0)                             numbers that make its result longer
 //   PECLET_FAKE_TIMES                                   a file that gets a line a job, in nanoseconds of the
 //                                                       monotonic clock: when the job was taken up, and when
 //                                                       its result was durable and announced
-//   PECLET_FAKE_FILES (0)                               files that it leaves beside its result: state-0.txt
-//   ... PECLET_FAKE_PRINTED (0)                             bytes that it prints at every step
-//   PECLET_FAKE_IDENTITY ("fake")                       what its binary is said to be
-//   PECLET_FAKE_DRIFT                                   set: results differ from those without it
-//   PECLET_FAKE_AHEAD                                   set: it takes a job ahead
-//   PECLET_FAKE_STEPLESS                                set: it says that it knows of no time step
-//   PECLET_FAKE_HOLD, PECLET_FAKE_HOLD_SEED (0)         a file: as long as it is there, this and later seeds
-//                                                       stand still at half of their steps, but hear the
-//                                                       owner
+//   PECLET_FAKE_FILES (0)                               number of files state-0.txt ... beside its result
+//   PECLET_FAKE_PRINTED (0)                             bytes that it prints at every step
+//   PECLET_FAKE_IDENTITY ("fake")                       text whose hash is given as that of its binary
+//   PECLET_FAKE_DRIFT                                   if set, results differ from those without it
+//   PECLET_FAKE_AHEAD                                   if set, it takes a job ahead
+//   PECLET_FAKE_STEPLESS                                if set, it says that it has no time step
+//   PECLET_FAKE_HOLD, PECLET_FAKE_HOLD_SEED (0)         a file: while it exists, this and later seeds stop at
+//                                                       half of their steps, but hear the owner
 //   PECLET_FAKE_FAULTS, PECLET_FAKE_CRASH_PROBABILITY   see fake_faults.h
 #include <unistd.h>
 
@@ -72,7 +70,7 @@ class Engine {
     channel_.send(hello);
   }
 
-  // False: the owner is gone.
+  // Returns false if the owner is gone.
   bool next(Json& message) {
     if (waiting_job_) {
       message = *std::exchange(waiting_job_, std::nullopt);
@@ -81,7 +79,7 @@ class Engine {
     return channel_.receive(message, milliseconds(-1)) == FrameChannel::Status::message;
   }
 
-  // What the owner has to say while a job runs. A further job is kept, and the time goes on.
+  // Waits for what the owner says while a job runs. A further job is kept, and the wait continues.
   FrameChannel::Status hear(Json& message, milliseconds patience) {
     const auto end = steady_clock::now() + patience;
     for (;;) {
@@ -156,7 +154,7 @@ class Engine {
     if (fault == Fault::hang || fault == Fault::garble || fault == Fault::rehello) {
       for (;;) {
         std::this_thread::sleep_for(milliseconds(20));
-        if (fault == Fault::hang) progress(job, fault_step_);  // alive, but standing still
+        if (fault == Fault::hang) progress(job, fault_step_);  // alive, but without a new step
       }
     }
   }
@@ -175,7 +173,7 @@ class Engine {
            std::filesystem::exists(hold_);
   }
 
-  // Waits for one step's time, or as long as the job is held, and hears what the owner has to say meanwhile.
+  // Waits for one step's time, or as long as the job is held, and hears the owner meanwhile.
   bool told_to_leave(const Json& job, const State& state, const std::filesystem::path& checkpoint) {
     Json message;
     FrameChannel::Status status = hear(message, step_time_);
@@ -193,13 +191,13 @@ class Engine {
     return true;
   }
 
-  // Idle again: another drain follows, on which it leaves, or a job.
+  // Becomes idle. Another drain follows, on which it leaves, or a job.
   void give_back(const Json& job, const State& state) {
     waiting_job_.reset();
     channel_.send({{"type", "drained"}, {"job", job.at("job")}, {"step", state.step}});
   }
 
-  // Without room for it the work goes on, and the last checkpoint stays.
+  // If there is no room, the work continues and the last checkpoint stays.
   void save(const Json& job, const State& state, const std::filesystem::path& checkpoint) {
     try {
       write_durably(checkpoint, Json{{"value", state.value}, {"step", state.step}}.dump());
@@ -215,7 +213,7 @@ class Engine {
                    {"bytes", error.bytes()}});
   }
 
-  // Beside the result, which lists them. False: has to leave before.
+  // Leaves files beside the result, which lists them. Returns false if the engine has to leave before.
   bool leave_files(const Json& job, const State& state, Fault fault, Json& result) {
     for (int number = 0; number < files_; ++number) {
       const std::string name = "state-" + std::to_string(number) + ".txt";
@@ -231,7 +229,7 @@ class Engine {
     return true;
   }
 
-  // Keeps the text until there is room for it. False: has to leave before.
+  // Keeps the text until there is room for it. Returns false if the engine has to leave before.
   bool spool(const Json& job, const std::string& path, const std::string& text) {
     for (;;) {
       try {
@@ -248,7 +246,7 @@ class Engine {
     }
   }
 
-  // What a job took, from outside of the owner.
+  // Notes how long a job took, independently of the owner.
   static void note_times(steady_clock::time_point begun) {
     const char* const path = std::getenv("PECLET_FAKE_TIMES");
     if (path == nullptr) return;
@@ -273,7 +271,7 @@ class Engine {
       return;
     }
     std::string text = result.dump();
-    // JSON has no such number; an engine that prints it all the same writes no JSON.
+    // JSON has no NaN; an engine that prints it all the same does not write JSON.
     if (fault == Fault::nan)
       text.replace(text.find("\"relative_viscosity\":"), 21, "\"relative_viscosity\":nan,\"x\":");
     const Json frame{{"type", "result"},
@@ -311,7 +309,7 @@ class Engine {
   const int hold_seed_ = static_cast<int>(setting("PECLET_FAKE_HOLD_SEED", 0));
   const std::string printed_ = std::string(static_cast<std::size_t>(setting("PECLET_FAKE_PRINTED", 0)), 'x');
   const bool takes_ahead_ = std::getenv("PECLET_FAKE_AHEAD") != nullptr;
-  std::optional<Json> waiting_job_;  // came while another one ran
+  std::optional<Json> waiting_job_;  // a job that came while another one ran
   bool leave_ = false;
 };
 

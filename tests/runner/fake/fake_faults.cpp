@@ -70,7 +70,7 @@ Fault fault_of(const std::string& point, int seed, int tried) {
   const double probability = setting("PECLET_FAKE_CRASH_PROBABILITY", 0);
   const std::uint64_t dice = mix(first_bits(point) ^ mix(static_cast<std::uint64_t>(seed) * 1000003 +
                                                          static_cast<std::uint64_t>(tried)));
-  // The upper 53 bits as a number in [0, 1).
+  // Takes the upper 53 bits as a number in [0, 1).
   return static_cast<double>(dice >> 11) * 0x1p-53 < probability ? Fault::crash : Fault::none;
 }
 

@@ -21,7 +21,7 @@ Json engine() {
 }
 
 Json outcome(const Json& job, const State& state, bool blown_up) {
-  // Box and Muller's normal variate of two uniform ones; the first never vanishes.
+  // Box and Muller: a normal variate of two uniform ones, the first of which never vanishes.
   const double first = (static_cast<double>(mix(state.value) >> 11) + 1) * 0x1p-53;
   const double second = static_cast<double>(mix(state.value + 1) >> 11) * 0x1p-53;
   const double normal = std::sqrt(-2 * std::log(first)) * std::cos(2 * std::numbers::pi * second);
@@ -49,7 +49,7 @@ Json outcome(const Json& job, const State& state, bool blown_up) {
       {"engine", engine()}};
   if (const auto padding = static_cast<std::size_t>(setting("PECLET_FAKE_PADDING", 0)); padding > 0) {
     Json& numbers = result["blocks"]["padding"] = Json::array();
-    std::uint64_t noise = state.value;  // five digits, as a real engine's blocks have, and no two alike
+    std::uint64_t noise = state.value;  // five digits, as in a real engine's blocks, and no two alike
     for (std::size_t i = 0; i < padding; ++i) {
       noise = mix(noise);
       numbers.push_back(static_cast<double>(noise % 100'000) * 1e-5);

@@ -1,4 +1,4 @@
-// What the fake engine says of itself, and the result that it makes of its last state.
+// Provenance of the fake engine, and the result that it makes of its last state.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ struct State {
   int step = 0;
 };
 
-// Without its cost. `blown_up`: the verdict of a blow-up, without a number.
+// Returns the result without its cost; with `blown_up`, the verdict of a blow-up, without a number.
 Json outcome(const Json& job, const State& state, bool blown_up);
 
 }  // namespace peclet::fake

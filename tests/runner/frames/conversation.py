@@ -1,12 +1,11 @@
 #!/usr/bin/python3
 """conversation.py [--refused POINTER=VALUE] SCHEMAS SCENE ENGINE [ARGUMENT ...]
 
-Plays the runner's part for one engine, in another language than both programs: asks about a scene and about a bad one
-(SCENE with VALUE at POINTER; unless given, a viscosity of -1), runs one seed, runs it again and takes the job back
-after the first progress, runs it once more and hangs up, each time with a new process that goes on. An engine that
-takes a job ahead gets two at once, and a drain with two of them. Holds every frame and result to
-schema/frames.schema.json and schema/result.schema.json with an independent validator (Debian's python3-jsonschema), and
-the results to each other.
+Plays the runner's part for one engine, in another language than both programs. It asks about a scene and about a bad
+one (SCENE with VALUE at POINTER; by default, a viscosity of -1). It runs one seed, runs it again and takes the job back
+after the first progress, and runs it once more and hangs up; each time a new process continues. An engine that takes a
+job ahead gets two at once, and a drain with two of them. Every frame and result is held to schema/frames.schema.json
+and schema/result.schema.json with an independent validator (Debian's python3-jsonschema), and results to each other.
 """
 import argparse
 import copy
@@ -35,7 +34,7 @@ def validators(folder):
 
 
 class Engine:
-    """A process, from its hello to its exit."""
+    """Engine process, from its hello to its exit."""
 
     def __init__(self, command, frames):
         self.frames = frames
@@ -70,7 +69,7 @@ class Engine:
         return message
 
     def leave(self, how="drain"):
-        """`how`: drain, stop, hang up; or asked, when an idle engine has already been told to drain."""
+        """Ends the engine by `how`: drain, stop, hang up; or asked, if an idle engine was already told to drain."""
         if how == "hang up":
             self.socket.close()
         elif how != "asked":
@@ -147,7 +146,7 @@ class Conversation:
             content = pathlib.Path(self.files(job) + file["name"]).read_bytes()
             assert (len(content), hashlib.sha256(content).hexdigest()) == (file["bytes"], file["sha256"]), file
         checkpoint = self.folder / "checkpoint"
-        checkpoint.unlink(missing_ok=True)  # as the runner does when it has the result
+        checkpoint.unlink(missing_ok=True)  # as the runner does once it has the result
         return result
 
     def undisturbed(self, job):
@@ -158,8 +157,10 @@ class Conversation:
         return result
 
     def disturbed(self, job, how):
-        """Interrupts the job after its first progress and lets another process go on. Returns its result and whether it
-        was cut."""
+        """Interrupts the job after its first progress and lets another process continue it.
+
+        Returns its result and whether it was cut.
+        """
         engine = self.start()
         self.give_job(engine, job)
         answer = engine.receive()
@@ -170,14 +171,14 @@ class Conversation:
             while (answer := engine.receive())["type"] == "progress":
                 pass
             was_cut = answer["type"] == "drained"
-        if answer["type"] == "result":  # it was faster than we
+        if answer["type"] == "result":  # the engine was faster than this program
             engine.leave("asked" if told else "drain")
             return self.read_result(engine, job, answer["sha256"]), False
         engine.leave("hang up" if how == "hang up" else "drain")
         return self.undisturbed(job + 1), was_cut
 
     def ahead(self, job):
-        """Two jobs at once: one result after the other."""
+        """Gives two jobs at once; returns one result after the other."""
         engine = self.start()
         self.give_job(engine, job)
         self.give_job(engine, job + 1)
@@ -186,7 +187,7 @@ class Conversation:
         return results
 
     def ahead_and_drained(self, job):
-        """A job that waits is given up without a word. Returns whether it still waited."""
+        """Drains an engine with a waiting job, which it gives up without a message. Returns whether it still waited."""
         engine = self.start()
         self.give_job(engine, job)
         answer = engine.receive()
@@ -195,7 +196,7 @@ class Conversation:
         engine.send({"type": "drain"})
         while answer["type"] == "progress":
             answer = engine.receive()
-        if answer["type"] == "result":  # it was faster than we, and may have begun the other one
+        if answer["type"] == "result":  # it was faster than this program, and may have begun the other one
             waits = False
         else:
             assert answer["type"] == "drained" and answer["job"] == job, answer

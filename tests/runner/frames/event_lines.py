@@ -73,8 +73,8 @@ class EventLines(unittest.TestCase):
             )
         )
 
-    def test_tell_every_seed_look_and_decision_once(self):
-        # Seed 7 crashes whenever it is tried, three times as a seed may; seed 3 ends with a verdict.
+    def test_tell_every_seed_stop_test_and_decision_once(self):
+        # Seed 7 crashes at each try, of which a seed may have three; seed 3 ends with a verdict.
         done, events = self.run_it("faults", PECLET_FAKE_FAULTS="overlap:3 crash:7")
         self.assertEqual(done.returncode, 3)
         self.assertEqual([events[0]["event"], events[-1]["event"]], ["begin", "end"])
@@ -99,13 +99,13 @@ class EventLines(unittest.TestCase):
         self.assertEqual([e["event"] for e in events if e["event"] != "progress"], ["begin", "end"])
 
     def test_tell_the_rest_after_a_stop(self):
-        hold = self.path("hold")  # of each point's last seed: the run does not end by itself
+        hold = self.path("hold")  # holds each point's last seed, so that the run does not end by itself
         with open(hold, "w"):
             pass
         held = {**os.environ, "PECLET_FAKE_HOLD": hold, "PECLET_FAKE_HOLD_SEED": str(MINIMUM - 1)}
         process = subprocess.Popen(self.command("stopped"), stdout=subprocess.PIPE, text=True, env=held)
         lines = []
-        while sum('"seed-ended"' in line for line in lines) < 4:  # each comes while the run goes on
+        while sum('"seed-ended"' in line for line in lines) < 4:  # events come while the run lasts
             lines.append(process.stdout.readline())
             self.assertTrue(lines[-1], "the run ended early")
         patience = time.monotonic() + 60
@@ -127,14 +127,14 @@ class EventLines(unittest.TestCase):
 
     def test_are_given_up_when_their_reader_leaves(self):
         reader, writer = os.pipe()
-        fcntl.fcntl(writer, F_SETPIPE_SZ, 4096)  # so that something is left to be told
+        fcntl.fcntl(writer, F_SETPIPE_SZ, 4096)  # some events are left to be written
         process = subprocess.Popen(self.command("left"), stdout=writer, stderr=subprocess.PIPE, text=True)
         os.close(writer)
         self.assertEqual(len(os.read(reader, 100)), 100)
         os.close(reader)
         errors = process.communicate()[1]
         self.assertEqual(process.returncode, 0)
-        self.assertEqual(errors.count("the run goes on without them"), 1, errors)
+        self.assertEqual(errors.count("the run continues without them"), 1, errors)
         self.run_it("whole")
         self.assertEqual(self.export("left").replace(b"left", b"whole"), self.export("whole"))
 
@@ -152,7 +152,7 @@ class EventLines(unittest.TestCase):
                 continue
             if decided == POINTS:
                 break
-        # All points are decided although some four kilobytes have been taken; the reader may still have the rest.
+        # All points are decided although only some four kilobytes were taken; the reader can still have the rest.
         self.assertEqual(decided, POINTS)
         with os.fdopen(reader) as pipe:
             events = self.events(pipe.read())
@@ -166,7 +166,7 @@ class EventLines(unittest.TestCase):
         with open(self.path("changing.json")) as file:
             campaign = json.load(file)
         command = self.command("changing")
-        campaign["target"]["relative_tolerance"] = 0.02  # reopens the points, which another engine may not go on with
+        campaign["target"]["relative_tolerance"] = 0.02  # reopens the points, which another engine must not continue
         with open(self.path("changing.json"), "w") as file:
             json.dump(campaign, file)
         other = {**os.environ, "PECLET_FAKE_IDENTITY": "another"}

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// 20 ms per realisation.
+// A realisation takes 20 ms.
 const Environment slow{{"PECLET_FAKE_STEP_MS", "2"}};
 
 std::string canonical_export(const fs::path& database) {
@@ -30,14 +30,14 @@ std::string canonical_export(const fs::path& database) {
   return export_json(reader, true);
 }
 
-// What a campaign says that nothing happened to.
+// Returns the export of a campaign that is not disturbed.
 std::string undisturbed() {
   CampaignOnDisk campaign;
   EXPECT_EQ(campaign.run(), 0) << campaign.log();
   return canonical_export(campaign.directory().database());
 }
 
-// Bytes that no database has, in the middle of it.
+// Writes invalid bytes into the middle of a database.
 void damage_file(const fs::path& path) {
   std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
   file.seekp(4096);
@@ -57,7 +57,7 @@ TEST(Backups, HoldWhatIsCommittedAndNothingElse) {
   EXPECT_FALSE(examine(backup.file).backed_up_at.empty());
 }
 
-// /mnt/usb/copies where nothing is mounted at /mnt/usb, and no folder either.
+// Like /mnt/usb/copies if nothing is mounted at /mnt/usb, and that folder does not exist.
 TEST(Backups, ToAFolderThatIsNotMountedAreRefused) {
   StoredCampaign stored(1, 5, 50);
   const TemporaryFolder target;
@@ -76,7 +76,7 @@ TEST(Backups, ToAFolderThatIsNotMountedAreRefused) {
   EXPECT_TRUE(fs::exists(newest_backup(usb / "copies")));
 }
 
-// A link in the spool or among the checkpoints would carry somebody else's file away.
+// A link in the spool or among the checkpoints would copy another user's file.
 TEST(Backups, TakeNoLinksAlong) {
   StoredCampaign stored(1, 5, 50);
   create_folders(stored.directory());
@@ -186,7 +186,7 @@ TEST(Backups, OfARunningCampaignAreSoundAndGrow) {
   EXPECT_EQ(campaign.finish(), 0) << campaign.log();
 }
 
-// The first run is killed: what it leaves was made while it lasted. The second one backs up at its end alone.
+// The first run is killed, so its backups were made while it lasted. The second one backs up at its end only.
 TEST(Backups, AreMadeByTheRunItself) {
   CampaignOnDisk campaign;
   const fs::path folder = campaign.directory().backup();
@@ -223,7 +223,7 @@ TEST(Restoring, ElsewhereGoesOnToTheSameBytes) {
   EXPECT_GE(elsewhere.count("SELECT count(*) FROM result"), 8);
   EXPECT_EQ(elsewhere.run(), 0) << elsewhere.log();
   EXPECT_EQ(canonical_export(elsewhere.directory().database()), undisturbed());
-  // What came with the backup was not run again.
+  // Seeds whose results came with the backup were not run again.
   EXPECT_EQ(elsewhere.count("SELECT count(*) FROM (SELECT 1 FROM attempt WHERE outcome = 'result' GROUP BY "
                             "point_id, seed HAVING count(*) > 1)"),
             0);
@@ -237,7 +237,7 @@ TEST(Restoring, AfterTheDatabaseIsDestroyedGoesOnWithWhatTheSpoolGives) {
   campaign.wait_for_results(8);
   campaign.signal(SIGKILL);
   campaign.finish();
-  // A result that its owner did not live to commit.
+  // Spools a result that the owner could not commit before it died.
   {
     Database before = campaign.reader();
     const PointRecord point = before.points().at(0);

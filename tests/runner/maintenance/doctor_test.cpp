@@ -35,7 +35,7 @@ class Doctor : public testing::Test {
     options.json = true;
     return examine_campaign(options);
   }
-  // The severity of a finding, "" when there is no such one.
+  // Returns the severity of a finding; "" if it is not found.
   std::string severity(const std::string& code) {
     const Json diagnosis = Json::parse(examine().text);
     for (const Json& finding : diagnosis.at("findings")) {
@@ -47,7 +47,7 @@ class Doctor : public testing::Test {
     Connection connection(campaign_.directory().database().string(), Connection::Access::read_write, 0);
     connection.execute(sql);
   }
-  // Gives the stored result of a seed and its row another viscosity.
+  // Changes the viscosity in the stored result of a seed and in its numbers.
   void alter(int seed, double viscosity) {
     Json result;
     {
@@ -79,7 +79,7 @@ TEST_F(Doctor, FindsNothingWrongWithASoundCampaign) {
   EXPECT_EQ(Json::parse(diagnosis.text).at("schema_version"), 1);
 }
 
-// A checkpoint of a seed that was not needed is a note, and nothing that is wrong.
+// A checkpoint of a seed that was not needed is a note, not a fault.
 TEST_F(Doctor, ANoteIsNoFinding) {
   const std::string hash = campaign_.reader().points().at(0).hash;
   std::ofstream(campaign_.directory().checkpoint(hash, 39)) << "state";
@@ -145,7 +145,7 @@ TEST_F(Doctor, RepairsAnAlteredResultByRunningItsSeedAgain) {
   EXPECT_EQ(examine().exit_code, 0) << examine().text;
 }
 
-// Their sum would be infinite.
+// The sum of such values would be infinite.
 TEST_F(Doctor, AValueBeyondAllSumsIsFoundAndRunAgain) {
   const std::string before = exported();
   alter(1, 1.7e308);
@@ -159,7 +159,7 @@ TEST_F(Doctor, AValueBeyondAllSumsIsFoundAndRunAgain) {
 TEST_F(Doctor, SaysWhoKeepsTheLogFromBecomingSmall) {
   Connection owner(campaign_.directory().database().string(), Connection::Access::read_write, 0);
   EXPECT_EQ(severity("log-large"), "");
-  // A reader in the middle of its work, as one that has been stopped is.
+  // Starts a reader that stays in the middle of its work, as a stopped one does.
   int ready[2] = {};
   ASSERT_EQ(pipe(ready), 0);
   const pid_t reader = fork();
@@ -182,7 +182,7 @@ TEST_F(Doctor, SaysWhoKeepsTheLogFromBecomingSmall) {
   for (const int end : ready) close(end);
 }
 
-TEST_F(Doctor, LooksAgainWhereLooksDiffer) {
+TEST_F(Doctor, RepeatsStopTestsThatDiffer) {
   const std::string before = exported();
   edit("UPDATE stop_test SET mean = mean + 1");
   EXPECT_EQ(examine(true).exit_code, 0);
@@ -205,14 +205,14 @@ TEST_F(Doctor, NamesFilesAndRemovesOnlyThoseThatNobodyNeeds) {
   EXPECT_EQ(severity("stray-checkpoint"), "note");
   EXPECT_EQ(severity("unfinished-file"), "note");
   EXPECT_EQ(severity("rejected-results"), "warning");
-  EXPECT_EQ(examine(true).exit_code, 1);  // somebody has to look at the rejected one
+  EXPECT_EQ(examine(true).exit_code, 1);  // a person has to check the rejected one
   EXPECT_FALSE(fs::exists(ended));
   EXPECT_FALSE(fs::exists(growing));
   EXPECT_FALSE(fs::exists(unfinished));
   for (const fs::path& file : {stray, foreign, rejected}) EXPECT_TRUE(fs::exists(file)) << file;
 }
 
-// A killed run leaves checkpoints of seeds that were ahead of what the point turned out to need.
+// A killed run leaves checkpoints of seeds that ran ahead of what the point turned out to need.
 TEST_F(Doctor, RemovesCheckpointsOfSeedsBeyondTheDecidingStopTestWhenAskedTo) {
   Database reader = campaign_.reader();
   const PointRecord point = reader.points().at(0);
@@ -225,7 +225,7 @@ TEST_F(Doctor, RemovesCheckpointsOfSeedsBeyondTheDecidingStopTestWhenAskedTo) {
   EXPECT_EQ(severity("checkpoint-left"), "");
   EXPECT_EQ(examine().exit_code, 0);
   EXPECT_TRUE(fs::exists(extra));
-  // Of a point that is not decided any more, the seed may be wanted.
+  // The seed may be wanted once the point is no longer decided.
   edit("UPDATE stop_test SET verdict = 'more'");
   EXPECT_EQ(severity("checkpoint-extra"), "");
   edit("UPDATE stop_test SET verdict = 'converged'");

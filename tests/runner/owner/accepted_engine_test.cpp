@@ -1,4 +1,4 @@
-// A campaign that goes on with another engine: what is set aside, and what comes back.
+// A campaign that continues with another engine: what is set aside, and what is taken up again.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -38,7 +38,7 @@ TEST_F(CarryingOut, AnEngineThatIsAcceptedStartsAfreshBesideTheOld) {
   EXPECT_EQ(kept[0].results, 3);
   EXPECT_EQ(kept[0].engine, engine_identity(plain_engine("old")));
   EXPECT_EQ(count("event WHERE kind = 'engine-accepted'"), 1);
-  // Whoever looks at the point is told.
+  // Every report of the point tells of the results that were set aside.
   const std::string results = "3 results of engine " + kept[0].engine;
   const CampaignStatus status = read_status(database_);
   EXPECT_NE(status_table(status).find("peclet=1: " + results + " are set aside"), std::string::npos);
@@ -62,7 +62,7 @@ TEST_F(CarryingOut, LateResultsOfTheOldEngineGoToItsOwnRow) {
   EXPECT_EQ(database_.set_aside(hash(0)).at(0).results, 2);
   begin();
   EXPECT_EQ(state_->scheduler().begun(0), 1);
-  // Delivered once more, while the new engine is at that seed.
+  // The result comes once more, while the new engine runs that seed.
   write_durably(directory_.checkpoint(hash(0), 1), "of the new engine");
   const fs::path again = directory_.spool_file(hash(0), 1, 5);
   write_durably(again, plain_result(hash(0), 1, 11, "old").dump());

@@ -33,14 +33,14 @@ class CarryingOut : public testing::Test {
 
   std::filesystem::path file() const { return folder_.path() / "small.json"; }
   void write() const { write_durably(file(), document_.dump(2)); }
-  // An owner starts.
+  // Starts an owner.
   void begin() {
     state_.emplace(database_, read_campaign(file()), directory_, listener_, 2);
     requests_.emplace(database_, *state_, directory_, listener_);
   }
   TakeOver file_as_it_is() const { return {file(), sha256(read_file(file()))}; }
 
-  // "cancel: no more seeds: peclet=1"
+  // Returns the answer: "cancel: no more seeds: peclet=1".
   std::string ask(const Wish& wish) {
     const Request request = write_request(directory_, wish);
     requests_->carry_out();

@@ -21,7 +21,7 @@ class WorkingAhead : public Dispatching {
     become(plain_campaign(1, 8, 40, 0.05), {0.1});
   }
 
-  // A campaign whose points are known to take so many seconds each.
+  // Adopts a campaign whose points are known to take these times [s].
   void become(const Campaign& campaign, const std::vector<double>& wall_seconds) {
     campaign_ = campaign;
     PointStore(database_).adopt(campaign_);
@@ -33,7 +33,7 @@ class WorkingAhead : public Dispatching {
       booking.commit();
     }
   }
-  // Calls `begin` once, as soon as both workers have two jobs; then all workers finish whatever comes.
+  // Calls `begin` once, as soon as both workers have two jobs; then all workers finish.
   void once_both_wait(const std::function<void()>& begin) {
     pool_.script = [this, begin, begun = false]() mutable {
       if (begun) return finish_all();
@@ -81,15 +81,15 @@ TEST_F(WorkingAhead, EachWorkerHasTwoJobsThatAreDurableAndRunsThemInTurn) {
 }
 
 TEST_F(WorkingAhead, OnlyEnginesThatSaySoDo) {
-  pool_.takes_ahead = false;  // the pool throws when one is given a second job
+  pool_.takes_ahead = false;  // the pool throws if one is given a second job
   pool_.script = [this] { finish_all(); };
   EXPECT_EQ(run(), Dispatcher::Ending::finished);
-  EXPECT_EQ(pool_.assigned.size(), 8U);  // 1 ... 7, and one that was extra
+  EXPECT_EQ(pool_.assigned.size(), 8U);  // 1 ... 7, and an extra one
 }
 
 TEST_F(WorkingAhead, OnlyBehindJobsThatAreKnownToBeShort) {
   struct {
-    std::vector<double> seconds;  // of a job, when it is known
+    std::vector<double> seconds;  // wall time of a job, if known
     bool waits;
   } const cases[] = {{{0.99}, true}, {{1.0}, false}, {{3600}, false}, {{}, false}};
   int minimum = 8;
@@ -99,7 +99,7 @@ TEST_F(WorkingAhead, OnlyBehindJobsThatAreKnownToBeShort) {
     another.points[0].scene = {{"case", minimum}};
     another.points[0].hash = sha256(canonical_json(another.points[0].scene));
     become(another, seconds);
-    pool_.wall_seconds = 3600;  // of the results that come
+    pool_.wall_seconds = 3600;  // wall time in new results
     bool waited = false;
     pool_.script = [&, this] {
       waited |= pool_.has_waiting(0) || pool_.has_waiting(1);
@@ -112,7 +112,7 @@ TEST_F(WorkingAhead, OnlyBehindJobsThatAreKnownToBeShort) {
 
 TEST_F(WorkingAhead, AWorkerAtALongPointHasNone) {
   become(plain_campaign(2, 8, 40, 0.05), {0.1, 3600});
-  // Its seven seeds go first, so that the last of them runs beside a brief one.
+  // The seven seeds of the long point go first, so that the last of them runs beside a brief one.
   PointStore(database_).set_priority(database_.points()[1].id, 1);
   const std::string& brief = campaign_.points[0].hash;
   bool saw_both = false;
@@ -250,7 +250,7 @@ TEST_F(WorkingAhead, OnlyTheJobThatStandsStillIsHung) {
 }
 
 TEST_F(WorkingAhead, ALeaseBeginsWhenTheJobDoes) {
-  // 100 s of steps at the first job, 100 s without any at the second; the lease is 120 s.
+  // There are 100 s of steps at the first job, then 100 s without a step at the second. The lease is 120 s.
   const auto moment = [this] { return pool_.now.time_since_epoch(); };
   bool finished_first = false;
   pool_.script = [&, this] {
@@ -298,7 +298,7 @@ TEST_F(WorkingAhead, AWorkerWhoseNextSeedNobodyWantsLeaves) {
       write_request(directory_, Cancel{{first ? "point=0" : "point=1"}, false});
       return;
     }
-    // Meanwhile nobody finishes: what is recalled is given back.
+    // Workers do not finish meanwhile, so recalled jobs are given back.
     if (++turns > 4) finish_all();
   };
   Dispatcher(database_, *state_, pool_, listener_, settings_, [this] { return pool_.now; }).run();
@@ -314,7 +314,7 @@ TEST_F(WorkingAhead, AWorkerWhoseNextSeedNobodyWantsLeaves) {
 }
 
 TEST_F(WorkingAhead, ResultsCostWhatTheyTookAndSeedsThatHadNotBegunNothing) {
-  // Both jobs of worker 0 end between two turns: 2 s of processor time each, as plain_result() says.
+  // Both jobs of worker 0 end between two turns, with 2 s of processor time each (plain_result()).
   once_both_wait([this] {
     pool_.now += std::chrono::milliseconds(500);
     pool_.say(Progressed{1, pool_.job(1).attempt, 2, 1, 100, 0.1});
@@ -325,7 +325,7 @@ TEST_F(WorkingAhead, ResultsCostWhatTheyTookAndSeedsThatHadNotBegunNothing) {
   });
   EXPECT_EQ(run(), Dispatcher::Ending::stopped);
   EXPECT_EQ(count("SELECT count(*) FROM attempt WHERE outcome = 'result'"), 2);
-  // Worker 1 gives back what it has had for as long; the seed behind it adds nothing to that.
+  // Worker 1 gives back a job that it had for 10.5 s; the seed behind it adds nothing.
   EXPECT_NEAR(state_->spent_seconds(), 2 * 2.0 + 10.5, 0.6);
 }
 

@@ -15,7 +15,7 @@
 
 namespace peclet::runner {
 
-// Four seeds of one point at 5 %: 10 and 10.01 in turn decide it at the first stop test.
+// Values for one point at 5 %: with 10 and 10.01 in turn, four seeds decide it at the first stop test.
 inline double steady(int seed) { return seed % 2 == 0 ? 10 : 10.01; }
 
 class Dispatching : public testing::Test {
@@ -31,7 +31,6 @@ class Dispatching : public testing::Test {
     return dispatcher.run();
   }
 
-  // All busy workers finish.
   void finish_all() {
     for (int worker = 0; worker < pool_.size(); ++worker) {
       if (pool_.has_job(worker)) pool_.finish(worker, steady(pool_.job(worker).seed));

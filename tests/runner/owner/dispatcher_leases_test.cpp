@@ -1,4 +1,4 @@
-// Whom the dispatcher takes for hung, and whom not.
+// Workers that the dispatcher takes for hung, and others that it must not.
 #include <chrono>
 
 #include "tests/runner/owner/dispatcher_fixture.h"
@@ -10,7 +10,7 @@ TEST_F(Dispatching, AWorkerThatTakesNoStepDuringALeaseIsHung) {
   bool first = true;
   pool_.script = [&, this] {
     if (first && pool_.has_job(0)) {
-      // Alive and talking, but standing still.
+      // Alive and sending messages, but without a new step.
       pool_.say(Progressed{0, pool_.job(0).attempt, 2, 7, 100, 0.1});
       pool_.now += std::chrono::milliseconds(900);
       first = pool_.now.time_since_epoch() < std::chrono::seconds(200);
@@ -25,7 +25,7 @@ TEST_F(Dispatching, AWorkerThatTakesNoStepDuringALeaseIsHung) {
   EXPECT_TRUE(attempts_of(0).at(0).blamed);
   EXPECT_EQ(attempts_of(0).at(0).step, 7);
   EXPECT_EQ(attempts_of(0).at(1).outcome, "result");
-  EXPECT_EQ(attempts_of(1).size(), 1U);  // the one that took steps was left alone
+  EXPECT_EQ(attempts_of(1).size(), 1U);  // the worker that took steps was left alone
 }
 
 TEST_F(Dispatching, AWorkerThatWasStoppedIsReplacedWithoutBlame) {
@@ -47,7 +47,7 @@ TEST_F(Dispatching, AnOwnerThatWasStoppedBlamesNobody) {
   pool_.script = [&, this] {
     if (stops < 5 && pool_.has_job(0) && pool_.has_job(1)) {
       ++stops;
-      pool_.now += std::chrono::hours(1);  // stopped before it could hear anything
+      pool_.now += std::chrono::hours(1);  // stopped before it heard anything
       if (stops % 2 == 0) pool_.say(Progressed{0, pool_.job(0).attempt, 2, stops, 100, 0.1});
       return;
     }

@@ -74,7 +74,7 @@ TEST_F(Dispatching, AResultThatComesDuringADrainIsStored) {
 TEST_F(Dispatching, ExtraSeedsAreCheckpointedWhenTheCampaignIsDecided) {
   campaign_ = plain_campaign(1, 2, 40, 0.05);
   PointStore(database_).adopt(campaign_);
-  // One at a time: the worker that is free first runs ahead.
+  // Seeds finish one at a time; the worker that is free first runs ahead.
   pool_.script = [this] {
     for (int worker = 0; worker < 2; ++worker) {
       if (!pool_.has_job(worker) || pool_.job(worker).seed >= 2) continue;

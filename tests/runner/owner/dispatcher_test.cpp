@@ -233,7 +233,7 @@ TEST_F(Dispatching, ACheckpointThatCameAfterTheResultGoesAtTheNextStart) {
   const std::filesystem::path stale = directory_.checkpoint(campaign_.points[0].hash, 1);
   write_durably(stale, "of a worker that outlived its owner");
   write_durably(growing_beside(stale), "and what grew beside it");
-  // Seeds that have not ended, of no point, and no checkpoints at all.
+  // Files of open seeds and of another point, and files that are not checkpoints, stay.
   std::string hash = campaign_.points[0].hash;
   const std::string open = directory_.checkpoint(hash, 30).filename().string();
   const std::string copied = stale.filename().string() + ".rejected";

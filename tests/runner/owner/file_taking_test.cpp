@@ -1,4 +1,4 @@
-// Files beside results: each of them is in its place, once, wherever the owner died.
+// Files beside results: each is in its place, once, wherever the owner died.
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -25,13 +25,13 @@ class TakingFiles : public Dispatching {
  protected:
   TakingFiles() { start(); }
 
-  // Another owner, which takes in what is in the spool.
+  // Starts another owner, which takes in the spool.
   void start() { state_.emplace(database_, campaign_, directory_, listener_, 2); }
 
   std::string text(int seed, int number) const {
     return "seed " + std::to_string(seed) + ", file " + std::to_string(number);
   }
-  // An attempt at a seed has left two files and a result that lists them.
+  // Leaves two files of an attempt at a seed, and a result that lists them.
   fs::path leave(int seed, int attempt = 1, const std::string& identity = "engine") {
     const std::string& hash = campaign_.points[0].hash;
     const fs::path spool = directory_.spool_file(hash, seed, attempt);
@@ -80,12 +80,12 @@ TEST_F(TakingFiles, BringsThemToTheirPlaces) {
 }
 
 TEST_F(TakingFiles, GoesOnWhereverTheOwnerDied) {
-  // With so many files moved after the commit.
+  // The owner dies after this number of files was moved.
   for (const int moved : {0, 1, 2}) {
     const int seed = moved;
     const fs::path spool = leave(seed);
     {
-      // The commit, and nothing that follows it.
+      // Commits, and does nothing that follows the commit.
       Transaction booking(database_.connection());
       AfterCommit never;
       ResultStore results(database_);
@@ -99,7 +99,7 @@ TEST_F(TakingFiles, GoesOnWhereverTheOwnerDied) {
     expect_in_place(seed);
     expect_empty_spool();
   }
-  // Before the commit: nothing is known, and the spool has all of it.
+  // Before the commit the result is unknown, and the spool has everything.
   const fs::path spool = leave(3);
   {
     Transaction booking(database_.connection());
@@ -133,7 +133,7 @@ TEST_F(TakingFiles, RefusesAResultWhoseFilesAreNotWhatItSays) {
     const std::ptrdiff_t before = rejected();
     state_->ingest_spool();
     EXPECT_TRUE(was_warned_of(spool.filename().string() + " is not taken: " + why)) << why;
-    EXPECT_GE(rejected(), before + 2);  // the result, and what is sound of its files
+    EXPECT_GE(rejected(), before + 2);  // the result and its sound files
     EXPECT_EQ(database_.counts(1).done, 0);
     EXPECT_TRUE(files_in(database_.connection()).empty());
     EXPECT_FALSE(fs::exists(directory_.files())) << why;
@@ -158,7 +158,7 @@ TEST_F(TakingFiles, OfSeedsBeyondTheRuleThrowsThemAwayAndSaysSo) {
   EXPECT_FALSE(thrown[0].kept);
   EXPECT_EQ(thrown[1].file.sha256, sha256(text(1, 1)));
   expect_empty_spool();
-  // Later ones are judged by the rule of their day; these are gone.
+  // Later files follow the new rule; these are gone.
   campaign_.seeds_with_files = most_realisations;
   start();
   leave(1, 2);
@@ -195,13 +195,13 @@ TEST_F(TakingFiles, OfAnotherAnswerKeepsThemWithTheRejectedResult) {
   expect_empty_spool();
 }
 
-TEST_F(TakingFiles, OfEnginesThatAreKeptApartStandSideBySide) {
+TEST_F(TakingFiles, OfEnginesThatAreSetAsideStandSideBySide) {
   leave(0, 1, "old");
   state_->ingest_spool();
   start();
   EXPECT_EQ(state_->accept_engine(engine_identity(plain_engine("new"))), 1);
   leave(0, 2, "new");
-  leave(1, 3, "old");  // of a worker that was slow
+  leave(1, 3, "old");  // left by a slow worker
   state_->ingest_spool();
   const std::int64_t now = database_.points().at(0).id;
   ASSERT_NE(now, 1);
@@ -209,7 +209,7 @@ TEST_F(TakingFiles, OfEnginesThatAreKeptApartStandSideBySide) {
   expect_in_place(1, 1);
   expect_in_place(0, now);
   expect_empty_spool();
-  EXPECT_EQ(database_.connection().integer("SELECT count(*) FROM files"), 2);  // of the sweep
+  EXPECT_EQ(database_.connection().integer("SELECT count(*) FROM files"), 2);  // files of the sweep
 }
 
 TEST_F(TakingFiles, RemovesThoseOfDeadAttemptsAndOfNobodyElse) {
@@ -236,7 +236,7 @@ TEST_F(TakingFiles, RemovesThoseOfDeadAttemptsAndOfNobodyElse) {
   EXPECT_TRUE(fs::exists(directory_.left() / "of-nobody"));
 }
 
-// A database that was restored may come from anybody.
+// A restored database may come from anywhere.
 TEST_F(TakingFiles, ByARowThatLeadsElsewhereIsRefused) {
   leave(0);
   state_->ingest_spool();
@@ -249,7 +249,7 @@ TEST_F(TakingFiles, ByARowThatLeadsElsewhereIsRefused) {
   EXPECT_EQ(files_in(database_.connection()).size(), 2U);
 }
 
-// A folder that is shared with a batch system, or a spool that is a mount, may be on another file system.
+// A folder shared with a batch system, or a spool that is a mount, may be on another file system.
 TEST_F(TakingFiles, FromAnotherFileSystemTheyComeAsCopies) {
   struct stat here {
   }, there{};
@@ -310,7 +310,7 @@ TEST_F(TakingFiles, MovesAsideWhatIsInTheirPlaces) {
   EXPECT_TRUE(fs::exists(place(0, 1).string() + "@aside/inside"));
   EXPECT_TRUE(
       was_warned_of("file-1.txt: was a folder in the place of a regular file; moved to file-1.txt@aside"));
-  // A file in the place of the folder of a seed.
+  // A file lies in the place of a seed's folder.
   write_durably(place(1, 0).parent_path(), "in the way");
   leave(1);
   state_->ingest_spool();
@@ -335,7 +335,7 @@ TEST_F(TakingFiles, OfAFolderThatIsGoneTakesNothing) {
   EXPECT_EQ(database_.counts(1).done, 0);
 }
 
-// Somebody else may be in the folders, too.
+// Another program may change these folders, too.
 TEST_F(TakingFiles, ReplacesNoFolderAndMissesNoFileThatHasGone) {
   AfterCommit after;
   const fs::path result = directory_.spool() / "x.json", place = directory_.root() / "files" / "x";

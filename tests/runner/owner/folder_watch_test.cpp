@@ -1,4 +1,4 @@
-// What somebody does to the folder of a campaign that runs.
+// Deleting and moving the folder of a running campaign.
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// 0.1 s per realisation: some end in what is left of the folder before the watch looks again.
+// A realisation takes 0.1 s: some end before the watch notices that their folders are gone.
 const Environment slow{{"PECLET_FAKE_STEP_MS", "10"}};
 
 class FolderWatched : public testing::Test {
@@ -25,7 +25,7 @@ class FolderWatched : public testing::Test {
     campaign_.start(campaign_.held_from(7, slow));
     campaign_.wait_for_results(3);
   }
-  // No seed may be blamed for what happened to its folders.
+  // Expects that no seed was blamed for what happened to its folders.
   void expect_undisturbed_answer(const fs::path& database) {
     CampaignOnDisk undisturbed;
     ASSERT_EQ(undisturbed.run(), 0) << undisturbed.log();
@@ -55,7 +55,7 @@ TEST_F(FolderWatched, ADeletedDatabaseIsSavedAndTheRunStops) {
 TEST_F(FolderWatched, ADeletedFolderIsNoticedAndItsDatabaseSavedBesideIt) {
   const std::int64_t results = campaign_.count("SELECT count(*) FROM result");
   while (fs::exists(campaign_.directory().root())) {
-    std::error_code raced;  // with workers who write into it
+    std::error_code raced;  // workers write into it meanwhile
     fs::remove_all(campaign_.directory().root(), raced);
   }
   EXPECT_EQ(campaign_.finish(), 6);
@@ -76,11 +76,11 @@ TEST_F(FolderWatched, FoldersBelowAreMadeAnewAndNoSeedIsGivenUp) {
   for (const fs::path& folder : {campaign_.directory().spool(), campaign_.directory().checkpoints(),
                                  campaign_.directory().failures(), campaign_.directory().logs()}) {
     const fs::path gone = folder.string() + ".gone";
-    fs::rename(folder, gone);  // at once, whatever the run does in it
+    fs::rename(folder, gone);  // in one step, whatever the run does in it
     fs::remove_all(gone);
   }
   campaign_.wait_until("what the watch says", [&] {
-    return campaign_.log().find("somebody deleted spool/, checkpoints/, failures/, logs/") !=
+    return campaign_.log().find("are made anew: spool/, checkpoints/, failures/, logs/;") !=
            std::string::npos;
   });
   campaign_.release();
@@ -95,9 +95,9 @@ TEST(FolderWatchedOfFiles, FoldersOfFilesAreMadeAnewAndNobodyIsBlamed) {
   const auto delete_and_wait = [&](const fs::path& folder, const std::string& name) {
     fs::remove_all(folder);
     campaign.wait_until("what the watch says",
-                        [&] { return campaign.log().find("somebody deleted " + name) != std::string::npos; });
+                        [&] { return campaign.log().find("are made anew: " + name) != std::string::npos; });
   };
-  // One after the other: a result whose files are gone is rejected, which makes the folder for rejected ones.
+  // One after the other: a rejected result makes the folder for rejected files anew.
   delete_and_wait(campaign.directory().rejected(), "spool/rejected/");
   delete_and_wait(campaign.directory().left(), "spool/files/");
   campaign.release();

@@ -1,4 +1,4 @@
-// What is in the owner's way and passes. Full disks: tests/runner/store/disk_room_test.cpp.
+// Temporary hindrances of the owner. Full disks are in tests/runner/store/disk_room_test.cpp.
 #include "runner/owner/pause.h"
 
 #include <gtest/gtest.h>
@@ -85,7 +85,7 @@ TEST_F(LockedDatabase, IsAPauseThatEndsWithTheLock) {
   EXPECT_TRUE(spool_files(directory_).empty());
   ASSERT_EQ(listener_.warnings.size(), 1U);
   EXPECT_TRUE(was_warned_of("campaign.db: is locked by "));
-  EXPECT_TRUE(was_warned_of("the campaign goes on by itself when the lock is released"));
+  EXPECT_TRUE(was_warned_of("the campaign continues by itself when the lock is released"));
   EXPECT_EQ(listener_.count<ShortageBegan>(), 1);
   EXPECT_EQ(listener_.count<ShortageEnded>(), 1);
 }
@@ -104,7 +104,7 @@ TEST_F(LockedDatabase, CanBeStoppedAndTheSpoolKeepsTheResults) {
   EXPECT_TRUE(was_warned_of("what workers did last is booked by the next run"));
 }
 
-// A process of its own, because the locks of one process do not exclude each other.
+// The lock is held by another process, because locks of one process do not exclude each other.
 TEST(LockText, NamesTheProgramThatHasLockedTheDatabase) {
   const TemporaryFolder folder;
   const std::string path = (folder.path() / "campaign.db").string();

@@ -1,4 +1,4 @@
-// Requests and the state without processes: what each changes, what is refused, and that it happens once.
+// Requests without processes: what each changes, what is refused, and that it happens once.
 #include "runner/owner/request_handler.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ TEST_F(CarryingOut, ANewTargetReopensWhatItDoesNotSatisfy) {
   EXPECT_EQ(ask(file_as_it_is()), "set: tolerance 5 % -> 0.1 %; maximum 40 -> 90");
   EXPECT_FALSE(state_->scheduler().decided(0));
   EXPECT_EQ(database_.campaign().target.target.tolerance, Tolerance(0.001));
-  // The look after that of 8 seeds: all of its seeds are in the queue.
+  // All seeds of the stop test after the one of 8 seeds are queued.
   EXPECT_EQ(count("realisation WHERE state = 'queued' AND point_id = 1"), 2);
 }
 
@@ -38,7 +38,7 @@ TEST_F(CarryingOut, PointsComeAndGoWithTheFile) {
   EXPECT_EQ(ask(file_as_it_is()), "set: 2 points added; 1 point left out");
   ASSERT_EQ(state_->scheduler().points(), 3);
   EXPECT_EQ(state_->point(0).label, "peclet=10");
-  EXPECT_EQ(state_->scheduler().begun(0), 1);  // what the point had when it stood elsewhere
+  EXPECT_EQ(state_->scheduler().begun(0), 1);  // begun at the point's earlier place
   EXPECT_EQ(ask(file_as_it_is()), "set: nothing differs");
 }
 
@@ -46,7 +46,7 @@ TEST_F(CarryingOut, AFileThatWasChangedSinceItWasCheckedIsNotTakenOver) {
   const TakeOver checked = file_as_it_is();
   document_["realisations"]["maximum"] = 90;
   write();
-  EXPECT_TRUE(ask(checked).starts_with("set: left to what " + file().string() + " says since"));
+  EXPECT_TRUE(ask(checked).starts_with("set: not taken over: " + file().string() + " changed after"));
   EXPECT_EQ(database_.campaign().target.maximum, 40);
 }
 
@@ -58,7 +58,7 @@ TEST_F(CarryingOut, OfTwoChangesOneAfterTheOtherTheSecondTakesBothOver) {
   write();
   const Request second = write_request(directory_, file_as_it_is());
   requests_->carry_out();
-  EXPECT_TRUE(answer(first).starts_with("set: left to what ")) << answer(first);
+  EXPECT_TRUE(answer(first).starts_with("set: not taken over: ")) << answer(first);
   EXPECT_EQ(answer(second), "set: tolerance 5 % -> 10 %; maximum 40 -> 90");
 }
 
@@ -85,8 +85,8 @@ TEST_F(CarryingOut, TheEngineOfARunIsNotChangedUnderIt) {
   state_->admit_engine(plain_engine());
   EXPECT_NE(ask(file_as_it_is()).find("/engine: [\"another-engine\"]: cannot be changed while"),
             std::string::npos);
-  begin();  // nobody runs it
-  EXPECT_EQ(ask(file_as_it_is()), "set: the file, in nothing that decides");
+  begin();  // no engine runs it
+  EXPECT_EQ(ask(file_as_it_is()), "set: parts of the file that affect no decision");
 }
 
 TEST_F(CarryingOut, ARunWithAnotherEngineDoesNotReopenWhatTheFirstOneDid) {
@@ -138,11 +138,11 @@ TEST_F(CarryingOut, ARetryQueuesWhatWasGivenUpWithACleanRecord) {
   EXPECT_EQ(count("realisation WHERE state = 'failed'"), 1);
   EXPECT_EQ(count("attempt WHERE pardoned = 1"), 6);
   EXPECT_TRUE(SeedStore(database_).history(id(0), 2).empty());
-  EXPECT_EQ(database_.attempts(id(0)).size(), 3U);  // nothing is erased
+  EXPECT_EQ(database_.attempts(id(0)).size(), 3U);  // all attempts are kept
   EXPECT_EQ(ask(Retry{{"peclet=1"}, {}}), "retry: no seed was given up: there is nothing to retry");
 }
 
-TEST_F(CarryingOut, ARetryMakesTheLooksAgainWithoutTheLoss) {
+TEST_F(CarryingOut, ARetryMakesTheStopTestsAgainWithoutTheLoss) {
   for (int seed = 0; seed < 7; ++seed) store(0, seed, seed % 2 == 0 ? 10 : 10.5);
   crash_three_times(0, 7);
   begin();
@@ -218,7 +218,7 @@ TEST_F(CarryingOut, WhatIsNoRequestIsSetAside) {
   EXPECT_EQ(count("point WHERE cancelled = 1 OR priority <> 0"), 0);
 }
 
-// Whatever bears the name of a request: nobody waits for it or follows it, and the next request is heard.
+// Anything may have the name of a request: it is not followed or waited for, and the next request is heard.
 TEST_F(CarryingOut, WhatIsNoFileIsSetAside) {
   const fs::path folder = directory_.requests();
   const fs::path outside = folder_.path() / "outside.json";
@@ -229,7 +229,7 @@ TEST_F(CarryingOut, WhatIsNoFileIsSetAside) {
   fs::create_directories(folder / "3.json" / "full");
   write_durably(folder / "4.json", "");
   fs::resize_file(folder / "4.json", std::uintmax_t{1} << 40);
-  fs::create_directories(folder / "5.json.rejected" / "full");  // where one would go
+  fs::create_directories(folder / "5.json.rejected" / "full");  // where one would be moved to
   write_durably(folder / "5.json", "{");
   EXPECT_EQ(ask(Cancel{{"peclet=10"}, false}), "cancel: no more seeds: peclet=10");
   EXPECT_EQ(listener_.warnings.size(), 6U);

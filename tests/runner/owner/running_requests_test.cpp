@@ -1,4 +1,4 @@
-// What is asked of campaigns that run in processes of their own, or have finished.
+// Requests to campaigns that run in processes of their own, or have finished.
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -19,18 +19,18 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// 0.2 s a realisation, and points that take all seeds they may have: the campaign goes on for a minute.
+// A realisation takes 0.2 s, and points take all seeds that they may have: the campaign lasts for a minute.
 const Environment endless{{"PECLET_FAKE_STEP_MS", "20"}, {"PECLET_FAKE_DEVIATION", "5"}};
 const Environment wide{{"PECLET_FAKE_DEVIATION", "5"}};
 constexpr int many = 400;
 
-// The SHA-256 of the canonical export.
+// Returns the SHA-256 of the canonical export.
 std::string canonical(const CampaignOnDisk& campaign) {
   Database database = campaign.reader();
   return sha256(export_json(database, true));
 }
 
-// What a campaign of that document gives when nobody disturbs it.
+// Returns the export of a campaign of that document that is not disturbed.
 std::string undisturbed(const Json& document, const Environment& environment) {
   CampaignOnDisk campaign;
   campaign.document = document;
@@ -72,7 +72,7 @@ TEST(Set, ReopensAFinishedCampaignWhichThenGivesWhatAFreshOneDoes) {
 TEST(Set, LeavesTheFileAsItWasWhenTheChangeIsRefused) {
   CampaignOnDisk campaign;
   ASSERT_EQ(campaign.run(), 0) << campaign.log();
-  campaign.document["target"]["observable"] = "colour";  // which no result has
+  campaign.document["target"]["observable"] = "colour";  // an observable that no result has
   const std::string before = campaign.document.dump();
   write_durably(campaign.options.campaign, before);
   EXPECT_THROW(set(campaign, [](SetOptions& options) { options.tolerance = 0.04; }), InputError);
@@ -80,7 +80,7 @@ TEST(Set, LeavesTheFileAsItWasWhenTheChangeIsRefused) {
   EXPECT_EQ(campaign.count("SELECT count(*) FROM target"), 1);
 }
 
-// As where a campaign was restored into the folder of its file.
+// This is so if a campaign was restored into the folder of its file.
 TEST(Set, DoesNotWaitForWhoOwnsTheFolderOfTheFile) {
   CampaignOnDisk campaign;
   write_durably(campaign.options.campaign, campaign.document.dump());

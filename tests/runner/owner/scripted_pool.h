@@ -1,4 +1,4 @@
-// A worker pool without processes: the test says what its workers say.
+// ScriptedPool is a worker pool without processes: the test says what its workers say.
 #pragma once
 
 #include <chrono>
@@ -23,16 +23,16 @@ class ScriptedPool : public WorkerPool {
   void drain(int worker) override;
   void kill(int worker) override;
   bool is_stopped(int worker) const override { return stopped == worker; }
-  // The events that have been said since; asks `script` for more when there are none. Time passes by
-  // `patience` when there still are none.
+  // Returns the events said since the last call, after asking `script` for some if there are none. Time
+  // passes by `patience` if there still are none.
   std::vector<WorkerEvent> wait(std::chrono::milliseconds patience) override;
 
   void say(WorkerEvent event) { said_.push_back(std::move(event)); }
-  // The worker spools a result for its job, says so and begins the job that waits.
+  // The worker writes a result of its job, announces it and begins the waiting job.
   void finish(int worker, double viscosity);
-  // Spools one without a word.
+  // Writes a result without announcing it.
   void spool(const Job& job, double viscosity) const;
-  // The worker's job has ended in another way.
+  // Begins the waiting job after another end of the present one.
   void begin_next(int worker);
   bool has_job(int worker) const { return at(worker).job.has_value(); }
   const Job& job(int worker) const { return *at(worker).job; }
@@ -42,14 +42,14 @@ class ScriptedPool : public WorkerPool {
 
   // Called whenever the dispatcher waits and nothing has been said.
   std::function<void()> script;
-  // Said at the start of every process.
+  // Identity that every process says at its start.
   std::string identity = "engine";
   bool says_hello = true;
   bool takes_ahead = false;
-  double wall_seconds = 4;  // in its results
+  double wall_seconds = 4;  // wall time in its results [s]
   bool leaves_when_drained = true;
-  std::size_t result_size = 0;  // so many letters more than a plain result, others for each seed
-  int stopped = -1;             // the worker whose process is
+  std::size_t result_size = 0;  // letters beyond a plain result, others for each seed
+  int stopped = -1;             // worker whose process is stopped
 
   std::chrono::steady_clock::time_point now{};  // the test's time
   int starts = 0;

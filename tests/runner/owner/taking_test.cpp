@@ -1,4 +1,4 @@
-// A result that cannot be taken in leaves nothing behind, wherever on the way it fails.
+// A result that cannot be taken in leaves nothing behind, whatever step fails.
 #include <sqlite3.h>
 
 #include <filesystem>
@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Every change of a row asks strikes(), which is true for the one that is to fail.
+// Every change of a row asks strikes(), which returns true for the change that is to fail.
 class Failing {
  public:
   explicit Failing(Connection& connection) {
@@ -33,7 +33,7 @@ class Failing {
   Failing(const Failing&) = delete;
   Failing& operator=(const Failing&) = delete;
 
-  // The change that fails, from 1; 0: none.
+  // Sets the change that fails, counted from 1; with 0 all succeed.
   void strike(int change) {
     change_ = change;
     changes_ = 0;
@@ -48,7 +48,7 @@ class Failing {
   int change_ = 0, changes_ = 0;
 };
 
-// All that is stored, apart from times and from what was turned down.
+// Returns everything that is stored, except for times and rejections.
 std::string stored(Connection& connection) {
   std::string text;
   const auto add_row = [](void* into, int columns, char** values, char** names) {
@@ -87,8 +87,8 @@ class Taking : public Dispatching {
     write_durably(file, document.dump());
     return file;
   }
-  // What the state knows and would do.
-  std::string picture() {
+  // Returns what the state knows and would do next.
+  std::string snapshot() {
     const Scheduler& scheduler = state_->scheduler();
     const std::optional<SeedId> next = state_->next();
     std::string text =
@@ -106,29 +106,29 @@ class Taking : public Dispatching {
   int files_ = 0;
 };
 
-// The first result of a point brings engine and dictionary; the fourth one closes the cohort that decides.
+// The first result of a point brings engine and dictionary; the fourth closes the cohort that decides.
 TEST_F(Taking, OfASpoolFileFailsWithoutATraceAtEveryChange) {
   for (int seed = 0; seed < 4; ++seed) {
     const fs::path checkpoint = directory_.checkpoint(campaign_.points[0].hash, seed);
     write_durably(checkpoint, "a state");
-    const std::string before = picture();
+    const std::string before = snapshot();
     int change = 1;
     for (;; ++change) {
       const std::ptrdiff_t rejected = turned_down();
       const fs::path file = put(result(seed));
       failing_.strike(change);
       state_->ingest_spool();
-      const bool was_struck = failing_.changes() > change;  // what follows says that it was turned down
+      const bool was_struck = failing_.changes() > change;  // the changes that follow store the rejection
       failing_.strike(0);
       EXPECT_FALSE(fs::exists(file));
       if (turned_down() == rejected) break;
       EXPECT_TRUE(was_struck);
-      EXPECT_EQ(picture(), before) << "seed " << seed << ", change " << change;
+      EXPECT_EQ(snapshot(), before) << "seed " << seed << ", change " << change;
       EXPECT_TRUE(fs::exists(checkpoint));
     }
-    // A realisation, its text, a flag and the point at least; then nothing was left that could fail.
+    // These are at least a realisation, its text, a flag and the point.
     EXPECT_GT(change, 4);
-    EXPECT_NE(picture(), before);
+    EXPECT_NE(snapshot(), before);
   }
   EXPECT_TRUE(state_->scheduler().decided(0));
   EXPECT_EQ(database_.stop_tests(1).back().stop_test.verdict, Verdict::converged);
@@ -151,7 +151,7 @@ TEST_F(Taking, OfAWorkersResultFailsWithoutATraceAtEveryChange) {
     GivenSeed given_seed = state_->give_out(0, 4711, engine).value();
     giving.commit();
     ASSERT_EQ(given_seed.id.seed, seed);
-    const std::string before = picture();
+    const std::string before = snapshot();
     int change = 1;
     for (bool taken = false; !taken; ++change) {
       write_durably(left_file(given_seed.job.spool, "empty"), "");
@@ -165,19 +165,19 @@ TEST_F(Taking, OfAWorkersResultFailsWithoutATraceAtEveryChange) {
       state_->after_commit();
       if (taken) break;
       EXPECT_NE(why.find("struck as asked"), std::string::npos) << why;
-      EXPECT_EQ(picture(), before) << "seed " << seed << ", change " << change;
+      EXPECT_EQ(snapshot(), before) << "seed " << seed << ", change " << change;
     }
-    EXPECT_GT(change, 6);  // as above, and the attempt and its lease
+    EXPECT_GT(change, 6);  // these also change the attempt and its lease
   }
   EXPECT_EQ(database_.counts(1).done, 4);
-  EXPECT_DOUBLE_EQ(state_->spent_seconds(), 8);  // 2 s each, of the results that counted
+  EXPECT_DOUBLE_EQ(state_->spent_seconds(), 8);  // 2 s for each result that counted
   EXPECT_EQ(database_.connection().integer("SELECT count(*) FROM attempt WHERE outcome = 'result'"), 4);
 }
 
 TEST_F(Taking, WhatFailsForWantOfRoomIsNoFaultOfTheResult) {
   put(result(0));
-  const std::string before = picture();
-  database_.connection().execute("PRAGMA max_page_count = 1");  // no more than it has now
+  const std::string before = snapshot();
+  database_.connection().execute("PRAGMA max_page_count = 1");  // the present size
   Json large = result(1);
   large["ending"]["message"] = noise(200'000);
   put(large);
@@ -187,10 +187,10 @@ TEST_F(Taking, WhatFailsForWantOfRoomIsNoFaultOfTheResult) {
   database_.connection().execute("PRAGMA max_page_count = 1000000");
   state_->ingest_spool();
   EXPECT_EQ(database_.counts(1).done, 2);
-  EXPECT_NE(picture(), before);
+  EXPECT_NE(snapshot(), before);
 }
 
-// A checkpoint below a file cannot be removed. Then the folder is there as it was, with checkpoints of the
+// A checkpoint below a file cannot be removed. Afterwards the folder is there again, with checkpoints of a
 // seed whose attempt has ended and of one whose end was not booked.
 TEST_F(Taking, WhatACommitHasLeftToDoOutlivesATransactionThatFails) {
   const auto refused = [this] {
@@ -222,7 +222,7 @@ TEST_F(Taking, WhatACommitHasLeftToDoOutlivesATransactionThatFails) {
   EXPECT_EQ(state_->scheduler().begun(0), 1);
 }
 
-// What its shape lets through nobody may stumble over later.
+// The check of the shape finds these faults, so nothing that reads warnings can fail.
 TEST_F(Dispatching, AResultWithAWarningThatIsNoneDoesNotCount) {
   for (const Json& warnings :
        {Json::array({{{"message", "no code"}}}), Json::array({1}), Json("overlap"), Json::object()}) {
@@ -249,8 +249,8 @@ TEST_F(Dispatching, AResultWithAWarningThatIsNoneDoesNotCount) {
   }
 }
 
-// The engine that runs now may have saved a state for this very seed.
-TEST_F(Taking, AResultOfAnEngineThatIsKeptApartLeavesTheCheckpointAlone) {
+// The present engine may have saved a state of the same seed.
+TEST_F(Taking, AResultOfAnEngineThatIsSetAsideLeavesTheCheckpointAlone) {
   put(plain_result(campaign_.points[0].hash, 0, 10, "old"));
   state_->ingest_spool();
   state_.emplace(database_, campaign_, directory_, listener_, 2);  // another run
@@ -258,7 +258,7 @@ TEST_F(Taking, AResultOfAnEngineThatIsKeptApartLeavesTheCheckpointAlone) {
   const fs::path checkpoint = directory_.checkpoint(campaign_.points[0].hash, 0);
   for (int time = 0; time < 2; ++time) {
     write_durably(checkpoint, "of the new engine");
-    put(plain_result(campaign_.points[0].hash, time, 10, "old"));  // known already, then another one
+    put(plain_result(campaign_.points[0].hash, time, 10, "old"));  // a known result, then another one
     state_->ingest_spool();
     EXPECT_TRUE(fs::exists(checkpoint));
     EXPECT_EQ(turned_down(), 0);

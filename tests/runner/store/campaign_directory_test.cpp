@@ -15,11 +15,11 @@
 
 namespace {
 
-unsigned long kind_of_file_system = 0;  // 0: what the kernel says
+unsigned long kind_of_file_system = 0;  // 0 for the kernel's answer
 
 }  // namespace
 
-// In the place of the C library's.
+// Takes the place of the C library's function.
 extern "C" int statfs(const char* path, struct statfs* about) noexcept {
   const auto result = static_cast<int>(syscall(SYS_statfs, path, about));
   if (result == 0 && kind_of_file_system != 0)
@@ -96,7 +96,7 @@ TEST(OwnerLock, IsNeverALink) {
   EXPECT_EQ(read_file(folder.path() / "victim"), "precious");
 }
 
-// As people do it whose scratch disk is elsewhere.
+// People do so if their scratch disk is elsewhere.
 TEST(OwnerLock, TheFolderThatItsUserNamesMayBeALink) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder.path() / "scratch");

@@ -96,7 +96,7 @@ TEST_F(Databases, DamageIsFoundWhenTheOwnerOpens) {
   EXPECT_THROW(Database::open_owner(path()), IntegrityError);
 }
 
-// Made by somebody who wants a reader to wait for ever, or a writer to write something else.
+// Such a file may be made to let a reader wait for ever, or a writer write something else.
 TEST_F(Databases, TablesThatThisProgramDidNotMakeAreNotRead) {
   const char* const changes[] = {
       R"(ALTER TABLE point RENAME TO real_point;
@@ -116,7 +116,7 @@ TEST_F(Databases, TablesThatThisProgramDidNotMakeAreNotRead) {
         owner ? Database::open_owner(path()) : Database::open_reader(path());
         FAIL() << "opened after " << change;
       } catch (const IntegrityError& error) {
-        EXPECT_NE(std::string(error.what()).find("somebody else made or changed this file"),
+        EXPECT_NE(std::string(error.what()).find("another program made or changed this file"),
                   std::string::npos)
             << error.what();
       }
@@ -125,7 +125,7 @@ TEST_F(Databases, TablesThatThisProgramDidNotMakeAreNotRead) {
   }
 }
 
-// References to what is no table are an error of SQLite's own, which would hide what is wrong.
+// Otherwise SQLite's own error about references to a view would hide what is wrong.
 TEST_F(Databases, AViewInThePlaceOfATableIsDamage) {
   Database database = Database::open_owner(path());
   Connection& connection = database.connection();
@@ -142,7 +142,7 @@ TEST_F(Databases, ViewsOfPeopleDoNoHarm) {
   EXPECT_EQ(Database::open_reader(path()).points().size(), 1U);
 }
 
-// SQLite cannot begin its log anew while somebody reads an earlier state.
+// SQLite cannot begin its log anew while a reader uses an earlier state.
 TEST_F(Databases, TheLogShrinksWhenAReaderThatHeldItUpHasGone) {
   Database owner = Database::open_owner(path());
   PointStore(owner).adopt(plain_campaign(1, 4, 40, 0.05));
@@ -166,13 +166,13 @@ TEST_F(Databases, TheLogShrinksWhenAReaderThatHeldItUpHasGone) {
 TEST_F(Databases, AReaderOfWhatIsOnlyJustBeingSetUpMayWait) {
   std::ofstream(path()) << "";
   EXPECT_THROW(Database::open_reader(path()), BeingSetUp);
-  Database owner = Database::open_owner(path());  // the tables, and no campaign yet
+  Database owner = Database::open_owner(path());  // tables without a campaign
   EXPECT_THROW(Database::open_reader(path()), BeingSetUp);
   PointStore(owner).adopt(plain_campaign(1, 4, 40, 0.05));
   EXPECT_NO_THROW(Database::open_reader(path()));
 }
 
-// As of a colleague's campaign; root may write anywhere and becomes somebody else meanwhile.
+// This is so for a colleague's campaign. Root may write anywhere and becomes another user meanwhile.
 TEST_F(Databases, AReaderNeedsNoRightToWrite) {
   {
     Database owner = Database::open_owner(path());
@@ -193,7 +193,7 @@ TEST_F(Databases, AReaderNeedsNoRightToWrite) {
     EXPECT_TRUE(is_frozen_for_us(path()));
     EXPECT_EQ(Database::open_reader(path()).points().size(), 1U);
   });
-  // What a log holds cannot be told without one's own index of it.
+  // A log cannot be read without an index of it, which a reader without rights cannot write.
   std::ofstream(path().string() + "-wal") << std::string(4152, 'x');
   as_stranger([&] {
     try {
@@ -205,7 +205,7 @@ TEST_F(Databases, AReaderNeedsNoRightToWrite) {
   });
 }
 
-// Each worker has an engine of its own, and so another process.
+// Each worker has an engine of its own, hence another process.
 TEST_F(Databases, CountsTheWorkersOfTheLastRun) {
   StoredCampaign campaign(1, 4, 20);
   EXPECT_EQ(campaign.database().last_workers(), 0);
@@ -218,7 +218,7 @@ TEST_F(Databases, CountsTheWorkersOfTheLastRun) {
       "started_at = '2026-01-01T00:00:00Z'");
   connection.execute("UPDATE attempt SET ended_at = '2026-01-01T00:00:09Z' WHERE attempt_id = 1");
   EXPECT_EQ(campaign.database().last_workers(), 3);
-  // Of an earlier run, and of another machine.
+  // Attempts of an earlier run, and of another machine, do not count.
   connection.execute("UPDATE attempt SET started_at = '2026-01-02T00:00:00Z' WHERE attempt_id > 1");
   EXPECT_EQ(campaign.database().last_workers(), 2);
   connection.execute("UPDATE attempt SET host = 'other' WHERE attempt_id = 2");

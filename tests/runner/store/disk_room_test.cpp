@@ -48,7 +48,7 @@ TEST(Room, ThatIsLackingIsNamed) {
             place + " is full: your disk quota is used up there (`quota -s`), 3.1 MB are needed");
 }
 
-// The name of the trial can be foretold.
+// The name of the trial can be guessed.
 TEST(Room, IsTriedWithoutFollowingALink) {
   const TemporaryFolder folder;
   const std::filesystem::path victim = folder.path() / "victim";
@@ -64,18 +64,18 @@ class FullDatabase : public testing::Test {
     create_folders(directory_);
     PointStore(database_).adopt(campaign_);
     state_.emplace(database_, campaign_, directory_, listener_, 2);
-    pool_.result_size = 40'000;  // more than what is free in a page of the table of results
+    pool_.result_size = 40'000;  // more than the free room in a page of the table of results
   }
 
   Dispatcher::Ending run(const DispatchSettings& settings = {}) {
     Dispatcher dispatcher(database_, *state_, pool_, listener_, settings, [this] { return pool_.now; });
     return dispatcher.run();
   }
-  // From now on the database cannot grow.
+  // Stops the database from growing.
   void fill() {
     Connection& connection = database_.connection();
     connection.execute("PRAGMA max_page_count = " + std::to_string(connection.integer("PRAGMA page_count")));
-    // What is free inside it is used up, too, for the shortest event as well.
+    // The room inside is used up, too, also for the shortest event.
     for (const char* const message : {"hex(zeroblob(500))", "''"}) {
       try {
         for (;;) {
@@ -124,13 +124,13 @@ TEST_F(FullDatabase, LosesNothingGivesOutNothingAndGoesOn) {
   };
   EXPECT_EQ(run(), Dispatcher::Ending::finished);
   EXPECT_GT(turns, 60);
-  // Once each, and nobody is blamed.
+  // Each seed ran once, and no attempt is blamed.
   EXPECT_EQ(count("SELECT count(*) FROM attempt"), count("SELECT count(*) FROM result"));
   EXPECT_EQ(count("SELECT count(*) FROM attempt WHERE outcome != 'result'"), 0);
   EXPECT_TRUE(spool_files(directory_).empty());
   ASSERT_EQ(listener_.warnings.size(), 1U);
   EXPECT_NE(listener_.warnings.at(0).find("is full"), std::string::npos);
-  // What was taken back with its booking has been told once all the same.
+  // Events that were rolled back with their booking have been told once all the same.
   EXPECT_EQ(listener_.count<SeedEnded>(), count("SELECT count(*) FROM result"));
   EXPECT_EQ(listener_.count<StopTestMade>(), count("SELECT count(*) FROM stop_test"));
   EXPECT_EQ(listener_.count<ShortageBegan>(), 1);

@@ -41,7 +41,7 @@ TEST_F(FileRemovals, AreThroughAtItsEnd) {
 }
 
 TEST_F(FileRemovals, SayOnceWhatCouldNotBeRemoved) {
-  const fs::path impossible = made("file") / "name";  // below a file there is none
+  const fs::path impossible = made("file") / "name";  // a file cannot have files below it
   FileRemoval removal;
   removal.add({impossible, made("b")});
   try {

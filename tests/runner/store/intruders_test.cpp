@@ -27,8 +27,11 @@ TEST(Intruders, AreMovedAsideAndFilesStay) {
   move_intruders_aside(directory, [&](const std::string& text) { told.push_back(text); });
   ASSERT_EQ(told.size(), 2U);
   EXPECT_EQ(told[0],
-            "spool/ had what is no file: a\\n.json (a link), loop (a link) and 1 more; moved to aside/1/");
-  EXPECT_EQ(told[1], "checkpoints/ had what is no file: d.checkpoint (a folder); moved to aside/2/");
+            "spool/ had entries that are not regular files: a\\n.json (a link), loop (a link) and 1 more; "
+            "moved to aside/1/");
+  EXPECT_EQ(
+      told[1],
+      "checkpoints/ had entries that are not regular files: d.checkpoint (a folder); moved to aside/2/");
   EXPECT_TRUE(fs::exists(directory.spool() / "file.json"));
   EXPECT_TRUE(fs::is_directory(directory.rejected()));
   EXPECT_TRUE(fs::is_symlink(directory.aside() / "1" / "loop"));

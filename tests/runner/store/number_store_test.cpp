@@ -1,4 +1,4 @@
-// The numbers that stand beside results: the same means as of the results, and nothing that they do not say.
+// The numbers stored beside results give the same means as the results, and nothing else.
 #include "runner/store/number_store.h"
 
 #include <gtest/gtest.h>
@@ -100,7 +100,7 @@ TEST_F(Numbers, OfAResultAreComparedBitByBit) {
   EXPECT_FALSE(book.agrees(1, 0, result, observables));
 }
 
-// Each of 10^-9 to 10^9, of either sign, and what a double can hold at most.
+// Numbers of either sign, from the smallest double to the largest number of a result.
 TEST_F(Numbers, ComeBackBitByBit) {
   const std::vector<double> all{0.1 + 0.2, -1.0 / 3,           5e-324, 1e100,
                                 -0.0,      9007199254740993.0, 1e-9,   123456789.125};

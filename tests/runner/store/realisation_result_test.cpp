@@ -121,7 +121,7 @@ TEST(RealisationResult, TakesWhatIsJustWithinTheBounds) {
   result["warnings"] = {{{"code", "timestep-2"}, {"message", "ends\nhere"}}};
   EXPECT_EQ(parse_result(result.dump()).seed, 999'999);
   for (const char* const key : {"steps", "strain", "time", "derived", "warnings", "gate", "units", "method"})
-    result.erase(key);  // of an engine of long ago
+    result.erase(key);  // an early engine did not write them
   EXPECT_TRUE(parse_result(result.dump()).completed());
 }
 

@@ -1,4 +1,4 @@
-// What results say of their numbers, and what is read of a number by it.
+// Descriptions of numbers in results, and how they decide what is read of a number.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -62,13 +62,13 @@ TEST(RealisationResult, AnElementHasTheControlVariateAndTheBlocksOfItsList) {
     EXPECT_EQ(observed.first_quarter, 1 + 0.5 - 0.5);
     EXPECT_EQ(observed.first_half, 1.5 + 0.75 - 0.5);
   }
-  EXPECT_TRUE(std::isnan(observe(result, "profile/velocity").value));  // a list is no number
+  EXPECT_TRUE(std::isnan(observe(result, "profile/velocity").value));  // a list is not a number
   EXPECT_TRUE(std::isnan(observe(result, "profile/velocity/3").value));
   EXPECT_EQ(observe(result, "g/counts/1").value, 4);
   EXPECT_EQ(names_of_targets(result), "alone, noise/*, profile/velocity/*");
 }
 
-// Of few cycles moduli have few blocks.
+// Moduli of few cycles have few blocks.
 TEST(RealisationResult, TheBeginningOfEightBlocksIsThatOfTwoAndOfFour) {
   Json result = plain_result(sha256("point"), 3, 12.5);
   result["mean"]["loss_modulus"] = 4.5;
@@ -127,11 +127,11 @@ TEST(RealisationResult, ItsDescriptionsAreThoseOfItsNumbers) {
     }
   }
   Json empty = described_result();
-  empty["mean"]["profile"]["velocity"] = nullptr;  // nothing was there to measure
+  empty["mean"]["profile"]["velocity"] = nullptr;  // there was nothing to measure
   EXPECT_TRUE(std::isnan(observe(parse_result(empty.dump()).document, "profile/velocity/1").value));
 }
 
-// 64 axes of two values each are 2^64 numbers, which a product of 64 bits takes for none.
+// 64 axes of two values each describe 2^64 numbers, a product that is 0 in 64 bits.
 TEST(RealisationResult, ADescriptionMayNotAskForMoreRoomThanThereIs) {
   for (const std::size_t axes : {3U, 64U}) {
     Json result = described_result();
@@ -152,7 +152,7 @@ TEST(RealisationResult, ADescriptionMayNotAskForMoreRoomThanThereIs) {
   }
 }
 
-// Another engine may describe none of its numbers: then every one is a quantity, by its own name.
+// Another engine may describe no numbers: then each of them is a quantity, by its own name.
 TEST(RealisationResult, WithoutDescriptionsIsWithEmptyOnes) {
   Json lost = plain_result(sha256("point"), 0, 10);
   lost["ending"]["cause"] = "overlap";
@@ -172,7 +172,7 @@ TEST(RealisationResult, WithoutDescriptionsIsWithEmptyOnes) {
   }
 }
 
-// As another engine may call it.
+// Another engine may use such a name.
 TEST(RealisationResult, ANameMayHoldASlash) {
   Json result = plain_result(sha256("point"), 0, 10);
   result.erase("quantities");
@@ -187,7 +187,7 @@ TEST(RealisationResult, ANameMayHoldASlash) {
     parse_result(result.dump());
     ADD_FAILURE();
   } catch (const ResultError& error) {
-    EXPECT_NE(std::string(error.what()).find("/mean/P/P0: must not be there by two ways"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("/mean/P/P0: must not be there in two ways"), std::string::npos)
         << error.what();
   }
 }

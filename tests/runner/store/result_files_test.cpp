@@ -81,7 +81,7 @@ TEST(ResultFiles, ThatAreWrongAreNamed) {
   }
 }
 
-// A log among them has times in it: two runs of a seed would never agree.
+// A log among the files has times in it, so two runs of a seed would never agree.
 TEST(ResultFiles, AreNoPartOfWhatRepetitionsMustShare) {
   const std::string without = parse_result(with_files(Json::array()).dump()).content_sha256;
   EXPECT_EQ(parse_result(with_files(Json::array({listed("log.txt")})).dump()).content_sha256, without);
@@ -110,7 +110,7 @@ TEST(ResultFiles, AreCheckedWhereTheyAre) {
   EXPECT_EQ(complaint(), "its file final.xyz does not have its hash");
   write_durably(file, "contents");
   EXPECT_EQ(complaint(), "its file final.xyz has 8 bytes instead of 7");
-  // Nothing is followed or waited for.
+  // Links are not followed, FIFOs not waited for.
   write_durably(folder.path() / "elsewhere", "content");
   fs::remove(file);
   fs::create_symlink(folder.path() / "elsewhere", file);

@@ -24,7 +24,7 @@ class Stores : public testing::Test {
     return campaign_.points[static_cast<std::size_t>(point)].hash;
   }
   double value() { return std::stod(seen("value")); }
-  // A column of the view `realisations`, of the first seed; "" for NULL.
+  // Returns a column of the view `realisations` for the first seed; "" for NULL.
   std::string seen(const std::string& column) {
     return database_.connection().text("SELECT " + column + " FROM realisations");
   }
@@ -135,7 +135,7 @@ TEST_F(Stores, ProvenanceIsStoredOnce) {
     EXPECT_EQ(database_.result_text(1, seed), result.dump());
   }
   EXPECT_EQ(database_.engines().size(), 1U);
-  // All that it takes of a result is a reference to the first one.
+  // The text of a result is little more than a reference to the first one.
   EXPECT_LT(database_.connection().integer("SELECT max(length(document)) FROM result"), 200);
 }
 
@@ -186,7 +186,7 @@ TEST_F(Stores, PointsThatLeaveTheSweepStayAndComeBack) {
   EXPECT_EQ(database_.counts(database_.points().at(1).id).done, 1);
 }
 
-TEST_F(Stores, LooksOfAnOlderTargetStayInTheHistory) {
+TEST_F(Stores, StopTestsOfAnOlderTargetStayInTheHistory) {
   StopTest stop_test;
   stop_test.seeds = 4;
   stop_test.estimate = {4, 12, 0.1};
@@ -226,7 +226,7 @@ TEST_F(Stores, ACompletedSeedWithoutTheNumberIsLostUntilAnotherObservableFindsIt
   EXPECT_EQ(database_.realisations(1).at(0).state, SeedState::failed);
 }
 
-TEST_F(Stores, ResultsKeptApartNeedNotHaveAnotherObservable) {
+TEST_F(Stores, ResultsSetAsideNeedNotHaveAnotherObservable) {
   Json bare = plain_result(hash(), 0, 12.5, "old");
   bare["mean"].erase("pressure");
   offer(bare);
@@ -239,7 +239,7 @@ TEST_F(Stores, ResultsKeptApartNeedNotHaveAnotherObservable) {
 
 TEST_F(Stores, AnObservableThatResultsLackChangesNothing) {
   offer(plain_result(hash(), 0, 12.5));
-  // The second is there, but no number.
+  // The second is there, but is not a number.
   for (const char* const name : {"colour", "control_variates"}) {
     Campaign other = campaign_;
     other.target.observable = name;

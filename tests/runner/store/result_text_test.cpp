@@ -60,7 +60,7 @@ TEST(ResultText, OfOtherBytesIsAnError) {
   }
 }
 
-// 128 MiB of zeros take 128 kB; a stored text may not make a reader take all memory.
+// 128 MiB of zeros take 128 kB deflated; a stored text must not make a reader take all memory.
 TEST(ResultText, OfABombIsAnErrorBeforeItHasGoneOff) {
   const std::string bytes = deflated(std::string(128 << 20, '0'), "");
   EXPECT_LT(bytes.size(), 200'000U);

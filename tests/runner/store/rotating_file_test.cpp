@@ -61,14 +61,14 @@ TEST(RotatingFiles, DivideWhatIsLongerThanAFile) {
 
 TEST(RotatingFiles, OnAFullDiskDropWhatDoesNotFit) {
   RotatingFile file("/dev/full", 1000, 1);
-  EXPECT_NO_THROW(file.append("nobody will read this\n"));
+  EXPECT_NO_THROW(file.append("this is dropped\n"));
   EXPECT_NO_THROW(file.append("nor this\n"));
   RotatingFile nowhere("/nonexistent/log", 1000, 1);
   EXPECT_NO_THROW(nowhere.append("nor this\n"));
   EXPECT_FALSE(fs::exists("/nonexistent"));
 }
 
-// Half a mebibyte a seed: without a bound, the logs would have some fifteen.
+// Each seed prints half a mebibyte: without a bound, the logs would have some fifteen.
 TEST(WorkerLogs, StaySmallWhenAnEnginePrintsWithoutEnd) {
   CampaignOnDisk campaign(1);
   ASSERT_EQ(campaign.run({{"PECLET_FAKE_PRINTED", "262144"}, {"PECLET_FAKE_STEPS", "2"}}), 0)

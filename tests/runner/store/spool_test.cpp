@@ -1,4 +1,4 @@
-// Files that wait to be taken in: which are read, which are set aside and which are removed.
+// Files that wait to be taken in: some are read, some set aside and some removed.
 #include <gtest/gtest.h>
 #include <unistd.h>
 

@@ -1,4 +1,4 @@
-// What an engine calls things, from its hello.
+// Names that an engine gives in its hello.
 #include <gtest/gtest.h>
 
 #include "contract/documents.h"
