@@ -29,7 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::milliseconds between_stop_tests{100};
+constexpr std::chrono::milliseconds polling_interval{100};
 
 // Nobody runs the campaign: what waits is carried out here. False: somebody was faster.
 bool carry_out_here(const CampaignDirectory& directory) {
@@ -61,7 +61,7 @@ bool is_carried_out(const CampaignDirectory& directory, const Request& request, 
     }
     if (!fs::exists(file)) return true;
     if (Clock::now() >= end) return false;
-    std::this_thread::sleep_for(between_stop_tests);
+    std::this_thread::sleep_for(polling_interval);
   }
 }
 

@@ -169,7 +169,7 @@ int serve_campaign(const ServeOptions& options) {
   fmt::print(stderr, "peclet: the page of {} is there; Ctrl-C ends it, and does nothing to the campaign\n",
              printable(campaign.name()));
   server.serve(signals.descriptor(), [&](const HttpRequest& request) { return answer(campaign, request); });
-  campaign.stop_test();
+  campaign.refresh();
   return campaign.exit_code();
 }
 

@@ -69,7 +69,7 @@ LiveCampaign::LiveCampaign(fs::path campaign, fs::path directory)
   read();
 }
 
-void LiveCampaign::stop_test() {
+void LiveCampaign::refresh() {
   const Clock::time_point begun = Clock::now();
   if (begun < next_) return;
   const DatabaseStamp stamp = stamp_of(folder_of(campaign_, directory_));

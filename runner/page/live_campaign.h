@@ -49,7 +49,7 @@ class LiveCampaign {
   // Looks whether there is something new, and reads it. Reading takes at most a tenth of the time, so that
   // what runs the campaign hardly notices. What goes wrong meanwhile is told, as "fault", beside what was
   // known.
-  void stop_test();
+  void refresh();
 
   // The whole page. Its document has "live": {"token", "program"}; before the first run it has "waiting",
   // what is waited for, in the place of points.

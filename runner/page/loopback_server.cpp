@@ -37,7 +37,7 @@ namespace {
 HttpAnswer nothing_new() { return {.status = 204}; }
 
 HttpAnswer page(LiveCampaign& campaign) {
-  campaign.stop_test();
+  campaign.refresh();
   return {.type = "text/html; charset=utf-8",
           .body = campaign.page(),
           .policy = page_policy(true) + "; frame-ancestors 'none'"};
@@ -62,7 +62,7 @@ HttpAnswer answer(LiveCampaign& campaign, const HttpRequest& request) {
   try {
     if (path == "/") return page(campaign);
     if (path == "/state") {
-      campaign.stop_test();
+      campaign.refresh();
       return json_or(campaign.changes_since(value_of("?since=")), nothing_new());
     }
     if (path == "/point") return json_or(campaign.details(value_of("?hash=")), refusal(404));

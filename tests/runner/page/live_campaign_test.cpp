@@ -21,7 +21,7 @@ class LivePage : public testing::Test {
   // What is new since the token, once there is something; null after some seconds without.
   static Json news(LiveCampaign& live, const std::string& token) {
     for (int attempt = 0; attempt < 1000; ++attempt) {
-      live.stop_test();
+      live.refresh();
       if (const auto found = live.changes_since(token)) return Json::parse(*found);
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
@@ -71,7 +71,7 @@ TEST_F(LivePage, WhatHasNotChangedIsNoNews) {
   // A commit that changes nothing which the page shows.
   campaign_.database().connection().execute("UPDATE point SET priority = priority");
   std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  live.stop_test();
+  live.refresh();
   EXPECT_EQ(live.changes_since(token), nullptr);
 }
 

@@ -235,7 +235,7 @@ TEST_F(CampaignPage, DependsOnTheDatabaseAlone) {
   EXPECT_FALSE(says(before, utc_now().substr(0, 10)));
 }
 
-TEST_F(CampaignPage, IsRefusedWhenALookIsNotWhatTheResultsSay) {
+TEST_F(CampaignPage, IsRefusedWhenAStopTestIsNotWhatTheResultsSay) {
   complete_widely(0);
   campaign_.database().connection().execute("UPDATE stop_test SET mean = 9");
   EXPECT_THROW(data(), IntegrityError);
