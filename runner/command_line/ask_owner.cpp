@@ -29,9 +29,9 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::milliseconds between_stop_tests{100};
+constexpr std::chrono::milliseconds polling_interval{100};
 
-// Nobody runs the campaign: what waits is carried out here. False: somebody was faster.
+// Owns the campaign while it carries out all waiting requests. Returns false if another process owns it.
 bool carry_out_here(const CampaignDirectory& directory) {
   try {
     const OwnerLock lock(directory);
@@ -48,7 +48,7 @@ bool carry_out_here(const CampaignDirectory& directory) {
   }
 }
 
-// Waits until the request's file is gone. False: it still is there.
+// Waits until the request's file is gone; carries the request out if the campaign has no owner.
 bool is_carried_out(const CampaignDirectory& directory, const Request& request, double patience) {
   const fs::path file = request_file(directory, request.name);
   const auto end = Clock::now() + std::chrono::duration<double>(patience);
@@ -56,18 +56,19 @@ bool is_carried_out(const CampaignDirectory& directory, const Request& request, 
     try {
       if (!current_owner(directory)) carry_out_here(directory);
     } catch (...) {
-      fs::remove(file);  // who is told that it failed must not find it done later
+      fs::remove(file);  // a request that was reported as failed must not be carried out later
       throw;
     }
     if (!fs::exists(file)) return true;
     if (Clock::now() >= end) return false;
-    std::this_thread::sleep_for(between_stop_tests);
+    std::this_thread::sleep_for(polling_interval);
   }
 }
 
 std::string next_step(const CampaignDirectory& directory, Database& database, const std::string& words) {
   if (const std::optional<std::int64_t> owner = current_owner(directory)) {
-    return fmt::format("process {} goes on with it; `peclet status {}` shows how far it is\n", *owner, words);
+    return fmt::format("process {} continues the campaign; `peclet status {}` shows its progress\n", *owner,
+                       words);
   }
   const CampaignStatus status = read_status(database);
   if (exit_code_of(status) != ExitCode::unfinished) return "no point is open: there is nothing to run\n";
@@ -79,8 +80,8 @@ Reply answer(const CampaignDirectory& directory, const Request& request, const s
   const std::optional<EventRecord> event = database.event_of(request.name);
   if (!event) {
     throw IntegrityError(
-        fmt::format("{}: the campaign's owner could not read it; is that an older peclet? It is kept beside "
-                    "as *.rejected",
+        fmt::format("{}: the campaign's owner could not read this request; is the owner an older peclet? The "
+                    "request is kept in the same folder as *.rejected",
                     request_file(directory, request.name).string()));
   }
   if (event->kind == "refused") throw InputError("", "", "", event->message);
@@ -93,15 +94,15 @@ Reply await_reply(const CampaignDirectory& directory, const Request& request, co
                   double patience) {
   if (is_carried_out(directory, request, patience)) return answer(directory, request, words);
   const std::string owner = fmt::format("process {}", current_owner(directory).value_or(0));
-  if (patience <= 0) return {fmt::format("{} will come to it\n", owner)};
-  return {fmt::format("{} has not come to it in {:g} s, but will: see `peclet status {}`\n", owner, patience,
-                      words),
+  if (patience <= 0) return {fmt::format("{} will carry the request out\n", owner)};
+  return {fmt::format("{} has not carried the request out within {:g} s, but will; see `peclet status {}`\n",
+                      owner, patience, words),
           ExitCode::unfinished};
 }
 
 namespace {
 
-// Asks for what the verb's options want of their campaign.
+// Writes a request for the campaign that the verb's options name, and awaits the reply.
 template <typename Options>
 Reply ask(const Options& options, const Wish& wish) {
   const CampaignDirectory directory = find_campaign(options.campaign, options.directory);
@@ -127,7 +128,7 @@ struct Edit {
   Json value;
 };
 
-// What is no number is refused with the file.
+// Returns the number if the text is an integer, otherwise the text. Reading the file refuses a wrong word.
 Json word_or_number(const std::string& text) {
   int number = 0;
   const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -149,21 +150,21 @@ std::vector<Edit> edits_of(const SetOptions& options) {
 
 void check_usage(const SetOptions& options) {
   if (options.priority && options.points.empty()) {
-    throw InputError("", "", "--priority", "needs the points that are to have it: --point, once for each");
+    throw InputError("", "", "--priority", "needs the points that get it: one --point for each");
   }
   if (!options.priority && !options.points.empty()) {
-    throw InputError("", "", "--point", "is for --priority; target and realisations are those of all points");
+    throw InputError("", "", "--point", "is for --priority; target and realisations apply to all points");
   }
   if (options.priority && !edits_of(options).empty()) {
-    throw InputError("", "", "--priority", "is no part of the campaign file: set it in a call of its own");
+    throw InputError("", "", "--priority", "is not part of the campaign file: set it in a separate call");
   }
 }
 
-// Refuses what the campaign does not have: a tolerance of the other kind, the number of seeds of a campaign
-// with a target, and target and bounds where that number is fixed.
+// Throws InputError for an option that does not suit the campaign: a tolerance of the other kind, a fixed
+// number of seeds beside a target, or a target and bounds where that number is fixed.
 void check_kind(const Json& document, const SetOptions& options) {
   const Json realisations = document.is_object() ? document.value("realisations", Json()) : Json();
-  if (realisations.is_null()) return;  // a missing one is refused with the file
+  if (realisations.is_null()) return;  // reading the file refuses a missing one
   const bool is_fixed = realisations.is_number();
   const bool wants_target = options.tolerance || options.absolute_tolerance || options.confidence ||
                             options.minimum || options.maximum;
@@ -171,10 +172,10 @@ void check_kind(const Json& document, const SetOptions& options) {
     throw InputError(
         options.campaign.string(), "/realisations", shortened(realisations),
         is_fixed
-            ? "is a fixed number, changed by --realisations; a target in its place is written into the file, "
-              "which `peclet set` without options takes over"
-            : "belongs to a target, and is changed by --minimum and --maximum; a fixed number in its place "
-              "is written into the file, without the target, which `peclet set` without options takes over");
+            ? "is a fixed number, changed by --realisations; to replace it by a target, edit the file and "
+              "run `peclet set` without options"
+            : "belongs to a target, and is changed by --minimum and --maximum; to replace it by a fixed "
+              "number, remove the target from the file and run `peclet set` without options");
   }
   const auto must_not_have = [&](const std::optional<double>& given, const char* option, const char* other,
                                  const char* other_option) {
@@ -188,7 +189,7 @@ void check_kind(const Json& document, const SetOptions& options) {
                 "--tolerance");
 }
 
-// The text as it is to be.
+// Returns the text with the edits in place; every other byte stays.
 std::string edited(const std::string& text, const std::vector<Edit>& edits, const fs::path& file) {
   Json expected = parse_json_input(text, file.string());
   std::string changed = text;
@@ -211,15 +212,15 @@ std::string edited(const std::string& text, const std::vector<Edit>& edits, cons
 Reply take_over(const SetOptions& options) {
   const CampaignDirectory directory = campaign_directory(options.campaign, options.directory);
   if (!fs::is_regular_file(options.campaign)) {
-    throw InputError(
-        options.campaign.string(), "", "",
-        fs::exists(options.campaign) ? "must be the campaign file: it is what counts" : "no such file");
+    throw InputError(options.campaign.string(), "", "",
+                     fs::exists(options.campaign) ? "must be the campaign file, which `peclet set` changes"
+                                                  : "no such file");
   }
   const fs::path file = fs::canonical(options.campaign);
   Request request;
   std::string before, text;
   {
-    const FileLock lock(file);  // two verbs at once: the second one reads what the first has written
+    const FileLock lock(file);  // of two verbs at once, the second one reads what the first has written
     before = read_input(file);
     check_kind(parse_json_input(before, options.campaign.string()), options);
     text = edited(before, edits_of(options), options.campaign);
@@ -229,7 +230,7 @@ Reply take_over(const SetOptions& options) {
     if (text != before) write_durably(file, text);
     if (!fs::exists(directory.database())) {
       return {fmt::format("{} is {}; it has not been run yet: peclet run {}\n", options.campaign.string(),
-                          text != before ? "changed" : "sound, and as it was",
+                          text != before ? "changed" : "valid and unchanged",
                           words_for(options.campaign, options.directory))};
     }
     request = write_request(directory, TakeOver{file, sha256(text)});
@@ -237,7 +238,7 @@ Reply take_over(const SetOptions& options) {
   try {
     return await_reply(directory, request, words_for(options.campaign, options.directory), options.patience);
   } catch (const InputError&) {
-    const FileLock lock(file);  // what is refused leaves the file as it was, unless somebody went on with it
+    const FileLock lock(file);  // a refused change is undone, unless the file has changed since
     if (read_input(file) == text && text != before) write_durably(file, before);
     throw;
   }

@@ -12,45 +12,40 @@
 
 namespace peclet::runner {
 
-// The verbs' side of requests: wait for the campaign's owner, or be the owner for as long as it takes.
-//
-// How a verb ends: what it prints and its exit code.
+// The text that a verb prints, and its exit code.
 struct Reply {
   std::string text;
   int exit_code = 0;
 };
 
-// Seconds that a verb waits for a running owner unless told otherwise.
+// Default time that a verb waits for a running owner [s].
 constexpr double usual_patience = 60;
 
-// Sees to it that a request that has been written is carried out: by the process that owns the campaign,
-// which is waited for as long as `patience` seconds (0: not at all), or by this one when nobody owns it. The
-// text says what was done and what comes next, in commands that name the campaign by `words`; exit code 4
-// when the owner has not come to it in time, 0 otherwise. Throws InputError with the reason when it is
-// refused.
+// Waits until a written request is carried out: by the campaign's owner, at most for `patience` seconds (0:
+// not at all), or by this process if there is no owner. Returns a text that says what was done and which
+// command comes next; commands name the campaign by `words`. The exit code is 4 if a `patience` > 0 was too
+// short, otherwise 0. Throws InputError with the reason if the request is refused.
 Reply await_reply(const CampaignDirectory& directory, const Request& request, const std::string& words,
                   double patience);
 
-// The verb `peclet set`: another target, other points, other priorities.
 struct SetOptions {
   std::filesystem::path campaign;
   std::filesystem::path directory;
-  std::optional<double> tolerance, absolute_tolerance, confidence;  // of /target
-  std::optional<int> minimum, maximum;                              // of /realisations
+  std::optional<double> tolerance, absolute_tolerance, confidence;  // in /target
+  std::optional<int> minimum, maximum;                              // in /realisations
   std::optional<int> realisations;                                  // /realisations, where it is a number
   std::optional<std::string> keep_files;                            // /keep_files, as a word
-  std::vector<std::string> points;                                  // whose priority is set
+  std::vector<std::string> points;                                  // those that get the priority
   std::optional<int> priority;
   double patience = usual_patience;
 };
 
-// Changes these values in the text of the campaign file, of which nothing else changes, and has the campaign
-// take the file over as it is then: the file stays what counts, and a later `peclet run` undoes nothing. A
-// campaign that has not been run is changed in its file alone. A priority is no part of the file. Throws
-// InputError, with nothing written, for a file that `peclet run` would refuse; as await_reply().
+// Changes these values in the text of the campaign file, leaves every other byte, and has the campaign take
+// the file over; a later `peclet run` therefore undoes nothing. If the campaign has not been run, only the
+// file changes. A priority is not part of the file. Throws InputError, with nothing written, for a file that
+// `peclet run` would refuse. Otherwise returns and throws as await_reply().
 Reply set_campaign(const SetOptions& options);
 
-// The verb `peclet cancel`: points that get no more seeds.
 struct CancelOptions {
   std::filesystem::path campaign;  // file or folder
   std::filesystem::path directory;
@@ -59,21 +54,21 @@ struct CancelOptions {
   double patience = usual_patience;
 };
 
-// The points' running seeds checkpoint and stop, what they have stays, and they hold nothing up; with `undo`
-// they go on where they were. Throws InputError for a campaign that has not been run; as await_reply().
+// Gives the points no more seeds. Their running seeds save a checkpoint and stop; results stay. With `undo`
+// the points get seeds again and continue where they were. Throws InputError for a campaign that has not been
+// run. Otherwise returns and throws as await_reply().
 Reply cancel_points(const CancelOptions& options);
 
-// The verb `peclet retry`: seeds that were given up get another chance.
 struct RetryOptions {
   std::filesystem::path campaign;  // file or folder
   std::filesystem::path directory;
-  std::vector<std::string> points;  // labels, or at least 4 digits of the hash; none: all
-  std::vector<int> seeds;           // of one point; none: all that were given up
+  std::vector<std::string> points;  // labels, or at least 4 digits of the hash; empty: all
+  std::vector<int> seeds;           // seeds of one point; empty: all that were given up
   double patience = usual_patience;
 };
 
-// Queues them again; their earlier attempts are kept, but no longer count against them. Throws InputError for
-// a campaign that has not been run; as await_reply(), and for a seed that was not given up.
+// Queues seeds that were given up; their earlier attempts no longer count. Throws InputError for a campaign
+// that has not been run and a seed that was not given up. Otherwise returns and throws as await_reply().
 Reply retry_seeds(const RetryOptions& options);
 
 }  // namespace peclet::runner

@@ -23,13 +23,10 @@ std::string HelpFormatter::make_option_opts(const CLI::Option* option) const {
          (option->get_expected_max() > 1 ? " ..." : "");
 }
 
-// One function of bash finds the verb, the option that waits for a value, or the place of the word among
-// those that are no options.
-
 namespace {
 
-// {0} the options, {1} the verbs, {2} per verb its options and the ones with a value, {3} what follows an
-// option, {4} what stands at a place.
+// Placeholders: {0} options before a verb, {1} verbs, {2} options of each verb and those that take a value,
+// {3} what completes the value of an option, {4} what completes a positional word.
 constexpr const char* script =
     R"script(# Completion of peclet for bash. Use it with: eval "$(peclet completion bash)"
 _peclet_words() {{ mapfile -t COMPREPLY < <(compgen -W "$1" -- "$word"); }}
@@ -87,7 +84,7 @@ _peclet() {{
 complete -F _peclet peclet
 )script";
 
-// Returns what completes the option's value; "" for a value that only its user knows.
+// Returns the bash command that completes the option's value; "" if nothing can be offered.
 std::string offer(const CLI::Option& option) {
   const std::string type = option.get_type_name(), value = value_of(option);
   if (const std::size_t begin = type.find(":{"); begin != std::string::npos) {

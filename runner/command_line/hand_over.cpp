@@ -31,12 +31,11 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-// Where the batch system does not say how many tasks a job may have.
+// Tasks of one job at most, if the batch system does not say.
 constexpr int usual_largest_array = 1000;
-// Turns in a row in which tasks went without having begun and no seed ended: the next ones would fare no
-// better.
+// Turns in a row, with tasks gone before they began a seed and no seed ended, after which --follow gives up.
 constexpr int most_lifeless_turns = 3;
-// After the last point is decided, for tasks that were cancelled.
+// Time that cancelled tasks get to leave.
 constexpr std::chrono::seconds leaving_patience{60};
 
 std::string own_program() { return fs::read_symlink("/proc/self/exe").string(); }
@@ -45,7 +44,7 @@ fs::path chosen_folder(const HandOverOptions& options) {
   return fs::absolute(options.shared).lexically_normal();
 }
 
-// What can be found without the campaign, so that nothing is written before.
+// Checks the options that need no campaign, before anything is written. Throws InputError.
 void check(const HandOverOptions& options) {
   const BatchTemplate scripts = batch_template(options.system, options.template_folder);
   if (!options.shared.empty()) check_template(scripts, chosen_folder(options), own_program());
@@ -62,14 +61,15 @@ fs::path shared_folder(const HandOverOptions& options, Database& database) {
   return last;
 }
 
-// Made anew below a file system that is not mounted, it would hide what comes back with it.
+// Throws InputError if the shared folder is gone while seeds are out in it. A new one below an unmounted file
+// system would hide the old one once that is mounted again.
 void refuse_lost_folder(const fs::path& shared, Database& database) {
   std::error_code error;
   if (fs::is_directory(shared, error) || !BundleStore(database.connection()).are_out_in(shared.string()))
     return;
   throw InputError("", "", shared.string(),
-                   "is not there, and seeds are out in it: put it back, or give them up with `peclet ingest "
-                   "--forget`; `peclet ingest` names the bundles");
+                   "is not there, and seeds are out in it: put it back, or give the seeds up with `peclet "
+                   "ingest --forget`; `peclet ingest` names the bundles");
 }
 
 BundleSettings bundle_settings(const HandOverOptions& options, OwnedCampaign& owned) {
@@ -101,7 +101,7 @@ std::string submit(Bundles& bundles, const BundleSettings& settings) {
   return refusal.empty() ? bundles.hand_over(settings) : refusal;
 }
 
-// Settles and hands over, turn by turn.
+// The loop of --follow: settles bundles and hands seeds over, turn by turn.
 class Follower {
  public:
   Follower(CampaignState& state, Bundles& bundles, RequestHandler& requests, Progress& progress,
@@ -115,7 +115,7 @@ class Follower {
         started_(Clock::now()),
         backup_(directory, std::chrono::duration<double>(options.backup_seconds), progress, started_) {}
 
-  // True when every point is decided, false when a signal came first.
+  // Returns true if every point is decided, false if a signal came first.
   bool run(const BundleSettings& settings) {
     const bool finished = follow(settings);
     backup_.finish();
@@ -146,8 +146,8 @@ class Follower {
     return call_back(signals);
   }
 
-  // What a turn could not book is found again by the next one; what follows a commit is done by it. Throws
-  // what does not pass.
+  // Rolls the state back after an error that passes, such as a full disk or a lock; the next turn tries
+  // again. Rethrows any other error.
   void wait_out(const std::exception& error) {
     const std::optional<Hindrance> hindrance = hindrance_in(error, root_);
     if (!hindrance) throw;
@@ -158,14 +158,15 @@ class Follower {
     }
   }
 
-  // A limit on a user's jobs passes when some of them have ended; what else is refused stays so.
+  // Throws SubmissionRefused if a job is refused and none is out. While jobs are out, the refusal may be a
+  // limit on the user's jobs that passes, so each new one is only told.
   void give_up_on_refusals(const std::string& refusal) {
     if (!refusal.empty() && !bundles_.any_out()) throw SubmissionRefused(refusal);
     if (!refusal.empty() && refusal != refusal_) progress_.warn(refusal + "; it is tried again");
     refusal_ = refusal;
   }
 
-  // Until the next turn is due, or somebody asks for something. True: a signal came.
+  // Waits until the next turn is due or a request waits. Returns true if a signal came.
   bool wait(StopSignals& signals) {
     const auto end = Clock::now() + std::chrono::duration<double>(options_.interval);
     for (;;) {
@@ -189,13 +190,13 @@ class Follower {
   void report(const Bundles::SettleReport& settled) {
     results_ += settled.ended;
     RunReport report = state_.report(1);
-    report.to_go.reset();  // the batch system knows when, if anybody does
+    report.to_go.reset();  // unknown: it depends on the queue of the batch system
     report.results = results_;
     report.elapsed = std::chrono::duration<double>(Clock::now() - started_).count();
     progress_.report(report);
   }
 
-  // What is still out is extra: cancelled, and taken in when it has gone.
+  // Cancels the jobs that are left, whose seeds are extra, and takes their results in while they leave.
   bool call_back(StopSignals& signals) {
     if (!bundles_.settle().any_awaited()) return true;
     progress_.note("every point is decided; the jobs that are left are cancelled");
@@ -216,7 +217,7 @@ class Follower {
   Clock::time_point started_;
   PeriodicBackup backup_;
   int results_ = 0, lifeless_turns_ = 0;
-  std::string refusal_, hindrance_;  // as they were told
+  std::string refusal_, hindrance_;  // the last ones that were told
 };
 
 void admit(CampaignState& state, const OwnedCampaign& owned, const HandOverOptions& options,
@@ -226,12 +227,12 @@ void admit(CampaignState& state, const OwnedCampaign& owned, const HandOverOptio
   try {
     state.admit_engine(owned.engine);
   } catch (const OtherEngine& error) {
-    // What would be set aside is not described by what is there now.
+    // A dry run sets nothing aside, so that it cannot describe what would be handed over.
     if (is_accepted) {
       throw OtherEngine(
           error.what() +
           std::string(
-              ". Without --dry-run --accept-engine keeps its results apart, and the points begin again"));
+              ". Without --dry-run, --accept-engine sets these results aside, and the points begin again"));
     }
     const std::string words = fmt::format("hand-over {} {}", shell_word(options.system),
                                           words_for(options.campaign, options.directory));
@@ -239,8 +240,8 @@ void admit(CampaignState& state, const OwnedCampaign& owned, const HandOverOptio
   }
 }
 
-// Of a bundle that has been settled meanwhile there is nothing to forget; a name that never was one is a
-// mistake.
+// Throws InputError for a name that never was that of a bundle. A bundle that has been settled is accepted,
+// because there is nothing to forget.
 void check_names(const std::vector<std::string>& names, Database& database) {
   const BundleStore book(database.connection());
   for (const std::string& name : names) {
@@ -248,8 +249,8 @@ void check_names(const std::vector<std::string>& names, Database& database) {
     std::vector<std::string> out;
     for (const HandedOver& bundle : book.handed_over()) out.push_back(bundle.bundle);
     throw InputError("", "", "--forget " + name,
-                     out.empty() ? "is no bundle, and no seed is handed over"
-                                 : fmt::format("is no bundle; those of which seeds are out are: {}",
+                     out.empty() ? "is not a bundle; no seed is handed over"
+                                 : fmt::format("is not a bundle; the bundles with seeds out are: {}",
                                                fmt::join(out, ", ")));
   }
 }

@@ -24,11 +24,10 @@ std::string version_text() {
                      origin.value("git_dirty", Json()) == true ? ", with changes" : "");
 }
 
-// The verb that is about no campaign.
 struct CompletionOptions {
   std::string shell;             // bash
   std::filesystem::path output;  // "": standard output
-  bool quiet = false;            // does not say where it is
+  bool quiet = false;            // no message about where the script was written
 };
 
 void add_completion(VerbSet& verbs) {
@@ -50,7 +49,8 @@ Put the line of the example into ~/.bashrc. `cmake --install` puts the script wh
 void add_all(VerbSet& verbs) {
   CLI::App& app = verbs.app();
   app.require_subcommand(1);
-  app.set_version_flag("--version", std::function<std::string()>(version_text));  // reads the program file
+  // A function, called on demand, because it reads the program file.
+  app.set_version_flag("--version", std::function<std::string()>(version_text));
   app.footer(exit_code_lines({}) + "`peclet help VERB` says more about a verb.");
   app.formatter(std::make_shared<HelpFormatter>());
   add_running_verbs(verbs);
@@ -74,13 +74,13 @@ int complain(const std::string& fault) {
   return ExitCode::usage;
 }
 
-// Returns the exit code of the verb that is named; 0 after help or version, 2 after a fault, both printed.
+// Runs the verb that is named and returns its exit code; 0 after help or version, 2 after a fault of usage.
 int obey(const std::vector<std::string>& words) {
   VerbSet verbs;
   add_all(verbs);
   CLI::App& app = verbs.app();
   try {
-    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // as the parser wants them
+    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // the parser takes them in reverse
   } catch (const CLI::ParseError& end) {
     const bool is_known =
         words.empty() || words.front().starts_with("-") || verb_called(app, words) != nullptr;

@@ -1,4 +1,4 @@
-// Verbs that look at a campaign, or draw it, and change nothing.
+// Verbs that show, export or draw a campaign, and change nothing.
 #include <fmt/format.h>
 
 #include <optional>
@@ -20,19 +20,19 @@
 namespace peclet::runner {
 namespace {
 
-// What verbs that look at a campaign are told; each has the options that it adds.
+// The options of verbs that read a campaign; each verb adds those that it uses.
 struct ViewOptions {
   std::filesystem::path campaign;  // file or folder
   std::filesystem::path directory;
   std::string point;  // label, or at least 4 digits of the hash; "": all points
   std::optional<int> seed;
   bool json = false;
-  bool paths = false;  // of files, and nothing else
-  bool check = false;  // the exit code says how the campaign stands
+  bool paths = false;  // only the paths of files
+  bool check = false;  // the exit code tells the state of the campaign
   bool csv = false, in_long = false, canonical = false;
   std::filesystem::path output;  // "": standard output
   std::filesystem::path bundle;  // "": no archive of everything
-  bool quiet = false;            // does not say where it is
+  bool quiet = false;            // no message about where the output was written
 };
 
 int show_status(const ViewOptions& options) {
@@ -48,9 +48,10 @@ int show_status(const ViewOptions& options) {
 
 void add_status(VerbSet& verbs) {
   const auto [verb, options] = verbs.add<ViewOptions>(
-      show_status, "status", "Show how far every point is, also while it runs", {0, 1, 2, 3, 4, 6}, R"(
-Shows the seeds that have ended, the mean and its standard error so far, the interval at the last stop test
-and the verdict of every point. It only reads, and may be used at any time.
+      show_status, "status", "Show the progress of every point, also while the campaign runs",
+      {0, 1, 2, 3, 4, 6}, R"(
+Shows for every point the seeds that have ended, their mean with its standard error, the interval at the
+last stop test, and the verdict. Only reads, and may be used at any time.
 
   peclet status flow-curve.json --check
   # for programs; schema/README.md describes it
@@ -59,23 +60,23 @@ and the verdict of every point. It only reads, and may be used at any time.
   add_campaign(verb, *options);
   add_json(verb, options->json);
   verb->add_flag("--check", options->check,
-                 "Leave with 0 (every point converged or complete), 3 (decided, but not so), 4 (not "
-                 "finished) or 6 (suspect)");
+                 "Exit with 0 (every point is converged or complete), 3 (every point is decided, but some "
+                 "otherwise), 4 (not finished) or 6 (a point is suspect)");
 }
 
 void add_watch(VerbSet& verbs) {
   const auto [verb, options] = verbs.add<WatchOptions>(
       watch_campaign, "watch", "Show the status in a terminal, kept up to date", {0, 1, 2, 3, 4, 6}, R"(
-Ends when every point is decided, with the exit code that `status --check` would have, or at Ctrl-C,
-which does nothing to the campaign. A campaign that has not been run yet is waited for. Where the terminal
-has room, the mean so far is drawn over the swept parameter. Off a terminal the table is printed whenever
-it changes.
+Ends when every point is decided, or at Ctrl-C, with the exit code of `status --check`. Does not affect the
+campaign. Waits for the first run of a campaign that has not been run yet. If the terminal has room, the
+mean of all seeds that have ended is drawn over the swept parameter. If the output is not a terminal, the
+table is printed whenever it changes.
 
   peclet watch flow-curve.json
 )");
   add_campaign(verb, *options);
   add_number(verb, "--interval SECONDS", options->interval_seconds, number_from(0.1, 86'400),
-             "Seconds between stop tests")
+             "Seconds between two updates")
       ->capture_default_str();
 }
 
@@ -87,12 +88,12 @@ std::string explanation(const ViewOptions& options) {
 
 void add_explain(VerbSet& verbs) {
   const auto [verb, options] = verbs.add<ViewOptions>(
-      explanation, "explain", "Say why points are where they are, and what comes next", {0, 1, 2, 6}, R"(
-A point is named by its label (peclet=10 volume_fraction=0.5), by its values alone as in a row of the
-tables ("10 0.5"), or by the beginning of its hash.
+      explanation, "explain", "Explain the verdicts of points, and what comes next", {0, 1, 2, 6}, R"(
+A point is named by its label (peclet=10 volume_fraction=0.5), by its values alone as in a row of the tables
+("10 0.5"), or by the beginning of its hash.
 
-Lists the stop tests at a point, a bootstrap interval beside Student's, lost seeds with what their engines
-said last, whether the window is long enough, and what would bring the point further.
+Lists the stop tests at a point, a bootstrap interval beside Student's, lost seeds with the last message of
+their engines, whether the measured window is long enough, and what would help the point to converge.
 
   peclet explain flow-curve.json peclet=10
   # all points
@@ -100,7 +101,7 @@ said last, whether the window is long enough, and what would bring the point fur
 )");
   add_campaign(verb, *options);
   add_option(verb, "point POINT", options->point,
-             "Label of a point, its values alone, or 4 or more digits of its hash; all unless given");
+             "Label of a point, its values alone, or 4 or more digits of its hash; all points unless given");
   add_json(verb, options->json);
 }
 
@@ -113,18 +114,19 @@ void add_files(VerbSet& verbs) {
   const auto [verb, options] = verbs.add<ViewOptions>(
       files, "files", "List the files that realisations have left beside their results", {0, 1, 2, 6},
       R"(
-A scene may ask its engine for files beside the numbers, as final.xyz of "files": {"final_configuration":
-true}. They lie in the campaign's folder, named by point and seed; those that /keep_files throws away are
-listed, and nothing is left of them.
+A scene may ask its engine for files beside the numbers; "files": {"final_configuration": true} gives
+final.xyz. They lie in the campaign's folder, by point and seed. Files that /keep_files removes are listed,
+but no longer exist.
 
   peclet files flow-curve.json peclet=10 --paths
-  # draws what the first seed has left
+  # draws the final configuration of the first seed
   peclet-engine snapshot $(peclet files flow-curve.json 10 --paths | head -1) --output spheres.png
   ovito $(peclet files flow-curve.json 10 --paths | head -1)
 )");
   add_campaign(verb, *options);
-  add_option(verb, "point POINT", options->point, "As of explain; all unless given");
-  CLI::Option* const paths = verb->add_flag("--paths", options->paths, "The paths alone, a line each");
+  add_option(verb, "point POINT", options->point, "Point, named as for explain; all points unless given");
+  CLI::Option* const paths =
+      verb->add_flag("--paths", options->paths, "Print only the paths, one on each line");
   add_json(verb, options->json)->excludes(paths);
 }
 
@@ -146,23 +148,23 @@ void export_campaign(const ViewOptions& options) {
 void add_export(VerbSet& verbs) {
   const auto [verb, options] = verbs.add<ViewOptions>(
       export_campaign, "export", "Print the results for programs to read", {0, 1, 2, 6}, R"(
-The canonical form holds what depends on campaign, seeds and engine alone, so that two runs of one
-campaign can be compared byte by byte, however many workers they had and whatever killed them.
---output replaces a file whole, follows a link, writes to a device, a FIFO or /dev/stdout, and says on
-standard error where it wrote, unless --quiet.
+The canonical form holds only what depends on campaign, seeds and engine. Two runs of one campaign can
+therefore be compared byte by byte, for any number of workers and after any interruption. A file named by
+--output is replaced as a whole; links are followed, and devices, FIFOs and /dev/stdout are written to.
+Unless --quiet is given, standard error says where the output was written.
 
-Estimates are of the seeds of each point's last stop test. --csv has a column for every scalar that was
+Estimates are over the seeds of each point's last stop test. --csv has a column for every scalar that was
 measured, --long a row for every number, with names, units and axes as the engine gives them.
 
 --bundle makes the supplement of a paper: campaign file, JSON and both kinds of CSV in canonical form, the
-page of `report`, the figure of `plot` with its script, engines and versions, SHA-256 of each file, and a README
-that says what is what and how to make it again. All files are of one state of the campaign, and a campaign at
-rest gives the same bytes at any time.
+page of `report`, the script of the figure of `plot`, engines and versions, the SHA-256 of each file, and a
+README that describes the files and how to reproduce them. All files show one state of the campaign. A
+campaign that does not run gives the same bytes at any time.
 
   peclet export flow-curve.json --csv --output flow-curve.csv
-  # one number for all results
+  # one checksum for all results
   peclet export flow-curve.json --canonical | sha256sum
-  # profiles and distributions, too
+  # also profiles and distributions
   peclet export flow-curve.json --long --output all.csv
   # everything, for a paper's readers
   peclet export flow-curve.json --bundle flow-curve.tar.gz
@@ -174,7 +176,7 @@ rest gives the same bytes at any time.
   csv->excludes(json);
   CLI::Option* const in_long =
       verb->add_flag("--long", options->in_long,
-                     "CSV with one row per point, quantity and element: profiles and distributions, too");
+                     "CSV with one row per point, quantity and element, also for profiles and distributions");
   in_long->excludes(json)->excludes(csv);
   CLI::Option* const canonical =
       verb->add_flag("--canonical", options->canonical,
@@ -182,7 +184,7 @@ rest gives the same bytes at any time.
   CLI::Option* const output = add_output(verb, options->output);
   CLI::Option* const bundle =
       add_option(verb, "--bundle FILE", options->bundle,
-                 "All of it in one archive, for a paper's supplement: a file that ends in .tar.gz");
+                 "Archive for a paper's supplement, with all of these; its name ends in .tar.gz or .tgz");
   for (CLI::Option* const other : {json, csv, in_long, canonical, output}) bundle->excludes(other);
   add_quiet(verb, options->quiet);
 }
@@ -195,10 +197,10 @@ void print_results(const ViewOptions& options) {
 
 void add_results(VerbSet& verbs) {
   const auto [verb, options] = verbs.add<ViewOptions>(
-      print_results, "results", "Print every stored result whole, one JSON object a line", {0, 1, 2, 6}, R"(
-The database holds results deflated; this prints them as their engines wrote them, with blocks, costs and where
-they come from, and with the point and whether its last stop test counts the seed ("deciding"). One that is extra
-must not enter a mean: which seeds end first depends on the machine. Also while the campaign runs.
+      print_results, "results", "Print every stored result whole, one JSON object per line", {0, 1, 2, 6}, R"(
+Prints each result as its engine wrote it, with blocks, costs and provenance. Adds the point, and whether
+its last stop test counts the seed ("deciding"). Extra seeds must not enter a mean, because it depends on
+the machine which of them have ended. May be used while the campaign runs.
 
   peclet results flow-curve.json peclet=10 > runs.jsonl
   # the values of all points, for R, Julia and others: schema/README.md
@@ -208,8 +210,8 @@ must not enter a mean: which seeds end first depends on the machine. Also while 
 )");
   add_campaign(verb, *options);
   add_option(verb, "point POINT", options->point,
-             "Label of a point, or 4 or more digits of its hash; all unless given");
-  add_option(verb, "--seed SEED", options->seed, "Of this seed only")->check(CLI::NonNegativeNumber);
+             "Label of a point, or 4 or more digits of its hash; all points unless given");
+  add_option(verb, "--seed SEED", options->seed, "Print this seed only")->check(CLI::NonNegativeNumber);
 }
 
 void write_report(const ViewOptions& options) {
@@ -221,11 +223,11 @@ void add_report(VerbSet& verbs) {
   const auto [verb, options] = verbs.add<ViewOptions>(
       write_report, "report", "Make one HTML page of a campaign, for a colleague or a notebook", {0, 1, 2, 6},
       R"(
-The page has every measured quantity over any swept parameter with its intervals, how the mean of each
-point came about, tables that sort, lost seeds by cause, what every mark means, where the numbers come from
-and the commands that make them again. Every chart can be saved as CSV, SVG and a script of matplotlib. It
-is one file that needs no other and no network, and runs in a browser with JavaScript; print it from there.
-A database at rest gives the same bytes at any time.
+The page shows every measured quantity over any swept parameter with its intervals, the convergence of the
+mean of each point, tables that sort, lost seeds by cause, the meaning of every mark, the provenance of the
+numbers, and the commands that reproduce them. Every chart can be saved as CSV, as SVG and as a matplotlib
+script. The page is one file, which needs no network but a browser with JavaScript, and can be printed from
+there. A database that does not change gives the same bytes at any time.
 
   peclet report flow-curve.json --output flow-curve.html
 )");
@@ -238,27 +240,27 @@ void add_serve(VerbSet& verbs) {
   const auto [verb, options] = verbs.add<ServeOptions>(
       serve_campaign, "serve", "Show the page of a campaign in a browser, kept up to date",
       {0, 1, 2, 3, 4, 6}, R"(
-Prints the address of the page that `peclet report` makes, live: numbers come as seeds end, and what was
-chosen on it stays. May be started before, while and after the campaign runs, and only reads. The address is
-reached from this machine alone, by everybody who has an account on it; from elsewhere through ssh. Ends at
-Ctrl-C or SIGTERM, which does nothing to the campaign, with the exit code that `status --check` would have.
+Prints the address of a live page. It is the page of `peclet report`, updated as seeds end; choices on it
+are kept. May be started before, during and after a run, and only reads. The address can be reached only
+from this machine, by everyone who has an account on it; from other machines through ssh. Ends at Ctrl-C or
+SIGTERM, with the exit code of `status --check`, and does not affect the campaign.
 
   peclet serve flow-curve.json
-  # then http://localhost:7325/ here is the page there
+  # then the page of the cluster is http://localhost:7325/ here
   ssh -L 7325:localhost:7325 cluster
 )");
   add_campaign(verb, *options);
   add_number(verb, "--port", options->port, whole_number(0, 65'535),
-             "Port to listen on; 0 is any that is free")
+             "Port to listen on; 0 takes any free one")
       ->capture_default_str();
 }
 
-// With `json` the numbers, and no picture; with `quiet` it is not said either what is left out.
+// The options of `peclet plot`: `json` prints the numbers and draws nothing, `quiet` prints no notes.
 struct PlotOptions : ViewOptions {
   FigureChoice choice;
 };
 
-// The script is written first: it has the numbers where no picture can be drawn.
+// Writes the script first, so that the numbers are there even if the picture cannot be drawn.
 void draw_campaign(const PlotOptions& options) {
   const bool into_file = !options.output.empty() && !options.json;
   const PictureForm form = into_file ? picture_form(options.output) : PictureForm::svg;
@@ -279,11 +281,11 @@ void draw_campaign(const PlotOptions& options) {
     deliver(picture.bytes, options.output, options.quiet);
     if (!options.quiet) say(picture.said);
   } catch (const NotDrawn& fault) {
-    throw NotDrawn(
-        into_file ? fmt::format("{}; {} has the numbers, and draws them where matplotlib is: python3 {} {}",
-                                fault.what(), beside.string(), shell_word(beside.string()),
-                                shell_word(options.output.string()))
-                  : fmt::format("{}; --json prints the numbers", fault.what()));
+    throw NotDrawn(into_file
+                       ? fmt::format("{}; {} has the numbers, and draws them with matplotlib: python3 {} {}",
+                                     fault.what(), beside.string(), shell_word(beside.string()),
+                                     shell_word(options.output.string()))
+                       : fmt::format("{}; --json prints the numbers", fault.what()));
   }
 }
 
@@ -291,15 +293,15 @@ void add_plot(VerbSet& verbs) {
   const auto [verb, options] = verbs.add<PlotOptions>(
       draw_campaign, "plot", "Draw a measured quantity over a swept parameter, with the script of the figure",
       {0, 1, 2, 6}, R"(
-Draws every point with its interval at the campaign's confidence, a curve for each value of what else is
-swept. Numbers are those of `export`: the target's are the ones that decide, with the control variate where
-there is one. Open marks have not converged; those with dashed bars may still change. Crosses have jammed.
+Draws every point with its interval at the campaign's confidence, and a curve for each combination of values
+of the other swept parameters. Numbers are those of `export`. Those of the target are the deciding ones,
+with the control variate if there is one. Open marks are points that have not converged; those with dashed
+bars are provisional. Crosses are points that have jammed.
 
-The name of --output says the form. Pictures are drawn by matplotlib, through python3 of PATH. Beside a
-picture lies its script, of the same name and the ending .py, which holds the numbers and draws the figure
-again by itself. Where there is no python3 with matplotlib only the script is written, and the exit code is 1.
-A script that somebody has changed is never replaced. Axes are logarithmic where the numbers lie more evenly
-then.
+The ending of --output chooses the form. Pictures are drawn with matplotlib, by the python3 in PATH. Beside
+the picture a script of the same name and the ending .py is written, which holds the numbers and draws the
+figure again by itself. Without python3 or matplotlib only the script is written, and the exit code is 1. A
+script that was changed is never replaced. Axes are logarithmic if the numbers then lie more evenly.
 
   peclet plot flow-curve.json --output flow-curve.pdf
   peclet plot flow-curve.json --quantity pressure --over volume_fraction --log y --output p.svg
@@ -314,12 +316,12 @@ then.
   add_option(verb, "--quantity NAME", options->choice.quantity,
              "Number to draw, as `export` calls it; the campaign's target unless given");
   add_option(verb, "--over PARAMETER", options->choice.over,
-             "Swept parameter of the axis: its pointer or the last word of it; the one with most "
+             "Swept parameter on the axis: its pointer or the last word of it; the one with most "
              "values unless given");
   add_option(verb, "--log AXES", options->choice.scale,
-             "Axes that are logarithmic; those that fit unless given")
+             "Logarithmic axes; chosen by the numbers unless given")
       ->check(CLI::IsMember({"none", "x", "y", "xy"}));
-  verb->add_flag("--band", options->choice.tolerance, "A band around each mean as wide as the tolerance");
+  verb->add_flag("--band", options->choice.tolerance, "Draw the tolerance as a band around each mean");
   add_option(verb, "--output FILE", options->output,
              "File to write, ending in .svg, .png, .pdf or .py; SVG on standard output unless given");
   verb->add_flag("--json", options->json, "Print the numbers as JSON, and draw nothing");
@@ -337,14 +339,13 @@ void add_law_options(CLI::App* verb, JammingOptions& options) {
       ->check(CLI::IsMember({"law", "steepest"}));
   add_number(verb, "--exponent", options.exponent, number_above(0),
              "Exponent of the law; fitted unless given");
-  verb->add_flag("--common-exponent", options.common_exponent, "One exponent, fitted, for all curves");
+  verb->add_flag("--common-exponent", options.common_exponent, "Fit one exponent for all curves");
   verb->add_flag("--unit-prefactor", options.unit_prefactor,
-                 "A law that is 1 without particles, (1 - phi / phi_m)^-exponent");
-  add_number(verb, "--above", options.above, number_from(0),
-             "The law is of the points whose viscosity is above")
+                 "Use the law (1 - phi / phi_m)^-exponent, which is 1 without particles");
+  add_number(verb, "--above", options.above, number_from(0), "Viscosity above which points enter the law")
       ->capture_default_str();
   add_number(verb, "--softest", options.curves.softest, number_above(0),
-             "Mean overlap of contacts, in radii, up to which spheres are taken for hard")
+             "Largest mean overlap of contacts, in radii, with which spheres count as hard")
       ->capture_default_str();
 }
 
@@ -352,7 +353,7 @@ void add_proposing_options(CLI::App* verb, JammingOptions& options) {
   verb->add_flag("--propose", options.propose,
                  "Say which fractions to run next, with a patch of the campaign file");
   add_number(verb, "--budget SECONDS", options.budget, number_above(0),
-             "Processor time for what is proposed; one point a curve unless given");
+             "Processor time for the proposed points; one point for each curve unless given");
   add_option(verb, "--write FILE", options.write,
              "New campaign file with the proposed points; a file that is there is never replaced");
 }
@@ -361,21 +362,22 @@ void add_jamming(VerbSet& verbs) {
   const auto [verb, options] = verbs.add<JammingOptions>(
       show_jamming, "jamming", "Estimate the volume fraction of jamming from the points of a sweep",
       {0, 1, 2, 6}, R"(
-Makes a curve of viscosity over volume fraction for each value of what else is swept, and gives its jamming
-point phi_m by two definitions: where a power law A (1 - phi / phi_m)^-beta through the flowing points above
-a viscosity of 10 diverges, and where the viscosity rises most steeply. Errors are of the seeds; where the
-points leave phi_m open it is not determined, and the reason is said.
+Makes a curve of viscosity over volume fraction for each combination of values of the other swept
+parameters, and estimates its jamming point phi_m by two definitions. One is where the viscosity diverges,
+by a power law A (1 - phi / phi_m)^-beta that is fitted to the flowing points above a viscosity of 10. The
+other is where the viscosity rises most steeply. Errors follow from the scatter of the seeds. If the points
+do not determine phi_m, the reason is given.
 
-A point is jammed when half of its seeds or more ended so: the engine's causes overlap, packing and jammed.
-It is soft, and no part of the law, when its contacts overlap by more than 0.1 % of a radius in the mean; of
-results without that mean, when the largest overlap is above ten times as much.
+A point is jammed if half of its seeds or more ended with the engine's causes overlap, packing or jammed. It
+is soft, and left out of the law, if its contacts overlap by more than 0.1 % of a radius in the mean. If
+results have no mean overlap, it is soft if the largest overlap exceeds ten times this limit.
 
---propose says which fraction would tell most: the one that lessens the error of the law, or where there is no
-law yet the one half-way between what flows and what is jammed. Fractions go into the sweep, for all curves.
-Points are known by their scenes: what has been run is not run again.
+--propose names the fraction that would tell most: the one that reduces the error of the law, or, if there
+is no law yet, the one half-way between the points that flow and those that are jammed. Fractions are added
+to the sweep, for all curves. Points that have been run are not run again.
 
-The fits are made by python3 of PATH with NumPy, and by the package peclet that is installed with this program.
-Without one of them the verb ends with 1, and says what is missing and what it would have run.
+The fits need python3 in PATH with NumPy, and the package peclet, which is installed with this program. If
+one of them is missing, the verb exits with 1 and says what is missing and which command has failed.
 
   peclet jamming friction.json
   # the law that holds at all fractions

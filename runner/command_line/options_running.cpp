@@ -17,30 +17,30 @@ void add_team(CLI::App* verb, RunOptions& run) {
   add_number(verb, "--workers", run.workers, whole_number(1, 100'000),
              "Engine processes; cores / threads unless given");
   add_number(verb, "--threads", run.threads, whole_number(1, 4096),
-             "Threads of each; 1, or cores / workers, unless given");
+             "Threads of each; unless given, cores / workers if --workers is given, else 1");
 }
 
 void add_init(VerbSet& verbs) {
   const auto [verb, options] =
       verbs.add<InitOptions>(init_campaign, "init", "Write a small campaign to begin with", {0, 1, 2}, R"(
-The file is a whole campaign that runs in minutes: 100 spheres with friction at three Péclet numbers.
-Change it to what you want to know; `peclet validate` says what is wrong with it.
+The file is a complete campaign that runs in minutes: 100 spheres with friction at three Péclet numbers.
+Adapt it to your question; `peclet validate` says what is wrong with it.
 
   peclet init flow-curve.json
 )");
-  add_option(verb, "campaign FILE.json", options->campaign, "Campaign file (JSON) that is not there yet")
+  add_option(verb, "campaign FILE.json", options->campaign, "Campaign file (JSON) to write; must not exist")
       ->required();
 }
 
 void add_validate(VerbSet& verbs) {
   const auto [verb, options] = verbs.add<ValidateOptions>(
       validate_campaign, "validate", "Check a campaign and all its scenes; writes nothing", {0, 1, 2}, R"(
-Reads the campaign and asks its engine about the scene of every point: the groups that follow from it,
-the time step, and warnings. The first fault is named with its place in the file, its value and what is
-allowed, a target that no result would have included. The file may be a pipe.
+Reads the campaign and asks its engine about the scene of every point: the groups that follow from it, the
+time step, and warnings. The first fault is named with its place in the file, its value and what is allowed.
+A target that results will not have is a fault, too. The file may be a pipe.
 
   peclet validate flow-curve.json
-  # what a program writes
+  # the output of a program
   peclet validate <(my-generator)
   # the time steps alone
   peclet validate flow-curve.json --json | jq '.points[].timestep'
@@ -52,19 +52,19 @@ allowed, a target that no result would have included. The file may be a pipe.
 void add_plan(VerbSet& verbs) {
   const auto [verb, options] = verbs.add<PlanOptions>(
       plan_campaign, "plan",
-      "Say how much work a campaign is: seeds, hours, finish; writes nothing without --pilot",
+      "Estimate the work of a campaign: seeds, hours, finish; writes nothing without --pilot",
       {0, 1, 2, 5, 6, 75}, R"(
-The work is counted in particle-steps, and in processor time where realisations have been run before:
-from the fewest seeds that a point may take to the most. Where none has, one of the point in the middle is
-tried for two seconds, in a temporary folder, or one of another point where that one jams, and the table says
+The work is counted in particle-steps, from the fewest seeds that a point may take to the most; in processor
+time, too, if realisations have been run before. Otherwise a realisation of the point with the median work
+is tried for two seconds in a temporary folder, or one of another point if that jams. The table then says
 that its times are a guess.
 
   peclet plan flow-curve.json --pilot 4 --workers 8
 )");
   add_campaign_file(verb, options->run);
   add_number(verb, "--pilot", options->pilot, whole_number(2, 1'000'000),
-             "Run the first seeds of every point, 4 unless given, which count later as any others; predict "
-             "from them, and store that for `status` to judge")
+             "Run the first seeds of every point, 4 unless given, and store predictions from them, which "
+             "`status` compares with the outcome; later runs count these seeds")
       ->expected(0, 1)
       ->default_str("4");
   add_team(verb, options->run);
@@ -75,22 +75,22 @@ that its times are a guess.
 
 void add_run(VerbSet& verbs) {
   const auto [verb, options] = verbs.add<RunOptions>(
-      run_campaign, "run", "Run a campaign until every point is decided; go on with one that was stopped",
+      run_campaign, "run", "Run a campaign until every point is decided; resume one that was stopped",
       {0, 1, 2, 3, 5, 6, 75}, R"(
 Runs seeds of every point until the interval of its mean is within the tolerance, or all seeds that are
-allowed have ended. The same command goes on with a campaign that was stopped or killed, and takes up
-changes of its file; nothing that has finished is run again.
+allowed have ended. The same command resumes a campaign that was stopped or killed, and takes over changes
+of its file; seeds that have ended are not run again.
 
-Ctrl-C (or SIGTERM) lets the workers write checkpoints and stop, a second one stops at once; either way
-the exit code is 75 and the campaign can be resumed. Progress goes to standard error, the table at the
-end to standard output; with --jsonl events take its place, which schema/README.md describes.
+Ctrl-C (or SIGTERM) lets the workers write checkpoints and stop; a second one stops them at once. Either way
+the exit code is 75 and the campaign can be resumed. Progress goes to standard error, the table at the end
+to standard output. With --jsonl, events are printed instead, which schema/README.md describes.
 
   peclet run flow-curve.json --workers 8
-  # eight hours of it; the same again tomorrow
+  # for eight hours; the same command resumes it tomorrow
   peclet run flow-curve.json --time-limit 28800
   # follow it with a program
   peclet run flow-curve.json --jsonl | jq -r 'select(.event == "decided") | .point.label'
-  # and write to me when it ends
+  # send a mail when it ends
   peclet run flow-curve.json --notify 'echo "$PECLET_SUMMARY" | mail -s peclet me@example.org'
 )");
   add_campaign_file(verb, *options);
@@ -99,17 +99,18 @@ end to standard output; with --jsonl events take its place, which schema/README.
              "Seconds after which workers checkpoint and stop");
   add_number(
       verb, "--budget", options->budget_hours, number_above(0),
-      "Hours of processor time that this run may spend, where they lower the summed relative error most");
+      "Hours of processor time that this run may spend, on seeds that lower the summed relative error most");
   add_seconds(verb, "--lease", options->lease_seconds,
               "Seconds without a new step after which a worker counts as hung");
   add_seconds(verb, "--checkpoint", options->checkpoint_seconds,
               "Seconds between checkpoints of a realisation");
   add_seconds(verb, "--backup", options->backup_seconds, "Seconds between backups of the database");
   verb->add_flag("--jsonl", options->jsonl,
-                 "What happens as JSON on standard output, one object a line, instead of the table");
+                 "Print events as JSON on standard output, one object per line, instead of the table");
   add_option(verb, "--notify COMMAND", options->notify,
-             "Command of the shell for the end, whatever ends the run but a faulty file or another "
-             "owner; told by PECLET_SUMMARY, PECLET_EXIT_CODE, PECLET_CAMPAIGN and PECLET_DIRECTORY");
+             "Shell command to run at the end, except after a faulty file or if another process owns the "
+             "campaign; its variables are PECLET_SUMMARY, PECLET_EXIT_CODE, PECLET_CAMPAIGN and "
+             "PECLET_DIRECTORY");
   add_accept_engine(verb, options->accept_engine);
   verb->add_flag("--quiet", options->quiet, "No progress on stderr");
   verb->add_flag("--force", options->force, "Use a network file system all the same, at your own risk");
@@ -138,10 +139,11 @@ void add_set(VerbSet& verbs) {
   const auto [verb, options] = verbs.add<SetOptions>(
       set_campaign, "set", "Change target, points or priorities of a campaign, also while it runs",
       {0, 1, 2, 4, 6}, R"(
-Changes target, numbers of seeds or priorities. The values are changed in the campaign's file, of which every
-other byte stays, and the campaign takes the file over as it is; without options it does only that, with
-points that you have added to the sweep, for instance. A running campaign does so within seconds, and this
-verb waits for it; points of a finished one that are no longer decided go on with `peclet run`.
+Changes the target, the numbers of seeds or priorities. The values are changed in the campaign file, every
+other byte of which stays, and the campaign takes the file over. Without options the campaign takes the file
+over as it is, for example with points that were added to the sweep. A running campaign does so within
+seconds, and this verb waits for it. If points of a finished campaign are no longer decided, `peclet run`
+continues them.
 
   peclet set flow-curve.json --tolerance 0.03 --maximum 2000
   # take over a file that was edited
@@ -164,37 +166,37 @@ verb waits for it; points of a finished one that are no longer decided go on wit
   add_number(verb, "--realisations", options->realisations, whole_number(1, most_realisations),
              "/realisations, where their number is fixed: seeds of every point");
   add_option(verb, "--keep-files", options->keep_files,
-             "/keep_files: all, none, or of how many first seeds of each point files are kept");
-  add_option(verb, "--point", options->points, "Point that is to have the priority; may be repeated")
+             "/keep_files: all, none, or the number of first seeds of each point whose files are kept");
+  add_option(verb, "--point", options->points, "Point that gets the priority; may be repeated")
       ->allow_extra_args(false);
   add_number(verb, "--priority", options->priority, whole_number(-1'000'000, 1'000'000),
-             "Points of a higher one are served first; 0 unless set");
+             "Priority of these points; higher ones get seeds first; 0 unless set");
   add_patience(verb, options->patience);
 }
 
 void add_cancel(VerbSet& verbs) {
   const auto [verb, options] = verbs.add<CancelOptions>(
       cancel_points, "cancel", "Give points no more seeds, also while the campaign runs", {0, 1, 2, 4, 6}, R"(
-The points get no more seeds and hold nothing up; seeds that run are saved and put back. What has been done
-is kept and shown.
+The points get no more seeds, and the campaign does not wait for them. Running seeds save a checkpoint and
+stop. Results are kept and shown.
 
   peclet cancel flow-curve.json peclet=10
-  # take it up again
+  # give it seeds again
   peclet cancel flow-curve.json peclet=10 --undo
 )");
   add_campaign(verb, *options);
   add_option(verb, "point", options->points,
              "Labels of points, their values alone, or 4 or more digits of their hashes")
       ->required();
-  verb->add_flag("--undo", options->undo, "Take them up again");
+  verb->add_flag("--undo", options->undo, "Give the points seeds again");
   add_patience(verb, options->patience);
 }
 
 void add_retry(VerbSet& verbs) {
   const auto [verb, options] = verbs.add<RetryOptions>(
       retry_seeds, "retry", "Queue seeds again that were given up, with a clean record", {0, 1, 2, 4, 6}, R"(
-Seeds are given up after three failures that were their own: crashes, or no progress. What the engine itself
-called failed (an overlap, a step too large) would fail again, and is not retried.
+Seeds are given up after three failures of their own: crashes, or no progress. A realisation that the engine
+itself reported as failed (an overlap, a step too large) would fail again, and is not retried.
 
   peclet retry flow-curve.json peclet=10 --seed 17
 )");
@@ -202,7 +204,7 @@ called failed (an overlap, a step too large) would fail again, and is not retrie
   add_option(verb, "point", options->points,
              "Labels of points, their values alone, or 4 or more digits of their hashes; all unless given");
   add_number(verb, "--seed", options->seeds, whole_number(0, 2'147'483'647),
-             "Of the one point that is named; may be repeated; all unless given")
+             "Seed of the one point that is named; may be repeated; all seeds unless given")
       ->allow_extra_args(false);
   add_patience(verb, options->patience);
 }
@@ -213,19 +215,20 @@ void add_backup(VerbSet& verbs) {
   const auto [verb, options] = verbs.add<BackupOptions>(
       backup_campaign, "backup", "Copy a campaign's database and files, checked, also while it runs",
       {0, 1, 2, 6}, R"(
-`peclet run` makes such backups by itself; this makes one now, or elsewhere. The copy is checked before
-it takes the place of the one before. Of the folder's path only the last part is made: where a disk is
-not mounted, there is an error and no copy on another disk. A copy that turns out to be on the campaign's
-own file system is said to be.
+`peclet run` makes such backups by itself; this verb makes one now, or in another place. The copy is checked
+before it replaces the previous one. Only the last folder of the path is created, so that an unmounted disk
+is an error and not a copy on another disk. The verb says so if the copy is on the campaign's own file
+system.
 
   peclet backup flow-curve.json /mnt/usb/flow-curve --checkpoints
 )");
   add_campaign(verb, *options);
   add_option(verb, "target FOLDER", options->target,
-             "Folder for backup.db, made in one that must be there; the backup there before becomes "
+             "Folder for backup.db, in a folder that must exist; the previous backup there becomes "
              "backup.previous.db; the campaign's own backup/ unless given");
   verb->add_flag("--checkpoints", options->checkpoints,
-                 "With checkpoints and spool, so that seeds that run now need not start again");
+                 "Also copy checkpoints and results that are not stored yet, so that running seeds need not "
+                 "start again");
   add_json(verb, options->json);
 }
 
@@ -233,18 +236,18 @@ void add_restore(VerbSet& verbs) {
   const auto [verb, options] = verbs.add<RestoreOptions>(
       restore_campaign, "restore",
       "Put a backup in the place of a lost or damaged database, here or elsewhere", {0, 1, 2, 5, 6}, R"(
-What was there is kept aside. The campaign then goes on with `peclet run` to the same results.
+The database that was there is set aside. `peclet run` then continues the campaign to the same results.
 
   peclet restore /mnt/usb/flow-curve flow-curve.json
 )");
   add_option(verb, "backup FILE", options->backup, "Folder of backups, or one file")->required();
   add_option(verb, "campaign CAMPAIGN", options->campaign,
-             "Campaign file or .peclet folder; made when there is none")
+             "Campaign file or .peclet folder; the folder is created if it does not exist")
       ->required();
   add_directory(verb, options->directory);
   verb->add_flag(
       "--force", options->force,
-      "Also in the place of a sound database that is as new, or another campaign's; it is kept aside");
+      "Also replace a sound database that is as new, or that of another campaign; it is set aside");
 }
 
 void add_doctor(VerbSet& verbs) {
@@ -252,9 +255,9 @@ void add_doctor(VerbSet& verbs) {
       examine_campaign, "doctor", "Examine a campaign: database, files, processes, clock and disk",
       {0, 1, 2, 5, 6},
       R"(
-Says what is wrong, how bad it is and what cures it. Without --repair nothing is changed. With it, among
-other things, checkpoints of seeds that no point needs any more are removed: they cost their time again
-should the tolerance be tightened.
+Names each fault with its severity and its cure. Without --repair nothing is changed. With it, among other
+things, checkpoints of seeds that no point needs any more are removed; these seeds start again if the
+tolerance is tightened.
 
   peclet doctor flow-curve.json --repair
 )");
@@ -271,20 +274,19 @@ void add_hand_over(VerbSet& verbs) {
       "Give seeds to a batch system: job arrays that need no database and no daemon", {0, 1, 2, 3, 5, 6, 75},
       R"(
 Turns the seeds that the next stop tests need into job arrays. The database stays on this machine; nodes see
-the folder --shared and the two programs. Without --follow it hands over once, and `peclet ingest` takes
-in what has been done. The answer is the same, byte for byte, as that of `peclet run`.
+the folder --shared and the two programs. Without --follow it hands over once, and `peclet ingest` takes in
+what has been done. The results are the same, byte for byte, as those of `peclet run`.
 
-When the batch system refuses a job, its seeds stay here and the exit code is 1. When it is not known whether it has
-taken one, the seeds are out until a job of that name has been looked for.
+If the batch system refuses a job, its seeds stay here and the exit code is 1. If its answer is lost, the
+seeds count as handed over until a job of that name has been looked for.
 
   peclet hand-over slurm flow-curve.json --shared /scratch/me/flow-curve --follow \
            --option=--partition=short --option=--time=4:00:00
 )");
   add_option(verb, "system SYSTEM", options->system, "slurm; with --template any name")->required();
   add_campaign_file(verb, *options);
-  add_option(
-      verb, "--shared FOLDER", options->shared,
-      "Folder that this machine and the nodes see in the same place; that of the last time unless given");
+  add_option(verb, "--shared FOLDER", options->shared,
+             "Folder that this machine and the nodes see in the same place; the one used last unless given");
   add_number(verb, "--seeds-per-task", options->seeds_per_task, whole_number(1, 100'000),
              "Seeds that one task runs, one after another")
       ->capture_default_str();
@@ -319,12 +321,12 @@ void add_ingest(VerbSet& verbs) {
 Takes results, failures and preempted tasks in from the folder that is shared with the nodes, and hands
 nothing over.
 
-Seeds of which nobody knows anything (their folder is gone, the batch system does not answer) stay out, because
-they may be running. --forget gives a bundle of them up by the name that `peclet ingest` prints. The exit code is 1
-while the folder of seeds that are out is not there.
+Seeds of which nothing is known (their folder is gone, or the batch system does not answer) stay handed
+over, because they may be running. --forget gives up a bundle of them, by the name that `peclet ingest`
+prints. The exit code is 1 while the folder of seeds that are out does not exist.
 
   peclet ingest flow-curve.json
-  # end the jobs; `peclet run` can have their seeds
+  # end the jobs; `peclet run` can run their seeds
   peclet ingest flow-curve.json --cancel
   # its folder is gone, and so are its jobs
   peclet ingest flow-curve.json --forget flow-curve-1a2b3c-0001
@@ -332,8 +334,8 @@ while the folder of seeds that are out is not there.
   add_campaign_file(verb, *options);
   verb->add_flag("--cancel", options->cancel, "End the jobs and take their seeds back");
   add_option(verb, "--forget BUNDLE", options->forget,
-             "Queue the seeds of this bundle again though nobody answers for it; results that come all "
-             "the same count once")
+             "Queue the seeds of this bundle again although nothing is known of them; results that still "
+             "arrive count once")
       ->allow_extra_args(false)  // a campaign's file may follow
       ->excludes("--cancel");
   verb->add_flag("--quiet", options->quiet, "No notes on stderr");
@@ -343,8 +345,8 @@ while the folder of seeds that are out is not there.
 void add_task(VerbSet& verbs) {
   const auto [verb, options] = verbs.add<TaskOptions>(
       run_task, "task", "Run one task of a bundle; what job scripts call on a node", {0, 1, 2, 6, 75}, R"(
-Runs the seeds of the task one after another, those apart that have ended already. SIGTERM, SIGINT and
-SIGUSR1 make the engine save a checkpoint and leave.
+Runs the seeds of the task one after another, except those that have ended already. SIGTERM, SIGINT and
+SIGUSR1 make the engine save a checkpoint and exit.
 
   peclet task /scratch/me/flow-curve/bundles/NAME/manifest.json 7
 )");

@@ -19,13 +19,13 @@
 namespace peclet::runner {
 namespace {
 
-// Seeds that run meanwhile count as in a forecast: those that jam early end first.
+// Returns the mean cost of a realisation. Running seeds count, because seeds that jam end first.
 MeasuredCost cost_of(const std::vector<RealisationRecord>& realisations,
                      const std::vector<Unfinished>& running) {
   std::vector<double> wall_seconds;
   double cpu_seconds = 0;
   for (const RealisationRecord& record : realisations) {
-    // A seed that was given up took time too, but nobody counted it.
+    // The time of a seed that was given up is unknown.
     if (!record.cpu_seconds) continue;
     cpu_seconds += *record.cpu_seconds;
     wall_seconds.push_back(record.wall_seconds.value_or(*record.cpu_seconds));
@@ -49,8 +49,7 @@ std::map<std::string, PointHistory> history(Database& database, const Campaign& 
   return known;
 }
 
-// Whether the database still is about the points and the target of this campaign: while a pilot runs, people
-// may change both.
+// True if the database still has the points and the target of this campaign; both may change during a pilot.
 bool is_of(Database& database, const Campaign& campaign) {
   if (database.campaign().target.target != campaign.target) return false;
   const std::vector<PointRecord> points = database.points();
@@ -79,8 +78,8 @@ std::vector<double> work_of(const std::vector<SceneAnswer>& scenes) {
   return work;
 }
 
-// Of the point with the median of the work, from which the others are least far; of one with less or more
-// where that one jams, which `broke_off` then says.
+// Tries a realisation of the point with the median work and returns its cost. If that fails, as one that
+// jams, tries points with less or more work. `broke_off` gets the reasons. Returns nothing if all fail.
 std::optional<CostGuess> guess_cost(const Campaign& campaign, const std::vector<double>& work,
                                     const EngineCommand& command, std::vector<std::string>& broke_off) {
   std::vector<std::size_t> order(work.size());
@@ -126,10 +125,11 @@ int plan_campaign(const PlanOptions& options) {
   if (options.pilot) {
     return run_pilot(options.run, *options.pilot, [&](const ClaimedCampaign& claimed, Database& database) {
       if (!is_of(database, claimed.campaign)) {
-        fmt::print(stderr,
-                   "peclet: {0}: the campaign was changed while the pilot ran: its results are stored, but "
-                   "no prediction is; `peclet plan {1}` predicts from what is there\n",
-                   file.string(), words_for(file, options.run.directory));
+        fmt::print(
+            stderr,
+            "peclet: {0}: the campaign was changed while the pilot ran. Its results are stored, but no "
+            "prediction; `peclet plan {1}` predicts from these results\n",
+            file.string(), words_for(file, options.run.directory));
         return;
       }
       const Plan plan =

@@ -49,7 +49,7 @@ OpenCampaign open_for_viewing(const std::filesystem::path& given, const std::fil
   OpenCampaign open = open_campaign(given, chosen);
   if (is_frozen_for_us(open.directory.database())) {
     say(fmt::format(
-        "note: {} may not be written by you: it is read as it is, as if nobody ran the campaign\n",
+        "note: {} may not be written by you: it is read without locks, as if no process ran the campaign\n",
         open.directory.root().string()));
   }
   return open;

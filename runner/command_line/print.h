@@ -1,4 +1,4 @@
-// What verbs print, and the exit codes with which they leave.
+// Output of verbs, and their exit codes.
 #pragma once
 
 #include <exception>
@@ -9,30 +9,26 @@
 
 namespace peclet::runner {
 
-// What verbs say.
-//
-// To standard output. A full disk behind `peclet export > file` must not look like success: throws
-// std::system_error, with `advice` behind the name.
+// Writes the text to standard output. Throws std::system_error if that fails, so that a full disk behind
+// `peclet export > file` is an error; its message is "standard output" and `advice`.
 void print(const std::string& text, const char* advice = "");
 
-// To standard error. What cannot be said, because that is closed or full, changes no exit code.
+// Writes the text to standard error. A failure is ignored and changes no exit code.
 void say(const std::string& text);
 
-// To the file `output`, whole or not at all, or to standard output where it has no name.
+// Writes the text to the file `output`, whole or not at all, or to standard output if `output` is empty.
+// Unless `quiet`, says on standard error where the file is.
 void deliver(const std::string& text, const std::filesystem::path& output, bool quiet);
 
-// How the program leaves after an error.
-//
-// 2 InputError and names that no file can have, 5 OwnedByAnother, 6 IntegrityError, 1 any other.
+// Returns the exit code after an error: 2 for InputError and names that no file can have, 5 for
+// OwnedByAnother, 6 for IntegrityError, 1 for any other.
 int exit_code_of(const std::exception& error);
 
-// What it says, fit for a terminal.
+// Returns the message of an error, without characters that would control a terminal.
 std::string message_of(const std::exception& error);
 
-// Opening a campaign for a verb that only looks at it.
-//
-// As open_campaign(); says on standard error if the database is read as it is, without the locks and the log
-// that a running campaign has.
+// Opens a campaign as open_campaign(), for a verb that only reads it. Says on standard error if the database
+// is read without the locks and the log of a running campaign, because this user may not write it.
 OpenCampaign open_for_viewing(const std::filesystem::path& given, const std::filesystem::path& chosen);
 
 }  // namespace peclet::runner

@@ -58,7 +58,7 @@ std::string notify(const std::string& command, const RunOutcome& outcome) {
 
 namespace {
 
-// More workers than seeds that may still run have nothing to do.
+// Returns the workers that are asked for, at most one for each seed that the campaign may run.
 WorkerCount useful_worker_count(const RunOptions& options, const Campaign& campaign) {
   WorkerCount size = worker_count(options);
   const auto seeds = static_cast<std::int64_t>(campaign.points.size()) * campaign.maximum_realisations;
@@ -66,7 +66,7 @@ WorkerCount useful_worker_count(const RunOptions& options, const Campaign& campa
   return size;
 }
 
-// What a person should know who asked for more than the machine has.
+// Warns if the threads of all workers exceed the usable cores more than fourfold.
 void judge_worker_count(const WorkerCount& size, RunListener& listener) {
   constexpr int tolerable = 4;
   const int cores = usable_cores();
@@ -76,7 +76,8 @@ void judge_worker_count(const WorkerCount& size, RunListener& listener) {
       size.workers, size.threads, cores, std::max(1, cores / size.threads)));
 }
 
-// A run's database and picture, ready to be dispatched from: what an earlier owner left undone is done.
+// The database and state of a run, ready for dispatch. The constructor completes what an earlier owner left
+// unfinished, carries out waiting requests and accepts the engine if asked to.
 struct OpenedRun {
   OpenedRun(const ClaimedCampaign& claimed, const RunOptions& options, RunListener& listener)
       : database(open_for_owner(claimed, [&](const std::string& text) { listener.note(text); })),
@@ -89,11 +90,11 @@ struct OpenedRun {
   Database database;
   CampaignState state;
   RequestHandler requests;
-  SummedError before;  // the run
+  SummedError before;  // that before the run
 };
 
-// Waits while something is in the way: the disk is full, or another program has locked the database. Nothing:
-// a signal came first, or there never will be room.
+// Opens the run; waits while the disk is full or another program has locked the database. Returns null if a
+// signal came first, or if waiting cannot make room.
 std::unique_ptr<OpenedRun> open_when_it_is_possible(const ClaimedCampaign& claimed, const RunOptions& options,
                                                     RunListener& listener, StopSignals& signals) {
   const std::filesystem::path& root = claimed.directory.root();
@@ -130,7 +131,6 @@ RunBegan beginning(const ClaimedCampaign& claimed, const RunOptions& options) {
           size.threads};
 }
 
-// The result is the exit code.
 int dispatch(OpenedRun& opened, const RunOptions& options, const ClaimedCampaign& claimed, RunLog& log,
              StopSignals& signals) {
   using std::chrono::steady_clock;
@@ -147,7 +147,7 @@ int dispatch(OpenedRun& opened, const RunOptions& options, const ClaimedCampaign
   settings.checkpoint_seconds = options.checkpoint_seconds;
   if (options.time_limit) settings.time_limit = std::chrono::duration<double>(*options.time_limit);
   settings.chore = [&backup, &watch] {
-    // The folder is looked at before the backup, which must not begin in a folder that has been moved.
+    // The folder is checked before the backup, which must not begin in a folder that has been moved.
     const bool mended = watch.attend(steady_clock::now());
     backup.attend(steady_clock::now());
     return mended;
@@ -163,7 +163,7 @@ int dispatch(OpenedRun& opened, const RunOptions& options, const ClaimedCampaign
   return ending(read_status(opened.database), finished);
 }
 
-// What failed before it had begun is no part of the campaign's history: nothing is written.
+// Reports the failure of a run to the listener, and writes it into the campaign's log if the run had begun.
 void tell_of_failure(RunLog& log, bool had_begun, const std::exception& error) {
   if (had_begun) log.record(fmt::format("ends with an error: {}", error.what()));
   log.happened(RunEnded{exit_code_of(error), error.what()});
@@ -184,7 +184,7 @@ Bounds bounds_of(const RunOptions& options, const ClaimedCampaign& claimed, std:
   return bounds;
 }
 
-// What the person is told on standard output in the end.
+// Prints the result of a run with this exit code.
 using Conclusion = std::function<void(const ClaimedCampaign&, OpenedRun&, int code)>;
 
 int run(const RunOptions& options, std::optional<int> ceiling, const Conclusion& conclude) {
@@ -236,7 +236,7 @@ WorkerCount worker_count(const RunOptions& options) {
 
 namespace {
 
-// With the table at the end, and its totals on one line.
+// Runs the campaign and prints the table at its end. `summary` gets the totals on one line.
 int run_and_conclude(const RunOptions& options, std::string& summary) {
   return run(options, std::nullopt, [&](const ClaimedCampaign&, OpenedRun& opened, int code) {
     const CampaignStatus status = read_status(opened.database, getpid());
@@ -253,7 +253,7 @@ int run_and_conclude(const RunOptions& options, std::string& summary) {
   });
 }
 
-// A faulty file and another owner are answered at once, to whom has asked.
+// Calls the command of --notify, except for a faulty file and another owner, which the user sees at once.
 void notify_of(const RunOptions& options, int code, const std::string& summary) {
   if (options.notify.empty() || code == ExitCode::usage || code == ExitCode::owned) return;
   const CampaignDirectory directory = campaign_directory(options.campaign, options.directory);
@@ -281,7 +281,7 @@ int run_pilot(const RunOptions& options, int seeds,
       run(options, seeds, [&](const ClaimedCampaign& claimed, OpenedRun& opened, int ended_with) {
         if (ended_with != ExitCode::stopped) conclude(claimed, opened.database);
       });
-  // That points are not decided yet is what a pilot is for.
+  // Points that are not decided are expected after a pilot.
   return code == ExitCode::integrity || code == ExitCode::stopped ? code : 0;
 }
 

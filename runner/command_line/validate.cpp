@@ -20,7 +20,7 @@
 namespace peclet::runner {
 namespace {
 
-// {0} is the name.
+// The campaign file that `peclet init` writes; {0} is the name.
 constexpr const char* text = R"({{
   "name": "{0}",
   "scene": {{
@@ -60,8 +60,8 @@ std::string init_campaign(const InitOptions& options) {
   }
   const std::string name = file.stem().string();
   check_campaign_name(name, file.string());
-  if (!kind_of(file).empty()) {  // also a link to nothing
-    throw InputError(file.string(), "", "", "is there already, and is left alone");
+  if (!kind_of(file).empty()) {  // also a dangling link
+    throw InputError(file.string(), "", "", "is there already, and is not replaced");
   }
   check_output(file);
   write_durably(file, fmt::format(fmt::runtime(text), name));
@@ -78,8 +78,8 @@ struct Derived {
   std::string key, heading;
 };
 
-// Numbers that exist in at least one point: first those that the engine names, in its order, the others under
-// their own names.
+// Returns a column for each derived number of at least one point: first those that the engine describes, in
+// its order, then the others under their own names.
 std::vector<Derived> derived_columns(const std::vector<SceneAnswer>& answers) {
   std::set<std::string> present;
   for (const SceneAnswer& answer : answers) {
@@ -124,7 +124,7 @@ std::string points_table(const Campaign& campaign, const std::vector<SceneAnswer
   return table.text();
 }
 
-// Each warning once, with the points that it is about.
+// Returns each warning once, with the points that it concerns.
 std::string warnings_text(const Campaign& campaign, const std::vector<SceneAnswer>& answers) {
   std::map<std::string, std::vector<std::string>> labels;
   for (std::size_t i = 0; i < answers.size(); ++i) {

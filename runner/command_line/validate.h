@@ -1,4 +1,4 @@
-// The verbs `peclet init` and `peclet validate`: a campaign before anything has run.
+// The verbs `peclet init` and `peclet validate`, for a campaign before its first run.
 #pragma once
 
 #include <filesystem>
@@ -6,24 +6,22 @@
 
 namespace peclet::runner {
 
-// The verb `peclet init`: a campaign file to begin with.
 struct InitOptions {
   std::filesystem::path campaign;  // file to write
 };
 
-// Writes a small campaign that runs as it is: a Brownian suspension in the usual units of the literature,
-// three Péclet numbers. Returns what to do next. Throws InputError when there is such a file already or its
-// name is no campaign's, std::system_error when it cannot be written.
+// Writes a small campaign that runs as it is: a Brownian suspension at three Péclet numbers, in the usual
+// units of the literature. Returns the message with the next commands. Throws InputError if the file exists
+// or its name cannot be that of a campaign, std::system_error if it cannot be written.
 std::string init_campaign(const InitOptions& options);
 
-// The verb `peclet validate`: everything that can be said about a campaign before anything is written.
 struct ValidateOptions {
   std::filesystem::path campaign;
   bool json = false;
 };
 
-// Reads the campaign and asks the engine about the scene of every point: derived groups, step, warnings.
-// Throws InputError for the first fault, of the campaign or of a scene.
+// Reads the campaign, asks the engine about the scene of every point, and returns a table (or JSON) of
+// derived groups, time steps and warnings. Throws InputError for the first fault. Writes nothing.
 std::string validate_campaign(const ValidateOptions& options);
 
 }  // namespace peclet::runner

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t help_width = 100;
 
-// Lines of no more than `help_width` characters.
+// Returns the words of the text in lines of at most `help_width` characters.
 std::string wrapped(const std::string& text) {
   std::istringstream words(text);
   std::string lines;
@@ -34,16 +34,16 @@ std::string wrapped(const std::string& text) {
 
 std::string exit_code_lines(const std::vector<int>& codes) {
   static const std::map<int, std::string> meanings{
-      {ExitCode::done, "done; of a run: every point converged, or has all its seeds"},
+      {ExitCode::done, "done; for a run: every point has converged, or has all its seeds"},
       {ExitCode::error, "error"},
       {ExitCode::usage, "usage, or faulty input; nothing has been written"},
       {ExitCode::unconverged, "finished, but some points are capped, failed, cancelled or lost seeds"},
       {ExitCode::unfinished,
-       "not finished yet; of set, cancel and retry: asked for, and not carried out yet"},
+       "not finished yet; for set, cancel and retry: requested, but not carried out yet"},
       {ExitCode::owned, "another process owns the campaign"},
       {ExitCode::integrity, "integrity: the database is damaged, or a seed gave two different results"},
       {ExitCode::stopped,
-       "stopped by a signal or a time limit, or at the end of its budget; the same command goes on"}};
+       "stopped by a signal or a time limit, or at the end of its budget; the same command resumes"}};
   std::string text = "Exit codes:\n";
   for (const auto& [code, meaning] : meanings) {
     if (codes.empty() || std::count(codes.begin(), codes.end(), code) > 0)
@@ -54,7 +54,7 @@ std::string exit_code_lines(const std::vector<int>& codes) {
 
 namespace {
 
-// What follows the options in --help.
+// Returns the text of --help behind the options: paragraphs, exit codes and examples.
 std::string help_footer(const std::string& page, const std::vector<int>& exit_codes) {
   std::istringstream lines(page);
   std::string text, paragraph, examples;
@@ -72,8 +72,8 @@ std::string help_footer(const std::string& page, const std::vector<int>& exit_co
   return text + exit_code_lines(exit_codes) + (commands > 1 ? "\nExamples:" : "\nExample:") + examples;
 }
 
-// The word spelt anew for the parser, which would take 010 for 8 and 1e3 for no integer. What is at most 1
-// may be given in per cent. Throws InputError at the option's name.
+// Returns the number in the spelling that the parser reads correctly; it would read 010 as 8, and refuse 1e3
+// as an integer. A number that is at most 1 may be given in per cent. Throws InputError at the option's name.
 std::string checked(const std::string& name, const std::string& word, const Key& allowed) {
   double number = 0;
   const bool in_percent = allowed.maximum <= 1 && word.ends_with('%');
@@ -87,13 +87,13 @@ std::string checked(const std::string& name, const std::string& word, const Key&
   try {
     return KeyTable("", {allowed}).validate(number, "").dump();
   } catch (const InputError& fault) {
-    // How per cent are written, after a semicolon, is no news for somebody who has written them.
+    // The hint behind the semicolon tells how to write per cent, which the user has done already.
     throw InputError("", name, word,
                      in_percent ? fault.allowed().substr(0, fault.allowed().find(';')) : fault.allowed());
   }
 }
 
-// What a script leaves when its variable is not set.
+// Refuses an empty name, which a script passes if its variable is not set.
 std::string named_file(const std::string& word) {
   if (word.empty()) throw InputError("", "campaign", "\"\"", "must be the name of a file");
   return "";
@@ -122,16 +122,18 @@ CLI::Option* add_output(CLI::App* verb, std::filesystem::path& path) {
                     "File to write, whole or not at all; standard output unless given");
 }
 
-CLI::Option* add_json(CLI::App* verb, bool& json) { return verb->add_flag("--json", json, "For programs"); }
+CLI::Option* add_json(CLI::App* verb, bool& json) {
+  return verb->add_flag("--json", json, "Print JSON, for programs");
+}
 
 void add_quiet(CLI::App* verb, bool& quiet) {
-  verb->add_flag("--quiet", quiet, "Do not say on stderr where it was written");
+  verb->add_flag("--quiet", quiet, "Do not say on stderr where the output was written");
 }
 
 void add_accept_engine(CLI::App* verb, std::string& name) {
   add_option(verb, "--accept-engine", name,
-             "Version, or 6 or more digits of the hash, of the engine that is there now: results of "
-             "another one at open points are set aside");
+             "Version of the present engine, or 6 or more digits of its hash: results of other engines at "
+             "open points are set aside");
 }
 
 void add_seconds(CLI::App* verb, const char* name, double& seconds, const char* meaning) {
@@ -154,7 +156,7 @@ Key number_above(double minimum) {
 
 void check_number(CLI::Option* option, const Key& allowed) {
   Key whole = allowed;
-  whole.pointer = "";  // the word is all of the document
+  whole.pointer = "";  // the word is the whole document
   const auto check = [name = option->get_name(), whole](std::string& word) {
     if (!word.empty()) word = checked(name, word, whole);  // empty: an option whose value may be left out
     return std::string();

@@ -1,5 +1,4 @@
-// What the functions that add verbs to the command line share. A verb is one such function: its options, what
-// is said of it, and what it does.
+// The parts that the verbs of the command line share. One function adds each verb: options, help and action.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -17,10 +16,10 @@
 
 namespace peclet::runner {
 
-// A line for each of these exit codes, below a heading; for all of them if there are none.
+// Returns a heading and a line for each of these exit codes; for all exit codes if `codes` is empty.
 std::string exit_code_lines(const std::vector<int>& codes);
 
-// The parser, and the verb that was named once it has parsed.
+// The parser of the command line, and the action of the verb that it has read.
 class VerbSet {
  public:
   VerbSet() = default;
@@ -28,16 +27,15 @@ class VerbSet {
   VerbSet& operator=(const VerbSet&) = delete;
 
   CLI::App& app() { return app_; }
-  // What the verb that was named does; it gives an exit code. Nothing before the parser has parsed.
+  // The action of the verb that was named; it returns an exit code. Empty before the parser has parsed.
   const std::function<int()>& action() const { return action_; }
 
-  // Adds a verb that can leave with these exit codes, and returns it with the options into which the parser
-  // writes. `perform`, a function of them, is the action when the verb is the one that was named. It gives
-  // nothing, an exit code, what is to be printed, or both as `text` and `exit_code`.
+  // Adds a verb that can leave with these exit codes. Returns it with its options, into which the parser
+  // writes. If the verb is named, the action is `perform(options)`. That returns nothing, an exit code, a
+  // text to print, or an object with both as `text` and `exit_code`.
   //
-  // `page` is what --help, and so the manual, says of the verb beyond its line in the list of verbs:
-  // paragraphs that are separated by empty lines, where ends of lines mean nothing, and examples as they are
-  // printed, in lines that begin with two blanks.
+  // `page` is the text of --help and of the manual page. Paragraphs are separated by empty lines, and their
+  // lines are broken anew. Lines that begin with two blanks are examples, printed as they are.
   template <typename Options, typename Perform>
   std::pair<CLI::App*, Options*> add(Perform perform, const char* name, const char* description,
                                      const std::vector<int>& exit_codes, const char* page) {
@@ -75,21 +73,20 @@ class VerbSet {
   std::function<int()> action_;
 };
 
-// One function a verb, in the file of its group. In the order in which help lists them.
+// Add the verbs of a group, in the order in which help lists them.
 void add_running_verbs(VerbSet& verbs);
 void add_viewing_verbs(VerbSet& verbs);
 void add_changing_verbs(VerbSet& verbs);
 
-// Options that several verbs have.
 void add_file(CLI::App* verb, std::filesystem::path& path, const char* shown = "campaign FILE.json",
               const char* meaning = "Campaign file (JSON)");
 void add_directory(CLI::App* verb, std::filesystem::path& path);
 CLI::Option* add_output(CLI::App* verb, std::filesystem::path& path);
 CLI::Option* add_json(CLI::App* verb, bool& json);
-// Does not say where --output was written.
+// Adds --quiet, which leaves out the message about where --output was written.
 void add_quiet(CLI::App* verb, bool& quiet);
 void add_accept_engine(CLI::App* verb, std::string& name);
-// A campaign that is named by its file, or also by its folder, with --directory.
+// Add --directory and the campaign, which is named by its file; with add_campaign() also by its folder.
 template <typename Options>
 void add_campaign_file(CLI::App* verb, Options& options) {
   add_file(verb, options.campaign);
@@ -100,16 +97,15 @@ void add_campaign(CLI::App* verb, Options& options) {
   add_file(verb, options.campaign, "campaign CAMPAIGN", "Campaign file, or its .peclet folder");
   add_directory(verb, options.directory);
 }
-// A time > 0, which has a default.
+// Adds a time > 0 [s] whose default is the present value of `seconds`.
 void add_seconds(CLI::App* verb, const char* name, double& seconds, const char* meaning);
 
-// What a number may be. Without a maximum of its own it is bounded by 1e9, so that times can be counted in
-// nanoseconds: 31 years of seconds.
+// Return the allowed values of a number, by default at most 1e9, so that nanoseconds can count the seconds.
 Key whole_number(double minimum, double maximum);
 Key number_above(double minimum);
 Key number_from(double minimum, double maximum = 1e9);
 
-// Adds an option as help shows it: "--output FILE" is its name and what its value is called.
+// Adds an option. `shown` is its name and, behind a blank, the name of its value: "--output FILE".
 template <typename Value>
 CLI::Option* add_option(CLI::App* verb, const std::string& shown, Value& value, const char* meaning) {
   const std::size_t blank = std::min(shown.find(' '), shown.size());
@@ -117,11 +113,11 @@ CLI::Option* add_option(CLI::App* verb, const std::string& shown, Value& value, 
   return blank < shown.size() ? option->type_name(shown.substr(blank + 1)) : option;
 }
 
-// The only reader of numbers of the command line: finite, in range, all of the word.
-// `value` is an int or a double, one of these that may be absent, or a list of them.
-// The parser throws InputError at the option's name for anything else.
+// Makes the parser accept only a finite number in the allowed range that takes the whole word. For anything
+// else the parser throws InputError at the option's name. All numbers of the command line are read this way.
 void check_number(CLI::Option* option, const Key& allowed);
 
+// Adds an option whose `value` is an int or a double, an optional one, or a list of them.
 template <typename Value>
 CLI::Option* add_number(CLI::App* verb, const std::string& shown, Value& value, const Key& allowed,
                         const char* meaning) {
@@ -130,17 +126,15 @@ CLI::Option* add_number(CLI::App* verb, const std::string& shown, Value& value, 
   return option;
 }
 
-// What is read off the verbs and options themselves, so that it cannot say anything else.
-
-// Prints values without the parser's own words for their checks: "--threads NUMBER=1".
+// Prints the value of an option without the parser's own words for its check: "--threads NUMBER=1".
 class HelpFormatter : public CLI::Formatter {
  public:
   std::string make_option_opts(const CLI::Option* option) const override;
 };
 
-// Returns a script of bash for `eval`, or for a file in bash's own folder of completions. It offers verbs,
-// options, choices, and files where a value is called so: FILE.json (campaign files), CAMPAIGN (those and
-// .peclet folders), FILE and FOLDER.
+// Returns a bash script for `eval`, or for a file in bash's folder of completions. It offers verbs, options
+// and choices. It offers files for values that are called FILE.json (campaign files), CAMPAIGN (those and
+// .peclet folders), FILE or FOLDER.
 std::string bash_completion(const CLI::App& app);
 
 }  // namespace peclet::runner

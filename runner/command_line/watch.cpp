@@ -32,14 +32,14 @@ struct Size {
   int rows = 24, columns = 80;
 };
 
-// Asked anew each time, so that a window may change its size.
+// Returns the present size of the terminal, which may change; 24 x 80 if it is unknown.
 Size terminal_size() {
   winsize size{};
   if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_row == 0 || size.ws_col == 0) return {};
   return {size.ws_row, size.ws_col};
 }
 
-// Keeps the terminal from showing what is typed, which would stand within the table. Reads nothing.
+// Turns off the echo of the terminal, so that typed keys do not appear within the table. Reads nothing.
 class SilentKeys {
  public:
   SilentKeys() : is_ours_(tcgetpgrp(STDIN_FILENO) == getpgrp() && tcgetattr(STDIN_FILENO, &before_) == 0) {
@@ -49,7 +49,8 @@ class SilentKeys {
     tcsetattr(STDIN_FILENO, TCSANOW, &silent);
   }
   ~SilentKeys() {
-    if (is_ours_) tcsetattr(STDIN_FILENO, TCSAFLUSH, &before_);  // the shell is not to read them either
+    if (is_ours_)
+      tcsetattr(STDIN_FILENO, TCSAFLUSH, &before_);  // drops the keys, so that no shell reads them
   }
   SilentKeys(const SilentKeys&) = delete;
   SilentKeys& operator=(const SilentKeys&) = delete;
@@ -62,7 +63,7 @@ class SilentKeys {
 struct Sight {
   std::string text;
   int exit_code = 0;
-  std::string curve{};  // where there is room for it
+  std::string curve{};  // shown if there is room for it
 };
 
 bool is_continuation(char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U; }
@@ -85,8 +86,8 @@ std::vector<std::string_view> lines_of(std::string_view text) {
   return lines;
 }
 
-// Opens a reader of its own each time: one that stayed open would hold back the owner's write-ahead log.
-// Throws InputError for a campaign with a fault, because `run` would refuse it.
+// Reads the status. Opens the database anew each time, because an open reader would keep the owner's
+// write-ahead log from being reset. Throws InputError for a faulty campaign, which `run` would refuse.
 Sight sight_of(const WatchOptions& options, std::size_t width) {
   const auto waits = [&](const std::string& text) -> Sight {
     return {folded(text + '\n', width), ExitCode::unfinished};
@@ -106,7 +107,7 @@ Sight sight_of(const WatchOptions& options, std::size_t width) {
   }
 }
 
-// The table goes first: a curve is drawn only where all of it is to be seen.
+// Returns the table, followed by the curve if both fit the terminal.
 std::string with_curve(const Sight& sight, const Size& size) {
   const std::size_t needed = lines_of(sight.text).size() + 1 + lines_of(sight.curve).size();
   const bool fits = !sight.curve.empty() && needed < static_cast<std::size_t>(size.rows);
@@ -114,7 +115,7 @@ std::string with_curve(const Sight& sight, const Size& size) {
 }
 
 void show(const std::string& text, const Size& size) {
-  // Home, then line by line with what was there before erased, then everything below: no flicker.
+  // Goes to the top, writes each line and erases its rest, then erases everything below. This avoids flicker.
   std::string screen = "\x1b[H";
   const std::string visible = fitted(text, size.rows - 1, size.columns);
   for (const std::string_view line : lines_of(visible)) screen += std::string(line) + "\x1b[K\n";
@@ -166,10 +167,11 @@ int serve_campaign(const ServeOptions& options) {
   LoopbackServer server(options.port);
   fmt::print("http://127.0.0.1:{}/\n", server.port());
   if (std::fflush(stdout) != 0) throw std::system_error(errno, std::generic_category(), "standard output");
-  fmt::print(stderr, "peclet: the page of {} is there; Ctrl-C ends it, and does nothing to the campaign\n",
+  fmt::print(stderr,
+             "peclet: serving the page of {}; Ctrl-C ends the server and does not affect the campaign\n",
              printable(campaign.name()));
   server.serve(signals.descriptor(), [&](const HttpRequest& request) { return answer(campaign, request); });
-  campaign.stop_test();
+  campaign.refresh();
   return campaign.exit_code();
 }
 

@@ -41,7 +41,7 @@ bool is_program(const fs::path& path) { return is_file(path) && access(path.c_st
   throw InputError(campaign_file.string(), "/engine/0", name,
                    is_file(program)
                        ? fmt::format("may not be executed: `chmod +x {}`", program.string())
-                       : fmt::format("must be a program; there is none at {}", program.string()));
+                       : fmt::format("must be a program; there is no file {}", program.string()));
 }
 
 std::vector<fs::path> search_path() {
@@ -76,8 +76,7 @@ Ends make_pipe() {
   return {Descriptor(ends[0]), Descriptor(ends[1])};
 }
 
-// A file in memory that holds the text, to be read from its beginning. A pipe might fill up before the
-// program reads.
+// Returns a file in memory with the text, to be read from its beginning; a pipe might be too small.
 Descriptor file_with(const std::string& text) {
   Descriptor file(memfd_create("input", MFD_CLOEXEC));
   if (file.number() < 0) check(errno, "memfd_create");
@@ -86,7 +85,7 @@ Descriptor file_with(const std::string& text) {
   return file;
 }
 
-// As exec(3) wants them; valid as long as the words are.
+// Returns the words as exec(3) takes them; valid as long as `words`.
 std::vector<char*> pointers(std::vector<std::string>& words) {
   std::vector<char*> pointers;
   pointers.reserve(words.size() + 1);
@@ -95,8 +94,8 @@ std::vector<char*> pointers(std::vector<std::string>& words) {
   return pointers;
 }
 
-// The settings of posix_spawn(3), which own memory: a process group of its own, and signals as usual, which
-// this process may have blocked.
+// The settings of posix_spawn(3), which own memory. The child gets a process group of its own, and the
+// default handling of signals that this process has blocked.
 class SpawnSettings {
  public:
   SpawnSettings(int input, int output, int errors) {
@@ -127,7 +126,7 @@ class SpawnSettings {
   // Leaves the signal ignored if this process ignores it.
   void inherit(int signal) { sigdelset(&usual_, signal); }
 
-  // Starts the program, found on PATH, with these variables beside those of this process.
+  // Starts the program words[0], found on PATH, with these variables beside those of this process.
   pid_t spawn(std::vector<std::string> words, std::vector<std::string> variables = {}) {
     check(posix_spawnattr_setsigmask(&attributes_, &blocked_), "posix_spawn");
     check(posix_spawnattr_setsigdefault(&attributes_, &usual_), "posix_spawn");
@@ -153,7 +152,7 @@ bool read_into(std::string& text, int descriptor) {
   return count > 0 || (count < 0 && errno == EINTR);
 }
 
-// Reads both streams until they end; false when that takes longer than until `deadline`.
+// Reads both streams until they end. Returns false if `deadline` passes first.
 bool read_to_end(int output, int errors, CommandAnswer& answer, Clock::time_point deadline) {
   std::array<pollfd, 2> watched{{{output, POLLIN, 0}, {errors, POLLIN, 0}}};
   while (watched[0].fd >= 0 || watched[1].fd >= 0) {
@@ -168,7 +167,7 @@ bool read_to_end(int output, int errors, CommandAnswer& answer, Clock::time_poin
   return true;
 }
 
-// Returns how the process ended, nothing while it has not; `options` as of waitpid(2).
+// Returns how the process ended, or nothing if it still runs; `options` are those of waitpid(2).
 std::optional<ExitStatus> wait_for(pid_t process, int options) {
   int status = 0;
   pid_t ended = -1;
@@ -179,8 +178,8 @@ std::optional<ExitStatus> wait_for(pid_t process, int options) {
   return ended == 0 ? std::nullopt : std::optional(exit_status(status));
 }
 
-// Whoever started this with nohup wants it to outlive the terminal. (A signal that is blocked is kept even if
-// it is to be ignored.)
+// True if this process ignores the signal, as SIGHUP under nohup. Such a signal must not be blocked, because
+// a blocked signal is kept even if it is to be ignored.
 bool is_ignored(int number) {
   struct sigaction present {};
   return sigaction(number, nullptr, &present) == 0 && present.sa_handler == SIG_IGN;
@@ -208,7 +207,7 @@ EngineCommand resolve_engine(const Campaign& campaign, const fs::path& campaign_
 EngineProcess::EngineProcess(const EngineCommand& command) {
   Ends pipe = make_pipe();
   fcntl(pipe.first.number(), F_SETFL, O_NONBLOCK);
-  fcntl(pipe.first.number(), F_SETPIPE_SZ, pipe_size);  // a smaller one does it, too
+  fcntl(pipe.first.number(), F_SETPIPE_SZ, pipe_size);  // may fail: a smaller pipe works, too
   start(command, pipe.second.number());
   output_ = pipe.first.take();
 }
@@ -225,8 +224,8 @@ void EngineProcess::start(const EngineCommand& command, int output) {
   SpawnSettings settings(its.number(), output, output);
   if (!command.folder.empty()) settings.run_in(command.folder);
   for (const int number : command.blocked_signals) settings.block(number);
-  settings.inherit(
-      SIGPIPE);  // an engine that prints when its owner is gone must live to write its checkpoint
+  // An engine that prints after its owner is gone must live to write its checkpoint.
+  settings.inherit(SIGPIPE);
   std::vector<std::string> words{command.program.string()};
   words.insert(words.end(), command.arguments.begin(), command.arguments.end());
   process_ = settings.spawn(std::move(words), command.environment);
@@ -273,7 +272,7 @@ void EngineProcess::kill() const {
 
 bool EngineProcess::is_stopped() const {
   siginfo_t about{};
-  // Without taking the news away, so that it is true as long as the process is stopped.
+  // WNOWAIT leaves the state to be reported again, so that this is true as long as the process is stopped.
   return process_ > 0 &&
          waitid(P_PID, static_cast<id_t>(process_), &about, WSTOPPED | WNOHANG | WNOWAIT) == 0 &&
          about.si_pid == process_;
@@ -319,7 +318,7 @@ StopSignals::StopSignals(int one_more) {
   if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), "signalfd");
 }
 
-// A signal that came too late for anybody to take must not kill a process that is leaving anyway.
+// Takes the signals that came late, so that they do not kill the process when they are no longer blocked.
 StopSignals::~StopSignals() {
   while (take()) {
   }

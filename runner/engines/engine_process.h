@@ -1,5 +1,5 @@
-// Processes: one running engine, whose standard input is one end of a socket pair; outside commands that are
-// run to their end; signals that stop this process.
+// Processes and signals: a running engine, whose standard input is one end of a socket pair; commands that
+// are run to their end; signals that stop this process.
 #pragma once
 
 #include <sys/types.h>
@@ -18,7 +18,7 @@
 
 namespace peclet::runner {
 
-// An engine does not start, or does not live until it is given work. Exit code 1.
+// Thrown if an engine does not start, or ends before it is given work. Exit code 1.
 class EngineError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -28,25 +28,25 @@ struct EngineCommand {
   fs::path program;
   std::vector<std::string> arguments;  // without the program
   fs::path folder;                     // in which it runs
-  // Signals that the engine never hears, because whoever sends them to all processes of a job means its
-  // owner, which then asks the engine by frames.
+  // Signals that are blocked in the engine. A batch system sends them to all processes of a job; the engine's
+  // owner receives them and asks the engine by frames.
   std::vector<int> blocked_signals{};
   std::vector<std::string> environment{};  // "NAME=value", beside that of this process
 };
 
-// Finds campaign.engine[0]: absolute, or with a slash relative to the campaign file's folder; else beside the
-// running program, else on PATH, else among the program's own adapters. It runs in the campaign file's
-// folder, so that names among its arguments mean the same wherever peclet is started. Throws InputError at
-// /engine/0 of `campaign_file`.
+// Finds the program campaign.engine[0]. A name with a slash is absolute or relative to the campaign file's
+// folder. Any other name is looked for beside the running program, then on PATH, then among the program's own
+// adapters. The engine runs in the campaign file's folder, wherever peclet is started, so that file names
+// among its arguments keep their meaning. Throws InputError at /engine/0 if the program is not found.
 EngineCommand resolve_engine(const Campaign& campaign, const fs::path& campaign_file);
 
-// Movable owner of the process and of our end of its socket.
+// A running engine. Movable; owns the process and this end of its socket.
 class EngineProcess {
  public:
   // Starts the engine in a process group of its own, so that a Ctrl-C at the terminal reaches only its owner.
-  // What it prints goes into a pipe, to be read with printed(), or into the file `output`. Our end of the
-  // socket is close-on-exec, so an owner's death is the end of file that tells the engine to checkpoint and
-  // leave. Throws std::system_error.
+  // The engine's output goes into a pipe, to be read with printed(), or into the file `output`. This end of
+  // the socket is close-on-exec: if the owner dies, the engine reads an end of file, saves a checkpoint and
+  // exits. Throws std::system_error.
   explicit EngineProcess(const EngineCommand& command);
   EngineProcess(const EngineCommand& command, const Descriptor& output);
   // Closes the socket, waits briefly for the engine to leave by itself, then kills it.
@@ -57,17 +57,17 @@ class EngineProcess {
   int descriptor() const { return descriptor_; }
   pid_t process() const { return process_; }
 
-  // What it has printed since, at most some hundred kilobytes at a time; never waits.
+  // Returns the engine's output since the last call, at most 256 KiB, without waiting.
   std::string printed();
 
-  // Closes our end of the socket: the engine checkpoints and leaves.
+  // Closes this end of the socket, so that the engine saves a checkpoint and exits.
   void hang_up();
-  // SIGKILL. The ending is still to be reaped.
+  // Sends SIGKILL. reap() is still to be called.
   void kill() const;
-  // Whether it is stopped now (SIGSTOP and the like).
+  // True if the process is stopped now, as by SIGSTOP.
   bool is_stopped() const;
-  // How it ended, once it has. Requires that it has not said so before: afterwards the process no longer
-  // exists.
+  // Returns how the process ended, or nothing if it still runs. Must not be called again after it has
+  // returned a status, because the process no longer exists.
   std::optional<ExitStatus> reap();
 
  private:
@@ -76,40 +76,38 @@ class EngineProcess {
   void leave_or_be_killed();
 
   int descriptor_ = -1;
-  int output_ = -1;     // our end of the pipe
+  int output_ = -1;     // this end of the pipe
   pid_t process_ = -1;  // -1: reaped
 };
 
-// An outside command, run to its end: what it printed and how it left.
-
+// The output and the exit status of a command that was run to its end.
 struct CommandAnswer {
   ExitStatus ending;
   bool timed_out = false;  // it was killed with its children, and what it did is unknown
   std::string output, errors;
   bool succeeded() const { return !timed_out && ending.status == 0; }
-  // Why it did not succeed, on one line: "exit status 1: Unable to contact slurm controller".
+  // Returns why the command failed, on one line: "exit status 1: Unable to contact slurm controller".
   std::string complaint() const;
 };
 
-// Runs a program (found on PATH) in a process group of its own, so that a Ctrl-C at the terminal does not cut
-// it off between doing something and saying so. Its standard input is `input`. Throws std::system_error if
-// the program cannot be started.
+// Runs a program (found on PATH) to its end, and kills it after `patience`. It has a process group of its
+// own, so that a Ctrl-C at the terminal does not interrupt it. Its standard input is `input`. Throws
+// std::system_error if the program cannot be started.
 CommandAnswer run_command(const std::vector<std::string>& words, std::chrono::seconds patience,
                           const std::string& input = "");
 
-// SIGINT, SIGTERM and SIGHUP (the terminal or connection is gone), and one more if it is given, as something
-// to poll for: from construction to destruction they are blocked in this thread and read from a descriptor
-// instead. Threads that are started meanwhile inherit that. SIGHUP is left alone where it is ignored, as
-// under nohup.
+// Receives SIGINT, SIGTERM, SIGHUP (the terminal or connection is gone) and `one_more` through a descriptor
+// that can be polled. While the object lives, they are blocked in this thread and in threads that it starts.
+// SIGHUP is left alone if it is ignored, as under nohup.
 class StopSignals {
  public:
   explicit StopSignals(int one_more = SIGTERM);
   ~StopSignals();
   StopSignals& operator=(StopSignals&&) = delete;
   int descriptor() const { return descriptor_; }
-  // Takes one signal that has come, if any.
+  // Takes one signal that has come. Returns false if there is none.
   bool take();
-  // Waits for one at most so long, and takes it.
+  // Waits at most `patience` for a signal, and takes it. Returns false if none came.
   bool wait(std::chrono::milliseconds patience);
 
  private:

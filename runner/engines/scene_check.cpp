@@ -36,15 +36,14 @@ namespace peclet::runner {
 namespace {
 
 constexpr std::chrono::minutes patience{1};
-// How often what it prints meanwhile is looked at.
+// Interval at which the engine's output is checked for its length.
 constexpr std::chrono::milliseconds glance{20};
 
-// Somebody may kill the engine that is asked; that says nothing about the scenes.
+// Tries with an engine that is killed from outside, which says nothing about the scenes.
 constexpr int most_tries = 10;
 struct KilledFromOutside {};
 
-// What an engine prints while it is asked, in memory: nothing may be written before the scenes are known to
-// be sound.
+// The output of an engine that is asked, in memory: nothing is written before scenes are known to be valid.
 class Printed {
  public:
   Printed() : file_(memfd_create("peclet engine", MFD_CLOEXEC)) {
@@ -54,7 +53,7 @@ class Printed {
 
   const Descriptor& file() const { return file_; }
 
-  // An engine that prints without end must not take all memory: its first words go.
+  // Drops the output if it is longer than 1 MiB, because an engine may print without end.
   void keep_short() const {
     struct stat about {};
     constexpr off_t longest = 1 << 20;
@@ -92,7 +91,7 @@ class Printed {
   Descriptor file_;
 };
 
-// One engine that is asked questions.
+// An engine process that answers questions.
 class Conversation {
  public:
   explicit Conversation(const EngineCommand& command)
@@ -172,12 +171,12 @@ class Conversation {
   std::shared_ptr<const Vocabulary> words_;
 };
 
-// " of the point peclet=10"; nothing where it is the only one.
+// Returns " of the point peclet=10", or "" if it is the only point.
 std::string of_point(const Campaign& campaign, const StatePoint& point) {
   return campaign.points.size() == 1 ? "" : " of the point " + printable(point.label, 60);
 }
 
-// An engine that says what it will measure spares us the first seed of a misspelt observable.
+// Throws InputError for an observable that the engine will not measure, if the engine says what it measures.
 void check_observables(const Json& answer, const Campaign& campaign, const StatePoint& point,
                        const fs::path& campaign_file) {
   if (!answer.contains("observables")) return;
@@ -245,7 +244,7 @@ class Trial {
  public:
   explicit Trial(const Json& scene) : scene_(scene) {}
 
-  // False: it is over.
+  // Returns false if the trial is over.
   bool hear(const WorkerEvent& event, WorkerPool& pool, const CampaignDirectory& directory) {
     if (std::holds_alternative<Hello>(event)) {
       pool.assign(0, job(directory));
@@ -272,7 +271,7 @@ class Trial {
   static constexpr double long_enough = 2, longest = 10;
 
   bool hear(const Progressed& progressed) {
-    // Packing has steps of its own.
+    // The steps of packing are not those of the realisation.
     if (progressed.step == 0 || progressed.steps == 0 || progressed.phase == 0) return true;
     if (!first_) {
       first_ = progressed.step;

@@ -1,4 +1,4 @@
-// What the engine says about the scenes of a campaign before anything runs.
+// Asks the engine about the scenes of a campaign before anything runs.
 #pragma once
 
 #include <memory>
@@ -15,13 +15,13 @@
 namespace peclet::runner {
 
 struct SceneAnswer {
-  std::optional<double> timestep;  // none: the engine knows of none
-  double steps = 0;                // estimate of the whole realisation
+  std::optional<double> timestep;  // absent if the engine has none
+  double steps = 0;                // estimate for the whole realisation
   std::int64_t particles = 0;
-  Json derived;
-  std::vector<std::string> warnings;        // in words
-  Json identity;                            // of the engine that says so
-  std::shared_ptr<const Vocabulary> words;  // of the engine, the same of all scenes
+  Json derived;  // numbers that follow from the scene, by name
+  std::vector<std::string> warnings;
+  Json identity;                            // that of the engine
+  std::shared_ptr<const Vocabulary> words;  // that of the engine, shared by all answers
 };
 
 // Asks an engine process about every point; answers in the order of the points. Writes nothing.
@@ -31,18 +31,17 @@ struct SceneAnswer {
 std::vector<SceneAnswer> check_scenes(const Campaign& campaign, const fs::path& campaign_file,
                                       const EngineCommand& command);
 
-// Work of a realisation of each point; nothing unless the engine knows all of them.
+// Returns the work of a realisation of each point [steps x particles]; empty if one of them is unknown.
 std::vector<double> particle_steps(const std::vector<SceneAnswer>& answers);
 
 struct CostTrial {
-  std::optional<double> seconds{};  // of a worker for one realisation of the scene
+  std::optional<double> seconds{};  // time of a worker for one realisation of the scene
   std::string broke_off{};          // "packing: ..." where the realisation ended early; "" where it did not
 };
 
-// Tries what a realisation may cost where nothing is known yet: the engine runs seed 0 in a folder of its own
-// that is removed again, and is killed when it has said after two seconds how far it is. No seconds when the
-// engine does not get that far within ten seconds, when the realisation ends early, as one that jams, or when
-// the engine cannot run the scene.
+// Estimates the cost of a realisation. The engine runs seed 0 in a temporary folder and is killed after two
+// seconds, from which the time of the whole is extrapolated. `seconds` is absent if there is no progress
+// within ten seconds, or if the realisation fails or ends early, as one that jams.
 CostTrial try_cost(const Json& scene, const EngineCommand& command);
 
 }  // namespace peclet::runner

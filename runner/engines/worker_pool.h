@@ -1,4 +1,4 @@
-// What the dispatcher needs of workers: start one, give it a seed, hear what becomes of it.
+// The interface of a pool of workers, through which the dispatcher starts them and gives them seeds.
 //
 // The real pool (worker_process.h) runs engines; tests put a scripted one in its place.
 #pragma once
@@ -15,7 +15,7 @@
 
 namespace peclet::runner {
 
-// One realisation as a worker is told about it.
+// One realisation, as it is given to a worker.
 struct Job {
   std::int64_t attempt = 0;  // names the job in frames
   std::string point;         // hash
@@ -27,11 +27,11 @@ struct Job {
   double progress_seconds = 1;
 };
 
-// What a worker says or does. `worker` is its number, from 0.
+// Events of workers. `worker` is the number of the worker, from 0.
 struct Hello {
   int worker;
   Json engine;
-  bool ahead = false;  // it takes one further job while it has one, and begins it after that
+  bool ahead = false;  // takes one further job while it has one, and begins it after that
 };
 struct Progressed {
   int worker;
@@ -58,17 +58,17 @@ struct Drained {
   std::int64_t job;
   std::int64_t step;
 };
-struct ShortOfRoom {  // could not write a file of its job, keeps its work and tries again
+struct ShortOfRoom {  // it could not write a file of its job, keeps its work and tries again
   int worker;
   std::int64_t job;
   fs::path path;
   std::uint64_t bytes;
 };
-struct Garbled {  // said something that is no message; it has been killed, Exited follows
+struct Garbled {  // it sent something that is not a message and has been killed; Exited follows
   int worker;
   std::string message;
 };
-struct Exited {  // always the last one of a process
+struct Exited {  // the last event of a process
   int worker;
   ExitStatus ending;
 };
@@ -82,21 +82,21 @@ class WorkerPool {
   virtual ~WorkerPool() = default;
 
   virtual int size() const = 0;
-  // Starts the process of a worker that has none. Throws std::system_error when that is impossible.
+  // Starts the process of a worker that has none. Throws std::system_error if that fails.
   virtual void start(int worker) = 0;
-  // Number of the worker's process; for people.
+  // Returns the number of the worker's process, for messages.
   virtual std::int64_t process(int worker) const = 0;
-  // Requires that the worker said hello and has no job, or takes jobs ahead and has only one. A worker that
-  // has died meanwhile will say Exited.
+  // Gives the worker a job. Requires that the worker said hello and has no job, or takes jobs ahead and has
+  // only one. If the worker has died meanwhile, Exited follows.
   virtual void assign(int worker, const Job& job) = 0;
-  // Asks for a checkpoint; Drained (when it had a job) and Exited follow. A job that it has not begun is
-  // given up without a word.
+  // Tells the worker to save a checkpoint and exit; Drained (if it has a job) and Exited follow. A further
+  // job that has not begun is dropped without an event.
   virtual void drain(int worker) = 0;
   virtual void kill(int worker) = 0;
-  // Whether its process is stopped (SIGSTOP), which is nobody's fault.
+  // True if the worker's process is stopped, as by SIGSTOP.
   virtual bool is_stopped(int worker) const = 0;
 
-  // What happened, in order for each worker; waits for the first event, at most for `patience`.
+  // Waits at most `patience` for an event, and returns all events, those of each worker in order.
   virtual std::vector<WorkerEvent> wait(std::chrono::milliseconds patience) = 0;
 };
 

@@ -32,7 +32,8 @@ namespace peclet::runner {
 
 namespace {
 
-// Machines with more cores than a cpu_set_t has bits need a larger set.
+// Returns the number of cores of the affinity mask. Tries larger and larger sets, because a machine may have
+// more cores than a cpu_set_t has bits.
 int cores_of_affinity() {
   for (std::size_t count = CPU_SETSIZE; count <= 1 << 16; count *= 2) {
     cpu_set_t* const set = CPU_ALLOC(count);
@@ -51,7 +52,8 @@ std::optional<double> number_in(const fs::path& file) {
   return std::ifstream(file) >> number ? std::optional(number) : std::nullopt;
 }
 
-// Version 2: "QUOTA PERIOD" or "max PERIOD" [us]. Version 1: one file each, a quota below 0 for none.
+// Returns the quota of a control group [cores]. Version 2 of control groups has "QUOTA PERIOD" or "max
+// PERIOD" [us] in one file. Version 1 has a file for each; a quota below 0 means no limit.
 std::optional<double> quota_of(const fs::path& group) {
   std::string quota;
   double period = 0;
@@ -69,13 +71,13 @@ constexpr Awake hello_patience{60};
 
 using Time = std::chrono::steady_clock;
 
-// An engine that has closed its socket is on its way out; one that is not gone after this is killed.
+// Time that an engine has to exit after it has closed its socket; then it is killed.
 constexpr std::chrono::seconds leaving_patience{2};
-// How soon to look again for the ending of a process that has closed its socket.
+// Interval of the checks whether a process that has closed its socket has ended.
 constexpr std::chrono::milliseconds reaping_interval{2};
 
-// What an engine prints is taken from its pipe this often, so one that prints without end waits for us most
-// of the time, and its logs stay small.
+// Interval at which the output of engines is taken from their pipes. An engine that prints without end waits
+// most of the time for its pipe, so that its logs stay small.
 constexpr std::chrono::milliseconds log_interval{100};
 constexpr std::uint64_t largest_log = 1 << 20;
 constexpr int older_logs = 2;
@@ -99,7 +101,7 @@ Json job_frame(const Job& job) {
           {"failures", job.failures.string()}};
 }
 
-// Throws FrameError for a message that a worker does not send.
+// Returns the event of a message. Throws FrameError for a message that workers do not send.
 WorkerEvent as_event(int worker, Json given) {
   const Json message = checked_frame(std::move(given));
   const auto text = [&](const char* key) { return message[key].get<std::string>(); };
@@ -120,8 +122,8 @@ WorkerEvent as_event(int worker, Json given) {
 
 }  // namespace
 
-// "0::/system.slice/job.scope" of version 2, "4:cpu,cpuacct:/slurm/uid_1000/job_7" of version 1. In a
-// container the files of its own group may lie at the root. Every group above limits, too.
+// Lines of `groups` are "0::/system.slice/job.scope" in version 2 and "4:cpu,cpuacct:/slurm/uid_1000/job_7"
+// in version 1. Groups above set limits, too. In a container the files of its own group may be at the root.
 std::optional<double> core_quota(const fs::path& root, const std::string& groups) {
   std::vector<std::pair<fs::path, fs::path>> places;  // where its kind is mounted, and the group in there
   std::istringstream lines(groups);
@@ -218,7 +220,7 @@ std::optional<fs::path> unwritable_folder(const Job& job) {
 }
 
 void allow_open_files(int workers) {
-  // A socket, a pipe and a log each; the database, its copies and what else there is.
+  // Each worker has a socket, a pipe and a log. The others are the database, its copies and other files.
   constexpr rlim_t of_worker = 3, others = 64;
   const rlim_t needed = of_worker * static_cast<rlim_t>(workers) + others;
   rlimit limit{};
@@ -243,7 +245,7 @@ ProcessPool::ProcessPool(int workers, EngineCommand command, CampaignDirectory d
   for (int worker = 0; worker < workers; ++worker) {
     logs_.push_back(std::make_unique<RotatingFile>(directory_.worker_log(worker), largest_log, older_logs));
   }
-  // `peclet doctor` finds by these the workers that outlived their owner.
+  // `peclet doctor` finds workers that outlived their owner by these variables.
   command_.environment.push_back("PECLET_CAMPAIGN=" + directory_.root().string());
   command_.environment.push_back(fmt::format("PECLET_OWNER={}", getpid()));
   std::signal(SIGPIPE, SIG_IGN);
@@ -290,7 +292,7 @@ void ProcessPool::flush(Worker& worker) {
                                 MSG_NOSIGNAL | MSG_DONTWAIT);
     if (sent < 0 && errno == EINTR) continue;
     if (sent < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return;
-    if (sent < 0) {  // it has gone; the end of the stream and its ending are about to say so
+    if (sent < 0) {  // the worker has gone; the end of its stream and its exit status follow
       worker.unsent.clear();
       return;
     }
@@ -338,8 +340,8 @@ void ProcessPool::keep_what_is_printed() {
   }
 }
 
-// Takes everything that has come (a socket holds less than this), so that leases are judged by the latest
-// news; a worker that floods us does not keep us from the others.
+// Reads everything that has come, so that leases are judged by the latest messages. The number of reads is
+// bounded (a socket holds less), so that one worker cannot keep the owner from the others.
 void ProcessPool::receive(int number, std::vector<WorkerEvent>& events) {
   Worker& worker = *workers_[static_cast<std::size_t>(number)];
   std::array<char, 65536> bytes;
@@ -375,7 +377,7 @@ void ProcessPool::reap(int number, std::vector<WorkerEvent>& events) {
   if (!worker || !worker->deaf) return;
   if (const std::optional<ExitStatus> ending = worker->process.reap()) {
     events.emplace_back(Exited{number, *ending});
-    // Its last words say why.
+    // The last output says why the process ended.
     const std::string text = worker->process.printed();
     if (!text.empty()) logs_[static_cast<std::size_t>(number)]->append(text);
     worker.reset();

@@ -18,16 +18,16 @@
 
 namespace peclet::runner {
 
-// Returns the cores of the affinity mask (taskset, Slurm's cpusets), or fewer where a control group limits
-// processor time to fewer; at least 1.
+// Returns the number of cores in the affinity mask (taskset, Slurm's cpusets), or fewer if a control group
+// limits processor time to fewer; at least 1.
 int usable_cores();
 
-// The processor time, in cores, to which the control groups limit a process whose /proc/self/cgroup reads
-// `groups`, below `root`, where they are mounted (/sys/fs/cgroup); nothing if they do not.
+// Returns the limit of processor time by control groups [cores], if any. `groups` is the text of the
+// process's /proc/self/cgroup; `root` is where control groups are mounted (/sys/fs/cgroup).
 std::optional<double> core_quota(const fs::path& root, const std::string& groups);
 
-// Time during which this process ran. Leases and patience are measured in it: an owner that was stopped, or
-// frozen together with its workers, has heard nothing meanwhile and must not hold that against them.
+// Time during which this process ran [s]. Leases are measured in it, because an owner that was stopped, or
+// frozen together with its workers, receives no messages meanwhile.
 using Awake = std::chrono::duration<double>;
 
 class AwakeClock {
@@ -36,8 +36,8 @@ class AwakeClock {
 
   AwakeClock(Time now, Awake lease) : lease_(lease), heard_(now) {}
 
-  // A turn has ended: all news has been fetched, so it is never older than the time by which it is judged. A
-  // turn of more than a second, or of more than half a lease, counts as no more: the process stood still.
+  // Adds the time of a turn that has ended, after all messages have been fetched. A turn counts for one
+  // second or half a lease at most, because the process was stopped during a longer one.
   void end_turn(Time now);
 
   Awake awake() const { return awake_; }
@@ -49,58 +49,52 @@ class AwakeClock {
   Time heard_;
 };
 
-// How an attempt ended, and why, for people.
 struct AttemptReason {
   AttemptOutcome outcome = AttemptOutcome::result;
   std::string message{};
 };
 
-// How far a realisation is.
 struct JobProgress {
   int phase = 0;  // as in Progressed
   std::int64_t step = 0, steps = 0;
   double strain = 0;
 };
 
-// One worker as its owner sees it: started, greeted, busy with a job; and when the owner's patience with it
-// ends. Pure: it is told what happened and at what time, and says what follows. The dispatcher and the task
-// of a batch system judge their workers by it.
+// The stage of one worker, as its owner knows it, and whether the worker is overdue. It has no clock and no
+// process, but is told events and their times. The dispatcher and the tasks of a batch system use it.
 class WorkerWatch {
  public:
   bool is_there() const { return stage_ != Stage::absent; }
   bool is_starting() const { return stage_ == Stage::starting; }
-  // And fit for a job: not one that is being killed.
+  // True if the worker may get a job: it has none, and is not being killed.
   bool is_idle() const { return stage_ == Stage::idle && !condemned_; }
   bool is_busy() const { return stage_ == Stage::busy; }
 
-  // Its process was started. Whatever was known of an earlier one is forgotten.
+  // Records that the process was started; forgets all about an earlier one.
   void start(Awake now);
-  // It said hello, or has no job any more.
+  // Records that the worker said hello, or has no job any more.
   void rest(Awake now);
-  // It has a job from now on.
   void begin_job(Awake now);
-  // Takes down how far the job is. A new step renews the lease; being alive does not.
+  // Records the progress of the job. A new step renews the lease; a message without one does not.
   void hear(const Progressed& progress, Awake now);
-  // Renews the lease without a step: the worker waits for something that is not its fault.
+  // Renews the lease without a step, because the worker waits for something that is not its fault.
   void renew(Awake now) { renewed_ = now; }
-  // It gave its job back at that step.
+  // Records that the worker gave its job back at that step.
   void leave_at(std::int64_t step) { progress_.step = step; }
-  // It has been told to leave its job.
+  // Records that the worker was told to leave its job.
   void recall() { is_recalled_ = true; }
-  // It has been killed by the owner, for that reason. The first reason stays.
+  // Records that the owner has killed the worker for that reason. The first reason stays.
   void condemn(AttemptReason reason);
 
   bool is_recalled() const { return is_recalled_; }
   const std::optional<AttemptReason>& condemned() const { return condemned_; }
   const JobProgress& progress() const { return progress_; }
 
-  // Whether no new step came for longer than `lease`, or no hello for a minute.
+  // True if no new step came for longer than `lease`, or no hello for a minute.
   bool is_overdue(Awake now, Awake lease) const;
-  // What an overdue worker is condemned for. A process that was stopped (SIGSTOP), or was told to leave, is
-  // not blamed.
+  // Returns the reason to kill an overdue worker. One that is stopped (SIGSTOP) or recalled is not to blame.
   AttemptReason overdue(Awake lease, bool is_stopped) const;
-  // How the attempt ended whose process has ended in this way. `all_recalled`: every worker has been told to
-  // leave.
+  // Returns the outcome of the attempt whose process has ended. `all_recalled`: all workers were recalled.
   AttemptReason ended(const ExitStatus& ending, bool all_recalled) const;
 
  private:
@@ -113,12 +107,11 @@ class WorkerWatch {
   std::optional<AttemptReason> condemned_;
 };
 
-// Returns the first folder into which an engine writes for its job that is not there or has no room; nothing
-// if it can write in all of them. An engine that does not know how to wait for room may crash or give up
-// instead, which is not its fault.
+// Returns the first folder of a job that does not exist or has no room, if any. An engine that cannot wait
+// for room may then fail, and is not to blame.
 std::optional<fs::path> unwritable_folder(const Job& job);
 
-// Allows this process as many open files as so many workers take. Throws InputError when the system does not.
+// Raises this process's limit of open files to the need of `workers` workers. Throws InputError if it cannot.
 void allow_open_files(int workers);
 
 class ProcessPool : public WorkerPool {
@@ -142,8 +135,8 @@ class ProcessPool : public WorkerPool {
     EngineProcess process;
     FrameDecoder decoder{largest_answer};
     std::string unsent{};  // bytes that the socket did not take yet
-    bool deaf = false;     // its socket has ended, or what it says no longer counts
-    std::optional<std::chrono::steady_clock::time_point> grace{};  // then it is killed
+    bool deaf = false;     // its socket has ended, or its messages no longer count
+    std::optional<std::chrono::steady_clock::time_point> grace{};  // time after which it is killed
   };
 
   void keep_what_is_printed();
@@ -157,7 +150,7 @@ class ProcessPool : public WorkerPool {
   CampaignDirectory directory_;
   StopSignals& signals_;
   std::vector<std::unique_ptr<Worker>> workers_;
-  std::vector<std::unique_ptr<RotatingFile>> logs_;  // by worker
+  std::vector<std::unique_ptr<RotatingFile>> logs_;  // one for each worker
   std::chrono::steady_clock::time_point logs_kept_{};
 };
 

@@ -24,19 +24,19 @@ void require_tolerance(const Target& target, const std::string& path) {
   for (const Criterion& criterion : target.criteria()) {
     if (target.has_tolerance() && bare(criterion.observable) == path) return;
   }
-  throw InputError("", "--band", path, "has no tolerance: the campaign does not aim at it");
+  throw InputError("", "--band", path, "has no tolerance: it is not a target of the campaign");
 }
 
-// "converged" of a point that has converged or is complete, "undecided" of one that has ended otherwise,
-// "provisional" of one still open.
+// Returns "converged" for a point that is converged or complete, "undecided" for one that has ended
+// otherwise, "provisional" for an open one.
 const char* state_of(const Json& point) {
   if (!point.at("decided").get<bool>()) return "provisional";
   const std::optional<Verdict> verdict = verdict_of(point.at("state").get<std::string>());
   return verdict && is_reached(*verdict) ? "converged" : "undecided";
 }
 
-// Whether the point has a number of the quantity. If the point has jammed, a mean over half of its seeds or
-// fewer is not its own: it is the mean of those that happened to flow.
+// True if the point has a number of the quantity. If the point has jammed, a mean over half of its seeds or
+// fewer does not count, because it is that of the seeds that happened to flow.
 bool has_number(const Json& point, const Json& estimate) {
   if (estimate.is_null() || !estimate[0].is_number()) return false;
   const Json& endings = point.at("endings");
@@ -73,8 +73,8 @@ void require_numbers(const Json& points, const Swept& axis, const FigureChoice& 
     if (!is_hidden) return;
   }
   throw InputError("", "--quantity", quantity,
-                   has_number   ? "has no number that a logarithmic axis has a place for"
-                   : has_jammed ? "has no number at any point: those that have ended have jammed"
+                   has_number   ? "has no number that a logarithmic axis can show"
+                   : has_jammed ? "has no number at any point: all points that have ended have jammed"
                                 : "has no number at any point yet");
 }
 
@@ -105,9 +105,8 @@ Json figure_data(Database& database, const FigureChoice& choice) {
 }
 
 std::string figure_script(const Json& data) {
-  // A line for each member and each point, so that people can read and change them. Between r""" and """
-  // nothing ends the string: JSON has a backslash before every quotation mark within a text, and never three
-  // around one.
+  // One line for each member and each point, for people who read or change them. JSON cannot end the raw
+  // string: it has a backslash before every quotation mark within a text, and never three in a row.
   std::vector<std::string> lines, points;
   for (const auto& [name, value] : data.items()) {
     if (name != "points") lines.push_back(fmt::format("\"{}\": {}", name, canonical_json(value)));
@@ -145,11 +144,11 @@ PictureForm picture_form(const fs::path& output) {
 fs::path script_beside(const fs::path& output) {
   fs::path script = output;
   script.replace_extension(".py");
-  std::error_code unknown;  // what cannot be looked at cannot be written either, and is said then
+  std::error_code unknown;  // ignored: a file that cannot be examined is refused when it is written
   if (fs::is_regular_file(script, unknown) && !is_own_script(read_file(script))) {
     throw InputError(script.string(), "", "",
-                     "is there already, and is not as peclet plot wrote it: the script of the figure would "
-                     "replace it; move it away, or choose another name for --output");
+                     "is there already, and is not a script as `peclet plot` writes it: the script of the "
+                     "figure would replace it; move it away, or choose another name for --output");
   }
   return script;
 }
@@ -165,7 +164,7 @@ Picture drawn(const std::string& script, PictureForm form) {
   try {
     const CommandAnswer answer = run_command({"python3", source.string(), output.string()}, patience);
     // The script itself says what cures a lack of matplotlib.
-    if (!answer.succeeded()) throw NotDrawn("python3 draws no picture: " + answer.complaint());
+    if (!answer.succeeded()) throw NotDrawn("python3 could not draw the picture: " + answer.complaint());
     return {read_file(output), answer.output};
   } catch (const std::system_error& fault) {
     throw NotDrawn(

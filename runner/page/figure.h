@@ -13,39 +13,36 @@
 
 namespace peclet::runner {
 
-// What is to be drawn.
 struct FigureChoice {
   std::string quantity;              // "" or a path: "pressure", "stress/total/3", "stress/total/xy"
   std::string over;                  // "" or a swept parameter: "/volume_fraction", "volume_fraction"
   std::optional<std::string> scale;  // logarithmic axes: "none", "x", "y", "xy"; those that fit unless given
-  bool tolerance = false;            // a band around each mean as wide as the target asks
+  bool tolerance = false;            // draw the tolerance as a band around each mean
 };
 
-// What python/peclet/drawing.py draws (its docstring lists the members): the quantity, what is swept, and
-// each point with its numbers, null where it has none. Throws InputError for a quantity that is not measured
-// or a parameter that is not swept, naming those that are, and where no point has a number that the axes have
-// a place for; IntegrityError.
+// Returns the document that python/peclet/drawing.py draws (its docstring lists the members): the quantity,
+// the swept parameters, and the numbers of each point, null if it has none. Throws InputError for a quantity
+// that is not measured or a parameter that is not swept, and names the possible ones; also if the axes can
+// show no point. Throws IntegrityError.
 Json figure_data(Database& database, const FigureChoice& choice);
 
-// drawing.py with these data in it, a point a line. Ends with the SHA-256 of all before its last line. The
-// same data give the same bytes.
+// Returns drawing.py with these data in it, one line for each point. The last line has the SHA-256 of all
+// before it. The same data give the same bytes.
 std::string figure_script(const Json& data);
 
-// Whether the text is what figure_script() once gave, and nobody has changed it.
+// True if figure_script() has made the text and it has not been changed since.
 bool is_own_script(std::string_view text);
-
-// Pictures as files: which form a name asks for, and who draws it.
 
 enum class PictureForm { svg, png, pdf, script };
 
-// Returns the form that the end of the name asks for. Throws InputError naming those that are allowed.
+// Returns the form of a picture by the ending of its name. Throws InputError with the allowed endings.
 PictureForm picture_form(const std::filesystem::path& output);
 
-// Returns where the script of a picture lies: beside it, with the ending .py. Throws InputError if a file is
-// there that is not a script as the program wrote it, which would be lost.
+// Returns the path of a picture's script: beside the picture, with the ending .py. Throws InputError if
+// another file is there, or a script that was changed, because it would be lost.
 std::filesystem::path script_beside(const std::filesystem::path& output);
 
-// No python3, or one without matplotlib; the message names the cure.
+// Thrown if python3 or matplotlib is missing; the message names the cure.
 class NotDrawn : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -53,11 +50,10 @@ class NotDrawn : public std::runtime_error {
 
 struct Picture {
   std::string bytes;
-  std::string said;  // what the picture leaves out, in lines
+  std::string said;  // lines about points that the picture omits
 };
 
-// The picture that python3 of PATH draws with matplotlib: runs the script in a folder of temporary files.
-// Throws NotDrawn.
+// Draws the picture: runs the script with the python3 in PATH, in a temporary folder. Throws NotDrawn.
 Picture drawn(const std::string& script, PictureForm form);
 
 }  // namespace peclet::runner

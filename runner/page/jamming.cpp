@@ -40,7 +40,8 @@ std::string state_of(const PointSummary& point, const Json& known, double softes
   return is_soft(known, softest) ? "soft" : "flowing";
 }
 
-// Sets what the seeds of the stop test, or all that have ended, say.
+// Adds the numbers of the point's seeds to `made`. The overlap is that of the seeds of the last stop test, or
+// before the first one of all that have ended.
 void add_seeds(Json& made, Database& database, const PointSummary& point) {
   const int end = point.stop_tests.empty() ? std::numeric_limits<int>::max() : point.stop_tests.back().seeds;
   RunningEstimate overlaps;
@@ -57,7 +58,7 @@ void add_seeds(Json& made, Database& database, const PointSummary& point) {
   made["cpu_seconds"] = cpu_seconds;
 }
 
-// [mean, standard error, half-width, count] of the point, as of KnownPoint.
+// Returns [mean, standard error, half-width, count] of the point, as in KnownPoint; nulls and 0 if unknown.
 Json numbers_of(const Json& point, const std::optional<std::size_t>& column) {
   const Json numbers = column ? point.at("estimates").at(*column) : Json();
   return numbers.is_null() ? Json{nullptr, nullptr, nullptr, 0} : numbers;
@@ -70,8 +71,8 @@ void require_fractions(const Swept& axis, const std::string& name) {
   throw InputError("", "--over", name, "must be a swept volume fraction: numbers > 0 and < 1");
 }
 
-// A curve without points. Its name "μ = 0.5, Pe = 10" tells it apart; a key without a symbol has the last
-// step of its pointer.
+// Returns a curve without points, named by its settings: "μ = 0.5, Pe = 10". A key without a symbol is named
+// by the last step of its pointer.
 Json named_curve(const std::vector<const Swept*>& by, const Json& point, std::size_t place) {
   std::vector<std::string> names;
   Json settings = Json::object();
@@ -131,13 +132,13 @@ void check_usage(const JammingOptions& options) {
   if (options.common_exponent && options.exponent)
     throw InputError("", "", "--common-exponent", "does not go together with --exponent");
   if (options.common_exponent && options.by == "steepest")
-    throw InputError("", "", "--common-exponent", "is of the law, which --by steepest leaves out");
+    throw InputError("", "", "--common-exponent", "belongs to the law, which --by steepest leaves out");
   if (options.propose) return;
   if (options.budget) throw InputError("", "", "--budget", "is for --propose");
   if (!options.write.empty()) throw InputError("", "", "--write", "is for --propose");
 }
 
-// Requires nothing of the campaign, so that a refusal comes before the work.
+// Throws InputError if the file exists or cannot be written. Called before any work is done.
 void check_new_file(const fs::path& file) {
   if (file.empty()) return;
   if (fs::symlink_status(file).type() != fs::file_type::not_found) {
@@ -147,7 +148,7 @@ void check_new_file(const fs::path& file) {
   check_output(file);
 }
 
-// The campaign file as its author wrote it; without one, as it was last run.
+// The campaign file as its author wrote it or, if there is none, as it was last run.
 struct Source {
   fs::path file;
   std::string text;
@@ -161,8 +162,7 @@ Source source_of(const JammingOptions& options, const CampaignRecord& campaign) 
 
 Json json_or_null(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
 
-// What the script reads: the curves and the options; `sweep` is that of the source, if points are to be
-// proposed.
+// Returns the document that the script reads: the curves and the options. `sweep` is for proposals.
 Json document_of(const JammingOptions& options, Json curves, const Json& sweep) {
   curves.update({{"softest", options.curves.softest},
                  {"by", options.by},
@@ -177,8 +177,8 @@ Json document_of(const JammingOptions& options, Json curves, const Json& sweep) 
   return curves;
 }
 
-// The script of the package that was installed with this program or is in its source; else the one of a
-// package that Python finds by itself.
+// Returns the command of the script in the package that is installed with this program or in its source;
+// otherwise that in a package which Python finds by itself.
 std::vector<std::string> script_command() {
   const fs::path package = own_folder().parent_path() / "lib/python3/dist-packages/peclet";
   if (fs::exists(package / "jamming_report.py")) return {"python3", (package / "jamming_report.py").string()};
@@ -187,11 +187,11 @@ std::vector<std::string> script_command() {
   return {"python3", "-m", "peclet.jamming_report"};
 }
 
-// Throws std::runtime_error if Python, its modules or the script are missing.
+// Runs the script and returns its answer. Throws std::runtime_error if Python, NumPy or the script is absent.
 Json fitted(const Json& document) {
   constexpr std::chrono::minutes patience(60);
   const std::vector<std::string> command = script_command();
-  // The present folder may have any file of the name of a module.
+  // Keeps Python from importing a file of the present folder in place of a module.
   std::vector<std::string> words{"env", "PYTHONSAFEPATH=1"};
   words.insert(words.end(), command.begin(), command.end());
   const CommandAnswer said = run_command(words, patience, document.dump());
@@ -201,13 +201,13 @@ Json fitted(const Json& document) {
                   fmt::join(command, " "), said.complaint()));
 }
 
-// Returns what is said of the file. Throws InputError for a campaign with these points that none may be.
+// Writes the campaign file with this sweep and returns a message. Throws InputError if it would be invalid.
 std::string write_campaign(const fs::path& written, const std::string& source, const Json& sweep,
                            const CampaignDirectory& directory) {
   const std::string text = with_value(source, {"sweep"}, sweep);
   parse_campaign(parse_json_input(text, written.string()), written.string());
   write_durably(written, text);
-  return fmt::format("wrote {0}; `peclet run {1} --directory {2}` adds its points to what there is\n",
+  return fmt::format("wrote {0}; `peclet run {1} --directory {2}` adds its points to the campaign\n",
                      written.string(), shell_word(written.string()), shell_word(directory.root().string()));
 }
 

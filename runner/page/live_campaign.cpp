@@ -19,7 +19,7 @@
 namespace peclet::runner {
 namespace {
 
-// By its name alone: whoever opens a database beside SQLite takes its locks away when he closes it.
+// Uses stat() only: closing another descriptor of the file would drop SQLite's locks.
 DatabaseStamp::File file_stamp(const std::string& path) {
   struct stat about {};
   if (stat(path.c_str(), &about) != 0) return {};
@@ -47,7 +47,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Pages that look now and then are a few revisions behind.
+// Revisions by which a page may be behind and still get only the changes.
 constexpr int most_revisions = 16;
 constexpr std::size_t most_details = 64;
 
@@ -69,7 +69,7 @@ LiveCampaign::LiveCampaign(fs::path campaign, fs::path directory)
   read();
 }
 
-void LiveCampaign::stop_test() {
+void LiveCampaign::refresh() {
   const Clock::time_point begun = Clock::now();
   if (begun < next_) return;
   const DatabaseStamp stamp = stamp_of(folder_of(campaign_, directory_));
@@ -100,7 +100,7 @@ void LiveCampaign::read() {
   }
 }
 
-// Throws InputError for a campaign with a fault, because `run` would refuse it.
+// Throws InputError for a faulty campaign, which `run` would refuse.
 void LiveCampaign::wait_for_beginning(const std::string& set_up) {
   const bool is_file = fs::is_regular_file(campaign_);
   const std::string name = is_file ? read_new_campaign(campaign_, directory_).name : campaign_.string();
@@ -136,7 +136,7 @@ void LiveCampaign::become(Json document) {
 void LiveCampaign::tell(const std::string& fault) {
   if (head_.json.value("fault", "") == fault) return;
   head_.json["fault"] = fault;
-  head_.text.clear();  // whatever is read next is new
+  head_.text.clear();  // so that the next reading counts as a change
   advance_to(revision_ + 1);
 }
 
@@ -167,7 +167,7 @@ std::shared_ptr<const std::string> LiveCampaign::changes_since(const std::string
     std::from_chars(token.data() + process_.size() + 1, token.data() + token.size(), since);
   }
   if (since == revision_) return nullptr;
-  // What was made up, or is older than any page that still asks, is told everything: what is kept is bounded.
+  // A token that is invalid or too old gets everything, so that a bounded number of texts is kept.
   if (since < std::max(revision_ - most_revisions, 0) || since > revision_) since = 0;
   Text& known = changes_[since];
   if (!known) {

@@ -1,7 +1,5 @@
-// A campaign as the live page shows it: read again when its database has changed and somebody asks, and told
-// only as far as it has changed.
-//
-// Not for several threads.
+// The document of a campaign's live page, read again when the database has changed, and the changes that an
+// open page has not seen. Not thread-safe.
 #pragma once
 
 #include <chrono>
@@ -19,22 +17,20 @@
 
 namespace peclet::runner {
 
-// Whether a database may have changed since somebody looked, without opening it.
-//
-// Of the database and its write-ahead log: which files they are, their sizes and when they were last written;
-// and who owns the campaign. Every commit writes one of the two.
+// The identity, size and last change of a database and its write-ahead log, and the owner of the campaign.
+// Every commit writes one of the two files, so a changed stamp tells of it without opening the database.
 struct DatabaseStamp {
   struct File {
     std::uint64_t device = 0, number = 0;
     std::int64_t bytes = 0, seconds = 0, nanoseconds = 0;
     friend bool operator==(const File&, const File&) = default;
   };
-  File database, log;  // zeros while there is none
+  File database, log;  // zeros if there is no file
   std::optional<std::int64_t> owner;
   friend bool operator==(const DatabaseStamp&, const DatabaseStamp&) = default;
 
-  // Whether it was written so short a time before `now` that the next commit might bear the same time: clocks
-  // of file systems tick every few milliseconds.
+  // True if a file was written less than 0.1 s before `now`. The next commit might then have the same time,
+  // because clocks of file systems tick every few milliseconds.
   bool is_fresh(std::chrono::system_clock::time_point now) const;
 };
 
@@ -42,27 +38,25 @@ DatabaseStamp stamp_of(const CampaignDirectory& directory);
 
 class LiveCampaign {
  public:
-  // `campaign` is a file or folder. Throws as open_campaign() when there is no campaign there; one that has
-  // not been run yet is waited for.
+  // `campaign` is a file or folder. A campaign that has not been run yet is shown as waiting. Throws as
+  // open_campaign() if the campaign does not exist.
   LiveCampaign(std::filesystem::path campaign, std::filesystem::path directory);
 
-  // Looks whether there is something new, and reads it. Reading takes at most a tenth of the time, so that
-  // what runs the campaign hardly notices. What goes wrong meanwhile is told, as "fault", beside what was
-  // known.
-  void stop_test();
+  // Reads the campaign again if it may have changed. Reading takes at most a tenth of the time, so that it
+  // hardly slows the campaign. If it fails, the old document gets the message as "fault".
+  void refresh();
 
-  // The whole page. Its document has "live": {"token", "program"}; before the first run it has "waiting",
-  // what is waited for, in the place of points.
+  // Returns the whole page. Its document has "live": {"token", "program"}. Before the first run it has the
+  // sentence "waiting" in the place of points.
   std::shared_ptr<const std::string> page();
-  // What has changed since the token: {"live", "head": the document without points, "count", "points": those
-  // that have changed, by their place}; of a token that is none of this process, or a much older one,
-  // everything. Null: nothing.
+  // Returns the changes since the token, null if there are none: {"live", "head": the document without
+  // points, "count", "points": those that have changed, by their place}. An unknown token gets everything.
   std::shared_ptr<const std::string> changes_since(const std::string& token);
-  // point_details() of the point with this hash; null when there is none.
+  // Returns point_details() of the point with this hash, null if it does not exist.
   std::shared_ptr<const std::string> details(const std::string& hash);
 
   const std::string& name() const { return name_; }
-  // What `status --check` would leave with.
+  // Returns the exit code of `status --check`.
   int exit_code() const { return exit_code_; }
 
  private:
@@ -79,7 +73,7 @@ class LiveCampaign {
   };
 
   void read();
-  // `set_up`: how far its setting up is; "" before the first run.
+  // Shows that there are no results yet. `set_up` says how far the first run is; "" before it.
   void wait_for_beginning(const std::string& set_up = "");
   void become(Json document);
   void tell(const std::string& fault);
@@ -91,15 +85,15 @@ class LiveCampaign {
   int exit_code_ = 0;
   PageReader reader_;
   std::optional<DatabaseStamp> stamp_;
-  bool doubtful_ = false;         // whether it may have changed although the stamp has not
+  bool doubtful_ = false;         // the campaign may have changed although the stamp has not
   Clock::time_point next_{};      // when it may be read again
   Clock::time_point detailed_{};  // when details may be read again
-  std::string process_;           // a word that no other process of this kind has
+  std::string process_;           // unique to this process
   int revision_ = 0;
   Part head_;
   std::vector<Part> points_;
   Text page_;
-  std::map<int, Text> changes_;             // by the revision since which; a bounded number
+  std::map<int, Text> changes_;             // by the revision before them; a bounded number
   std::map<std::string, Details> details_;  // by the point's hash; a bounded number
 };
 

@@ -37,7 +37,7 @@ namespace {
 HttpAnswer nothing_new() { return {.status = 204}; }
 
 HttpAnswer page(LiveCampaign& campaign) {
-  campaign.stop_test();
+  campaign.refresh();
   return {.type = "text/html; charset=utf-8",
           .body = campaign.page(),
           .policy = page_policy(true) + "; frame-ancestors 'none'"};
@@ -54,7 +54,7 @@ HttpAnswer answer(LiveCampaign& campaign, const HttpRequest& request) {
   if (request.method != "GET" && request.method != "HEAD") return refusal(405);
   const std::size_t mark = std::min(request.target.find('?'), request.target.size());
   const std::string path = request.target.substr(0, mark);
-  // The page asks with one name. Tokens and hashes have no characters that are percent-encoded.
+  // The page sends one parameter. Tokens and hashes have no characters that are percent-encoded.
   const auto value_of = [&](const std::string& start) {
     return request.target.compare(mark, start.size(), start) == 0 ? request.target.substr(mark + start.size())
                                                                   : "";
@@ -62,14 +62,14 @@ HttpAnswer answer(LiveCampaign& campaign, const HttpRequest& request) {
   try {
     if (path == "/") return page(campaign);
     if (path == "/state") {
-      campaign.stop_test();
+      campaign.refresh();
       return json_or(campaign.changes_since(value_of("?since=")), nothing_new());
     }
     if (path == "/point") return json_or(campaign.details(value_of("?hash=")), refusal(404));
   } catch (const std::exception&) {
     return refusal(500);
   }
-  // Browsers ask for an icon, and complain where there is none.
+  // Browsers ask for an icon, and report an error if there is none.
   return path == "/favicon.ico" ? nothing_new() : refusal(404);
 }
 
@@ -110,8 +110,8 @@ std::optional<int> refused_by(const error_code& error) {
 
 }  // namespace
 
-// An HTTP connection: reads the head of one request, writes one answer and waits for the other side to hang
-// up: closing a socket with unread bytes takes back what was sent.
+// An HTTP connection. Reads the head of one request, writes one answer and waits for the other side to hang
+// up, because closing a socket with unread bytes takes back what was sent.
 class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
  public:
   HttpConnection(tcp::socket socket, const LoopbackServer::Handler& handler)
@@ -124,7 +124,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   void close() { stream_.close(); }
 
   void start() {
-    expire_after(patience);  // the whole head, so that bytes one by one gain nothing
+    expire_after(patience);  // for the whole head, so that single bytes gain no time
     http::async_read_header(stream_, buffer_, parser_, [self = shared_from_this()](error_code error, auto) {
       if (!error) {
         self->answer(self->answer_to(self->parser_.get()));
@@ -143,7 +143,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
                      request[http::field::host].to_string()});
   }
 
-  // Nothing is kept by a cache, shown in a frame, guessed at, or told to another site.
+  // Sends the answer, with headers that forbid caches, frames, guessed types and referrers.
   void answer(const HttpAnswer& answer) {
     response_.result(static_cast<unsigned>(answer.status));
     response_.keep_alive(false);
@@ -243,7 +243,7 @@ class LoopbackServer::Listener {
     });
   }
 
-  // Slow connections keep no other waiting: the one whose time ends first makes room.
+  // Starts the connection. If there are too many, closes the one whose time ends first.
   void admit(const std::shared_ptr<HttpConnection>& connection) {
     connections_.remove_if([](const auto& one) { return one.expired(); });
     if (connections_.size() >= most_connections) {

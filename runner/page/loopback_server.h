@@ -1,4 +1,4 @@
-// HTTP server that only this machine can reach: one thread, one request per connection.
+// An HTTP server that only this machine can reach: one thread, one request per connection.
 #pragma once
 
 #include <functional>
@@ -20,7 +20,7 @@ struct HttpAnswer {
   int status = 200;
   std::string type = "text/plain; charset=utf-8";
   std::shared_ptr<const std::string> body = nullptr;  // shared by all connections that get it; null if none
-  // What a page may do. Any other answer may do nothing.
+  // The Content-Security-Policy, which by default allows nothing.
   std::string policy = "default-src 'none'; frame-ancestors 'none'";
 };
 
@@ -49,16 +49,18 @@ class LoopbackServer {
   std::unique_ptr<Listener> listener_;
 };
 
-// Addresses of the live page: itself at /, what has changed at /state?since=TOKEN (204 if nothing), and more
-// of a point at /point?hash=HASH. Everything else is 404; other methods than GET and HEAD are 405; a request
-// that calls this machine by a name from elsewhere is 403.
-//
-// Returns 500 if the database cannot be read; the page shows the fault.
+// Answers a request for the live page:
+// clang-format off
+//   /                   the page
+//   /state?since=TOKEN  the changes; status 204 if there are none
+//   /point?hash=HASH    the details of a point
+// clang-format on
+// The status is 404 for any other address, 405 for methods other than GET and HEAD, 403 if the request calls
+// this machine by a name from elsewhere, and 500 if the database cannot be read, which the page shows.
 HttpAnswer answer(LiveCampaign& campaign, const HttpRequest& request);
 
-// Returns whether a request calls this machine by a name that only this machine has, at any port, which ssh
-// may forward. A page from elsewhere whose name was made to lead here (DNS rebinding) calls it by its own
-// name.
+// True if `host` is 127.0.0.1, localhost or [::1], with any port, because ssh may forward it. A page from
+// elsewhere whose name was made to lead here (DNS rebinding) has another host.
 bool is_loopback_name(std::string_view host);
 
 }  // namespace peclet::runner

@@ -40,7 +40,7 @@ Json details_of(Database& database, const PointSummary& point, const TargetRecor
   return point_details(database, point.point.id, end, target, seeds);
 }
 
-// Of as many seeds of each as can be read in a second or two.
+// Adds the details of every point, over as many seeds of each as can be read in a second or two.
 void add_details(Database& database, const CampaignStatus& status, Json& points) {
   constexpr int most_results = 1000, fewest_seeds = 4;
   const int each = std::clamp(most_results / std::max(1, static_cast<int>(points.size())), fewest_seeds,
@@ -50,7 +50,7 @@ void add_details(Database& database, const CampaignStatus& status, Json& points)
   }
 }
 
-// What the campaign has cost and is expected to cost, and who works on it.
+// Returns the cost of the campaign, spent and expected, and how many workers are busy.
 Json progress_json(const CampaignStatus& status) {
   const CampaignTotals totals = totals_of(status);
   return {{"points", status.points.size()},
@@ -69,9 +69,7 @@ Json progress_json(const CampaignStatus& status) {
           {"workers", status.owner ? Json(totals.workers) : Json(nullptr)}};
 }
 
-// Who works on what, and who did last.
-
-// However long a campaign is, as many as a chart can show.
+// The number of attempts in the chart of workers, for a campaign of any length.
 constexpr int most_attempts = 300;
 
 Json attempts_json(Database& database, const CampaignStatus& status) {
@@ -109,13 +107,10 @@ Json workers_json(const CampaignStatus& status) {
   return list;
 }
 
-// Where the numbers come from, and how to make them again.
-
-// Pairs of a term and what it is. Without the hash of the results nothing is said of it.
+// Returns pairs of a term and its meaning. Unknown meanings and an empty hash of the results are left out.
 Json provenance_json(Database& database, const CampaignStatus& status, const std::string& results_sha256) {
   const CampaignRecord& campaign = status.campaign;
   Json items = Json::array();
-  // Nothing is said of what is not known.
   const auto add = [&](const std::string& term, const std::string& meaning) {
     if (meaning.find_first_not_of(' ') != std::string::npos) items.push_back({term, meaning});
   };
@@ -134,10 +129,10 @@ Json provenance_json(Database& database, const CampaignStatus& status, const std
   }
   add("machines", fmt::format("{}", fmt::join(database.hosts(), ", ")));
   add("campaign begun", campaign.created_at);
-  add("file last taken up", campaign.updated_at);
+  add("file last taken over", campaign.updated_at);
   add("last seed ended", database.last_end());
   add("campaign SHA-256", sha256(canonical_json(campaign.document)));
-  if (!results_sha256.empty()) add("results SHA-256", results_sha256 + " (of the canonical table)");
+  if (!results_sha256.empty()) add("results SHA-256", results_sha256 + " (of the canonical CSV)");
   return items;
 }
 
@@ -150,8 +145,6 @@ std::string commands_text(const CampaignStatus& status, const std::string& resul
       "peclet export {0} --csv --canonical | sha256sum\n{1}",
       file, results_sha256.empty() ? "" : "# " + results_sha256 + '\n');
 }
-
-// The scene in words: what the sweep sets, what all points share, and what the engine calls each key.
 
 std::set<std::string> swept_pointers(const CampaignStatus& status) {
   std::set<std::string> pointers;
@@ -171,6 +164,7 @@ Json page_parameters(const CampaignStatus& status, const Vocabulary& words) {
 
 namespace {
 
+// Returns the keys of the scene that all points share, with their values and the engine's words for them.
 Json scene_json(const CampaignStatus& status, const Vocabulary& words) {
   Json list = Json::array();
   if (status.points.empty()) return list;
@@ -189,57 +183,57 @@ Json scene_json(const CampaignStatus& status, const Vocabulary& words) {
   return list;
 }
 
-// What the words of the page mean.
-
-// What a mark of the table means; the marks are those of reservations() and the verdicts.
+// Returns the meaning of a mark: a verdict, or one of reservations().
 std::string meaning(const std::string& mark) {
   static const std::map<std::string, std::string> meanings{
       {"converged-with-losses",
-       "the interval is within the tolerance, but the mean leaves out the seeds that were lost; if they were "
-       "lost because of what they would have given, it is biased"},
+       "The interval is within the tolerance, but the mean leaves out the seeds that were lost. It is biased "
+       "if "
+       "the loss of a seed depends on the value that it would have given."},
       {"capped",
-       "all seeds that are allowed have ended, and the interval is still wider than the tolerance, or there "
-       "is none"},
+       "All seeds that are allowed have ended, and the interval is wider than the tolerance or does not "
+       "exist."},
       {"complete-with-losses",
-       "all seeds that were asked for have ended, and the mean leaves out those that were lost; if they were "
-       "lost because of what they would have given, it is biased"},
-      {"failed", "too many seeds were lost to give an interval"},
-      {"open", "not decided yet: the numbers are provisional"},
-      {"cancelled", "somebody decided that it gets no more seeds: the numbers stay provisional"},
+       "All seeds that were asked for have ended, and the mean leaves out those that were lost. It is biased "
+       "if "
+       "the loss of a seed depends on the value that it would have given."},
+      {"failed", "Too many seeds were lost to give an interval."},
+      {"open", "The point is not decided yet, and its numbers are provisional."},
+      {"cancelled", "The point was cancelled and gets no more seeds; its numbers stay provisional."},
       {"jammed",
-       "half of the seeds or more have jammed: the point has no viscosity, and under a given stress its rate "
-       "is 0"},
+       "Half of the seeds or more have jammed. The point has no viscosity; under a given stress its shear "
+       "rate "
+       "is 0."},
       {"transient",
-       "the beginning of the measured windows differs from their end: they begin before the equilibration is "
-       "over, which more seeds do not mend"},
+       "The beginning of the measured windows differs from their end, so that they begin before the "
+       "equilibration is over. More seeds do not remove this bias."},
       {"no-transient-test",
-       "the results have no blocks of the observable, so that nothing can tell whether the windows begin "
-       "before the equilibration is over"},
+       "The results have no blocks of the observable, so that no test can tell whether the windows begin "
+       "before "
+       "the equilibration is over."},
       {"skewed",
-       "some values are far from the rest on one side, and the interval holds the mean less often than it "
-       "says"},
+       "Some values lie far from the rest on one side. The interval holds the true mean less often than its "
+       "confidence says."},
       {"near-maximum",
-       "the interval is within the tolerance, but perhaps by luck: with a spread as large as the values "
-       "leave open the point would need more seeds than are allowed, and intervals of such points hold the "
-       "mean less often than they say"},
-      {"equal-values",
-       "all values are one and the same number, so that there is no spread to make an interval from"},
+       "The interval is within the tolerance, but perhaps by chance: with the largest spread that the values "
+       "allow, the point would need more seeds than are allowed. Intervals of such points hold the true mean "
+       "less often than their confidence says."},
+      {"equal-values", "All values are the same number, so that there is no spread for an interval."},
       {"repeated-seeds",
-       "some seeds ended in the same state, so that their values are not independent and have no interval"},
+       "Some seeds ended in the same state, so that their values are not independent and have no interval."},
       {"earlier-stop-test",
-       "the target was tighter before: the first stop test within the present one decides, as if there had "
-       "been "
-       "no other, and leaves out seeds that ended later"},
-      {"suspect", "a seed gave two different results; no number of this point can be trusted"},
-      {"flagged jammed", "seeds that stood still under the given stress; their rate 0 is part of the mean"},
-      {"flagged patience", "seeds whose window is too short to tell whether they have jammed"},
+       "The target was tighter before. The first stop test within the present tolerance decides, as if the "
+       "target had always been this one; seeds that ended later do not count."},
+      {"suspect", "A seed gave two different results. No number of this point can be trusted."},
+      {"flagged jammed", "These seeds stood still under the given stress; their rate 0 is part of the mean."},
+      {"flagged patience", "In these seeds the window is too short to tell whether they have jammed."},
       {"flagged timestep",
-       "seeds whose time step made too much energy, changes the stress or was often divided"},
-      {"flagged solver", "seeds whose implicit steps were solved too inaccurately"},
+       "In these seeds the time step produced too much energy, changed the stress or was often divided."},
+      {"flagged solver", "In these seeds implicit steps were solved too inaccurately."},
       {"flagged overlap",
-       "seeds whose contacts overlapped by more than a thousandth of a radius in the mean"}};
+       "In these seeds contacts overlapped by more than a thousandth of a radius in the mean."}};
   const auto known = meanings.find(mark);
-  return known == meanings.end() ? "the engine's own mark; its warning says more" : known->second;
+  return known == meanings.end() ? "This is the engine's own mark; its warning says more." : known->second;
 }
 
 Json meanings_json(const CampaignStatus& status) {

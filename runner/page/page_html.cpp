@@ -14,10 +14,10 @@
 namespace peclet::runner {
 namespace {
 
-// 'sha256-...', as a Content-Security-Policy names an inline style or script by its content.
+// Returns 'sha256-...', by which a Content-Security-Policy names an inline style or script.
 std::string policy_hash(std::string_view content) { return "'sha256-" + sha256_base64(content) + '\''; }
 
-// JSON that may stand in a script element: nothing in it can end the element or begin another one.
+// Returns JSON that is safe in a script element: it can neither end the element nor begin another one.
 std::string inert(const Json& data) {
   std::string safe;
   for (const char c : data.dump()) {
@@ -33,8 +33,7 @@ const std::string& whole_script() {
   return script;
 }
 
-// The template with what belongs at each @MARK@, of which the text has no other @. What is put in is not
-// looked through again.
+// Returns the template with texts in the place of each @MARK@. The texts are not searched for further marks.
 std::string filled(std::string_view text, const std::map<std::string_view, std::string>& marks) {
   std::string page;
   for (bool is_mark = false; !text.empty(); is_mark = !is_mark) {

@@ -1,7 +1,7 @@
 // The verb `peclet report`: a campaign on one page, for an adviser or a paper's supplement.
 //
-// The page is a single file that needs no other and no network. It depends on the database alone, and on who
-// runs the campaign: the same one gives the same bytes at any time.
+// The page is a single file that needs no other and no network. It depends only on the database and on the
+// process that runs the campaign; the same ones give the same bytes at any time.
 #pragma once
 
 #include <array>
@@ -21,16 +21,16 @@ extern const std::array<const char*, 11> page_scripts;  // in this order
 // python/peclet/drawing.py. With `FIGURE = ...` and `main(FIGURE)` behind it, it draws that figure.
 extern const char* const drawing_script;
 
-// What the page may do, as a Content-Security-Policy: run its own script; a live one also ask its own server.
+// Returns the Content-Security-Policy, which allows the page its own script and a live one its own server.
 std::string page_policy(bool live);
-// A word for what the page is made of, but for its document.
+// Returns a hash of template, style and script.
 std::string page_program();
 
-// The page with this document in it, which is live when it says so. Its policy lets nothing run but its own
-// script, whatever the document says.
+// Returns the page with this document in it, which is live if it has the member "live". The page's policy
+// allows no script but its own, whatever the document says.
 std::string page_html(const Json& data);
 
-// Throws IntegrityError when stored stop tests are not what the stored results say.
+// Returns the page of a campaign. Throws IntegrityError if stored stop tests and results do not agree.
 std::string report_html(Database& database, std::optional<std::int64_t> owner = std::nullopt);
 
 }  // namespace peclet::runner

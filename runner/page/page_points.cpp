@@ -1,4 +1,4 @@
-// The points of the page, with the numbers of each in columns that all share.
+// The points of the page. Their numbers are in columns that all points share.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -57,7 +57,7 @@ Json profile_json(const QuantityEstimate& found, double level) {
           {"half_width", widths}};
 }
 
-// Block by block over the seeds.
+// The mean over the seeds for each block of the measured window.
 class Blocks {
  public:
   void add(const std::vector<double>& values) {
@@ -107,22 +107,18 @@ Json point_details(Database& database, std::int64_t point, int end, const Target
           {"profiles", profiles}};
 }
 
-// What the page shows of one point: estimates of everything that is measured there, and how its mean came
-// about.
-
 namespace {
 
-// To draw a line with.
+// Returns the value with six digits, which are enough for a line; null if it is not finite.
 Json drawn(double value) {
   if (!std::isfinite(value)) return nullptr;
   return std::stod(fmt::format("{:.6g}", value));
 }
 
-// Values of the leading observable in the order of the seeds, and after how many seeds each came; up to the
-// first seed that has not ended.
+// The values of the leading observable in the order of the seeds, up to the first seed that has not ended.
 struct Values {
   std::vector<double> values;
-  std::vector<int> seeds;
+  std::vector<int> seeds;  // number of seeds up to each value
   int closed = 0;
   bool is_share = false;
 };
@@ -140,7 +136,7 @@ Values values_of(const std::vector<std::optional<Outcome>>& outcomes, int end) {
   return found;
 }
 
-// Whether a line is drawn through the mean of so many seeds: some fifty do, at equal ratios.
+// True if the running mean over this number of seeds is drawn. Some fifty numbers at equal ratios are.
 bool is_drawn(int seeds) {
   constexpr int all_until = 16;
   constexpr double ratio = 1.12;
@@ -163,7 +159,7 @@ Json running_mean(const Values& found, StopRule& rule) {
   return {{"seeds", seeds}, {"mean", means}, {"half_width", widths}};
 }
 
-// The values themselves while they are few; then how many lie in each of equal parts of their range.
+// Returns the values themselves if they are few, otherwise a histogram over equal parts of their range.
 Json scatter(const Values& found) {
   constexpr std::size_t most_values = 200;
   if (found.values.size() <= most_values) {
@@ -182,8 +178,8 @@ Json scatter(const Values& found) {
   return {{"low", *low}, {"high", *high}, {"counts", counts}};
 }
 
-// The half-width that is good enough for a criterion, around the means of a stop test: what the rule allowed,
-// or, where there is no interval, what the means allow.
+// Returns the half-width that a criterion allows at a stop test: that of the rule or, if there is no
+// interval, that which follows from the means.
 Json good_enough(const Criterion& criterion, const StopTest& stop_test, const Target& target) {
   for (const ObservableStopTest& one : each_of(stop_test, target)) {
     if (one.observable == criterion.observable && one.share > 0)
@@ -236,14 +232,14 @@ std::vector<Drawable> drawables_of(const Quantity& quantity) {
   return found;
 }
 
-// The first result that has completed; an empty object where none has.
+// Returns the first result that has completed, or an empty object.
 Json first_result(Database& database, const PointRecord& point) {
   const std::vector<int> completed = database.completed(point.id, most_realisations);
   if (completed.empty()) return Json::object();
   return database.result(point.id, completed.front()).value_or(Json::object());
 }
 
-// Seeds that have ended, their values and the stop tests, in a few words.
+// Returns a key that changes with the seeds that have ended, their values and the stop tests.
 std::string key_of(const PointSummary& point, const TargetRecord& target) {
   const StateCounts& counts = point.counts;
   return fmt::format("{} {} {} {} {:a} {} {:a} {:a} {} {}", target.id, counts.done, counts.failed,
@@ -280,7 +276,7 @@ class PointPage {
   }
 
  private:
-  // Seeds of the stop test; before the first one, all that have ended.
+  // Returns the number of seeds of the stop test; before the first one, no limit.
   int end() const { return stop_test_ ? stop_test_->seeds : std::numeric_limits<int>::max(); }
 
   void add_estimates() {
@@ -301,7 +297,7 @@ class PointPage {
     }
   }
 
-  // What the stop test says of the target's observables goes before: its intervals are those that decide.
+  // Replaces the estimates of the target's observables by those of the stop test, whose intervals decide.
   void add_deciding() {
     const Target& target = target_.target;
     for (const ObservableStopTest& one : each_of(*stop_test_, target)) {
@@ -317,8 +313,7 @@ class PointPage {
     }
   }
 
-  // An observable that is named as a quantity or an element; one that the results do not describe is one
-  // without unit.
+  // Returns the place of an observable. Adds it, without a unit, if the results do not describe it.
   std::size_t place_of(const std::string& observable) {
     const std::string path = bare(observable);
     for (std::size_t place = 0; place < known_.drawables.size(); ++place) {
@@ -337,7 +332,7 @@ class PointPage {
   KnownPoint known_;
 };
 
-// Columns by path and unit, in the order in which they are first met.
+// The columns, one for each path and unit, in the order in which they are first met.
 class Columns {
  public:
   std::size_t of(const Drawable& one) {
@@ -400,7 +395,7 @@ PagePoints page_points(Database& database, const CampaignStatus& status, KnownPo
     json["estimates"] = estimates_json(of_point, columns);
     page.points.push_back(std::move(json));
   }
-  // What only later points have is missing at the earlier ones.
+  // Earlier points lack the columns that only later ones have.
   for (Json& point : page.points) {
     while (point["estimates"].size() < columns.drawables.size()) point["estimates"].push_back(nullptr);
   }

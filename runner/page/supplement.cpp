@@ -26,7 +26,7 @@ std::string readme(const CampaignStatus& status) {
   const std::string confidence = percent(campaign.target.target.confidence);
   return fmt::format(R"(# {0}
 
-A campaign of peclet {1}: averages over independent realisations, each with its {2} interval.
+A campaign of peclet {1}: averages over independent realisations, each with its {2} confidence interval.
 
 ```
 {3}```
@@ -35,18 +35,19 @@ A campaign of peclet {1}: averages over independent realisations, each with its 
 |---|---|
 | `{0}.json` | the campaign: scene, sweep, target |
 | `results.csv` | a row for each point: the estimate that decides, and the mean of every scalar |
-| `numbers.csv` | a row for each point, quantity and element, with names, symbols and units: profiles and distributions, too |
-| `results.json` | all of it, and every realisation |
-| `report.html` | a page for a browser: any quantity over any swept parameter, how each mean came about |
-| `figure.py` | the target over the sweep, drawn by matplotlib: `python3 figure.py figure.pdf` |
+| `numbers.csv` | a row for each point, quantity and element, also of profiles and distributions, with units |
+| `results.json` | all of these numbers, and every realisation |
+| `report.html` | a page for a browser: any quantity over any swept parameter, convergence of each mean |
+| `figure.py` | a matplotlib script that draws the target over the sweep: `python3 figure.py figure.pdf` |
 | `provenance.json` | engines, versions, times |
-| `SHA256SUMS` | of each of these files: `sha256sum --check SHA256SUMS` |
+| `SHA256SUMS` | the checksums of these files: `sha256sum --check SHA256SUMS` |
 
 ## Which number
 
-`mean` and `half_width` in `results.csv` are those by which the campaign stopped, with the control variate where there is one.
-The table above, the page, the figure and `points/*/stop_test` in `results.json` have the same two numbers. Means in `numbers.csv` and
-`points/*/quantities` are of the same seeds, and their half-widths of the same level.
+`mean` and `half_width` in `results.csv` are those by which the campaign stopped, with the control variate if
+there is one. The table above, the page, the figure and `points/*/stop_test` in `results.json` have the same
+two numbers. Means in `numbers.csv` and `points/*/quantities` are over the same seeds, and their half-widths
+have the same confidence level.
 
 ## Make it again
 
@@ -57,13 +58,13 @@ peclet export {4} --csv --canonical | cmp - results.csv
 peclet plot {4} --output figure.py
 ```
 
-The engines of `provenance.json` give the same bytes. Those of another version, compiler or instruction set may differ from the
-last digit on, and agree within the errors.
+The engines of `provenance.json` give the same bytes. Those of another version, compiler or instruction set
+may differ from the last digit on, and agree within the errors.
 )",
                      campaign.name, version(), confidence, status_table(status), file);
 }
 
-// When a seed last ended; before the first one, when the campaign was last taken up.
+// Returns the time when a seed last ended; before the first one, when the campaign file was last taken over.
 std::string last_change(Database& database, const CampaignRecord& campaign) {
   const std::string last_end = database.last_end();
   return last_end.empty() ? campaign.updated_at : last_end;
@@ -96,7 +97,7 @@ std::string sums(const std::vector<ArchivedFile>& files) {
   return text;
 }
 
-// Requires a number of the target; refuses it where no figure has a place for one.
+// Returns the data of the target's figure. Throws InputError at --bundle if the figure can show no point.
 Json figure_of(Database& database) try { return figure_data(database, {}); } catch (const InputError& error) {
   throw InputError("", "--bundle", error.value(), error.allowed());
 }
@@ -139,20 +140,18 @@ std::string supplement(Database& database, std::optional<std::int64_t> owner) {
   return gzip(tar(campaign.name, files, seconds_of_utc(last_change(database, campaign))));
 }
 
-// Archives.
-
 namespace {
 
 constexpr std::size_t block = 512;
 
-// A header of ustar: fields at fixed places, numbers in octal digits.
+// Returns a header of the format ustar: fields at fixed places, numbers in octal digits.
 std::string header(const std::string& folder, const ArchivedFile& file, std::int64_t time) {
   std::string bytes(block, '\0');
   const auto put = [&](std::size_t at, std::size_t room, const std::string& text) {
     if (text.size() > room) throw std::length_error(text + ": too long for an archive");
     bytes.replace(at, text.size(), text);
   };
-  // As many digits as there is room for, and a zero byte.
+  // Writes as many digits as there is room for, and a zero byte.
   const auto put_octal = [&](std::size_t at, std::size_t room, std::uint64_t number) {
     const std::string digits = fmt::format("{:0{}o}", number, room - 1);
     if (digits.size() >= room)
@@ -161,7 +160,7 @@ std::string header(const std::string& folder, const ArchivedFile& file, std::int
   };
   put(0, 100, file.name);
   put_octal(100, 8, file.executable ? 0755 : 0644);
-  put_octal(108, 8, 0);  // user and group are left to whoever unpacks
+  put_octal(108, 8, 0);  // user and group are those of the user who unpacks
   put_octal(116, 8, 0);
   put_octal(124, 12, file.bytes.size());
   put_octal(136, 12, static_cast<std::uint64_t>(std::max<std::int64_t>(0, time)));
@@ -182,7 +181,7 @@ class Deflation {
     constexpr int gzip_format = 16;
     if (deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, MAX_WBITS + gzip_format, MAX_MEM_LEVEL,
                      Z_DEFAULT_STRATEGY) != Z_OK) {
-      throw std::runtime_error("zlib cannot begin");
+      throw std::runtime_error("zlib cannot be initialised");
     }
   }
   ~Deflation() { deflateEnd(&stream); }
@@ -200,7 +199,7 @@ std::string tar(const std::string& folder, const std::vector<ArchivedFile>& file
     archive += header(folder, file, time) + file.bytes;
     archive.resize((archive.size() + block - 1) / block * block, '\0');
   }
-  // Two empty blocks are the end; tar writes twenty blocks at a time.
+  // Two empty blocks end the archive, which is padded to a multiple of twenty blocks as tar does.
   constexpr std::size_t record = 20 * block;
   archive.resize((archive.size() + 2 * block + record - 1) / record * record, '\0');
   return archive;
@@ -211,14 +210,14 @@ std::string gzip(std::string_view bytes) {
   z_stream& stream = deflation.stream;
   gz_header about{};
   about.os = 3;  // Unix, wherever zlib was built
-  if (deflateSetHeader(&stream, &about) != Z_OK) throw std::runtime_error("zlib takes no header");
+  if (deflateSetHeader(&stream, &about) != Z_OK) throw std::runtime_error("zlib cannot set the header");
   std::string packed;
   std::string chunk(1U << 16U, '\0');
   constexpr std::size_t most = std::numeric_limits<uInt>::max() / 2;
   int state = Z_OK;
   while (state != Z_STREAM_END) {
     const std::string_view part = bytes.substr(0, most);
-    // zlib does not write there, but asks for a pointer that could.
+    // zlib only reads the input, although its pointer is not const.
     stream.next_in = const_cast<Bytef*>(reinterpret_cast<const Bytef*>(part.data()));
     stream.avail_in = static_cast<uInt>(part.size());
     bytes.remove_prefix(part.size());
@@ -226,7 +225,7 @@ std::string gzip(std::string_view bytes) {
       stream.next_out = reinterpret_cast<Bytef*>(chunk.data());
       stream.avail_out = static_cast<uInt>(chunk.size());
       state = deflate(&stream, bytes.empty() ? Z_FINISH : Z_NO_FLUSH);
-      if (state == Z_STREAM_ERROR) throw std::runtime_error("zlib cannot go on");
+      if (state == Z_STREAM_ERROR) throw std::runtime_error("zlib cannot compress");
       packed.append(chunk, 0, chunk.size() - stream.avail_out);
     } while (stream.avail_out == 0);
   }

@@ -13,12 +13,12 @@
 namespace peclet::runner {
 namespace {
 
-// "pressure", "stress/total/xy".
+// Returns the name of a drawable for --quantity: "pressure", "stress/total/xy".
 std::string name_of(const Drawable& one) {
   return one.element.empty() ? one.path : one.name + '/' + one.element;
 }
 
-// Names of all quantities; of a list, which may be long, its name and its first element.
+// Returns the names of all quantities; a list, which may be long, has only its first element here.
 std::string names_of(const std::vector<Drawable>& drawables) {
   std::vector<std::string> names;
   for (const Drawable& one : drawables) {
@@ -38,16 +38,15 @@ std::size_t chosen_column(const std::vector<Drawable>& drawables, const std::str
     if (drawables[column].path == name || names.back() == name) return column;
   }
   const std::string meant = suggestion(name, names);
-  throw InputError(
-      "", "--quantity", name,
-      "must be a number that is measured" + (meant.empty() ? ": " + names_of(drawables) : meant));
+  throw InputError("", "--quantity", name,
+                   "must be a measured quantity" + (meant.empty() ? ": " + names_of(drawables) : meant));
 }
 
 namespace {
 
 std::string last_step(const std::string& pointer) { return pointer.substr(pointer.rfind('/') + 1); }
 
-// What is too long to be read in a figure is called by its place among the values, from 1.
+// Returns the text of a value in a figure. A value that is too long is named by its place among all, from 1.
 std::string word_of(const Json& value, const std::vector<Json>& distinct) {
   constexpr std::size_t longest = 26;
   if (value.is_null()) return "–";
@@ -92,7 +91,7 @@ bool is_called(const Swept& one, const std::string& name) {
   return one.pointer == name || one.pointer == '/' + name || last_step(one.pointer) == name;
 }
 
-// Whether the value of `other` follows from that of `axis`.
+// True if the value of `other` follows from that of `axis`.
 bool in_step(const Swept& other, const Swept& axis) {
   std::map<double, double> partner;
   for (std::size_t i = 0; i < axis.numbers.size(); ++i) {
@@ -131,7 +130,7 @@ const Swept& chosen_axis(const std::vector<Swept>& swept, const std::string& nam
   }
   if (found.size() == 1) return *found.front();
   if (names.empty()) throw InputError("", "--over", name, "must not be given: the campaign sweeps nothing");
-  const std::string allowed = fmt::format("must be what one thing is called that is swept: {}{}",
+  const std::string allowed = fmt::format("must be the name of one swept parameter: {}{}",
                                           fmt::join(names, ", "), suggestion('/' + name, names));
   throw InputError("", "--over", name, allowed);
 }

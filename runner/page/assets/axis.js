@@ -1,11 +1,11 @@
-// The part of the whole that the widest gap between neighbours takes. Requires numbers in order, not all equal.
+// Returns the widest gap between neighbours as a share of the range. Requires numbers in order, not all equal.
 function widestGap(numbers) {
   let widest = 0;
   for (let i = 1; i < numbers.length; ++i) widest = Math.max(widest, numbers[i] - numbers[i - 1]);
   return widest / (numbers[numbers.length - 1] - numbers[0]);
 }
 
-// Whether positive numbers lie more evenly on a logarithmic axis, over a factor of five or more: a viscosity that
+// True if positive numbers span a factor of five or more and lie more evenly on a logarithmic axis: a viscosity that
 // diverges, Péclet numbers of 1, 10, 100; not volume fractions of 0.1, 0.2 ... 0.6.
 function isLogarithmic(values) {
   const leastRatio = 5; // below, there are too few round numbers
@@ -14,10 +14,10 @@ function isLogarithmic(values) {
   return widestGap(numbers.map(Math.log)) < widestGap(numbers);
 }
 
-// Where a number lies between `begin` and `end`, and which numbers are written beside it.
+// An axis of a chart: the places of numbers, and the ticks.
 class Axis {
-  // From `low` to `high` with a margin on both sides; of a logarithmic one both are positive. `categories`: words that
-  // stand at 0, 1, 2 ... in the place of numbers.
+  // The axis shows `low` to `high`, with a margin on both sides, between the pixels `begin` and `end`. Both are positive
+  // on a logarithmic one. `categories` are words that stand at 0, 1, 2 ... in the place of numbers.
   constructor({ log = false, low, high, begin, end, mostTicks = 9, categories = null, margin = 0.05 }) {
     Object.assign(this, { log, begin, end, mostTicks, categories });
     this.low = log ? Math.log10(low) : low;
@@ -35,7 +35,7 @@ class Axis {
     return this.begin + ((number - this.low) / (this.high - this.low)) * (this.end - this.begin);
   }
 
-  // The same, but not beyond the ends; what has no logarithm is at the beginning.
+  // Returns the place of a number, at most that of an end; a number without a logarithm is at the beginning.
   clamped(value) {
     if (this.log && !(value > 0)) return this.begin;
     const [from, to] = this.begin < this.end ? [this.begin, this.end] : [this.end, this.begin];
@@ -48,7 +48,7 @@ class Axis {
     return values.map((value) => ({ value, text: Format.plain(value) }));
   }
 
-  // 1, 2 or 5 times a power of ten apart.
+  // Returns numbers that are 1, 2 or 5 times a power of ten apart.
   linearTicks(low = this.low, high = this.high) {
     for (let unit = 10 ** (Math.floor(Math.log10(high - low)) - 1); ; unit *= 10) {
       for (const multiple of [1, 2, 5]) {
@@ -61,7 +61,7 @@ class Axis {
     }
   }
 
-  // Powers of ten, every `stride`-th, times each of `multiples`.
+  // Returns every `stride`-th power of ten times each of `multiples`.
   powers(stride, multiples) {
     const ticks = [];
     for (let power = Math.floor(this.low); power <= this.high + 1; ++power) {
@@ -80,7 +80,7 @@ class Axis {
       const ticks = this.powers(1, multiples);
       if (ticks.length >= 3 && ticks.length <= this.mostTicks) return ticks;
     }
-    // Less than a factor of ten: as on a linear axis.
+    // Less than a factor of ten has the ticks of a linear axis.
     if (this.high - this.low < 1)
       return this.linearTicks(10 ** this.low, 10 ** this.high).filter((value) => value > 0);
     for (let stride = 1; ; ++stride) {

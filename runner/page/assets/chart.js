@@ -1,12 +1,15 @@
-// A figure as SVG, with what it can be saved as.
+// A figure as SVG, with links that save it.
 //
-// figure: {name, x, y: {about, log, categories}, panels: [{title, marks, lines, bands, columns, levels}], legend,
-// kinds, hasBand, notes, caption, empty, table, pick, height}. Marks: {series, x, y, half, kind, point, text}; y is null of
-// the kind "jammed" where there is no number; lines: {series,
-// style, places: [x, y]}; bands: {series, places: [x, low, high]}; columns, which are boxes: {from, to, low, high, series,
-// text}; levels: {value, across}. In the legend {series, name, kind}: "column" for a box, "line", or a mark.
+//   figure   {name, x, y: {about, log, categories}, panels: [{title, marks, lines, bands, columns, levels}], legend,
+//            kinds, hasBand, notes, caption, empty, table, pick, height}
+//   marks    {series, x, y, half, kind, point, text}; y is null for a point that has jammed and has no number
+//   lines    {series, style, places: [x, y]}
+//   bands    {series, places: [x, low, high]}
+//   columns  boxes: {from, to, low, high, series, text}
+//   levels   {value, across}
+//   legend   {series, name, kind}; kind: "column" for a box, "line", or that of a mark
 class Chart {
-  // `onPick(point)`: a mark of that point was chosen.
+  // `onPick(point)` is called when a mark of that point is chosen.
   constructor(onPick = null) {
     Object.assign(this, { host: Page.element('figure'), onPick, figure: null, chosen: null, width: 0 });
     new ResizeObserver(() => {
@@ -14,7 +17,7 @@ class Chart {
     }).observe(this.host);
   }
 
-  // A figure that is the same is left as it is.
+  // Draws the figure, unless it is the one shown.
   show(figure) {
     const key = JSON.stringify(figure);
     if (this.shown === key && this.host.firstChild) return;
@@ -55,18 +58,18 @@ class Chart {
     if (hadFocus) svg.focus();
   }
 
-  // What of a mark has to be seen. Bars of numbers that are not decided may still be enormous.
+  // Returns the numbers of a mark that the axis must show. Bars of provisional numbers may be enormous and are left out.
   static ends({ y, half, kind }) {
     if (!Format.isNumber(y)) return [];
     return kind !== 'provisional' && Format.isNumber(half) ? [y - half, y + half] : [y];
   }
 
-  // A logarithmic axis has no place for what is not positive; what has jammed stands at its edge.
+  // True if the axes can show the mark. A logarithmic axis shows positive numbers only; jammed points are at its edge.
   static isVisible({ x, y, kind }, isLogX, isLogY) {
     return (!isLogY || y > 0 || kind === 'jammed') && (!isLogX || x > 0);
   }
 
-  // The least and the largest of the numbers that are to be seen along x or y.
+  // Returns the least and the largest number to be shown along x or y.
   range(direction) {
     const { log } = this.figure[direction],
       isX = direction === 'x';
@@ -78,10 +81,10 @@ class Chart {
       ...levels.filter((level) => level.across !== isX).map((level) => level.value),
     ]);
     const usable = numbers.filter((number) => Format.isNumber(number) && (!log || number > 0));
-    if (!usable.length) return log ? [1, 10] : [0, 1]; // marks at the edge alone
+    if (!usable.length) return log ? [1, 10] : [0, 1]; // only marks at the edge
     const low = usable.reduce((a, b) => Math.min(a, b), Infinity),
       high = usable.reduce((a, b) => Math.max(a, b), -Infinity);
-    // A bar that reaches almost down to zero must not squeeze all else: it is cut off.
+    // A bar that reaches almost to zero is cut, because it would squeeze all others.
     const centres = this.panels.flatMap((panel) => panel.marks.map((mark) => mark.y)).filter((y) => y > 0);
     return [log && !isX && centres.length ? Math.max(low, Math.min(...centres) / 3) : low, high];
   }
@@ -112,7 +115,7 @@ class Chart {
     return svg;
   }
 
-  // An axis of the figure with a tick every `spacing` pixels at most.
+  // Returns an axis of the figure whose ticks are at least `spacing` pixels apart.
   axis(direction, [low, high], begin, end, spacing) {
     const { log, categories } = this.figure[direction],
       mostTicks = Math.max(3, Math.min(9, Math.floor(Math.abs(end - begin) / spacing)));
@@ -124,7 +127,7 @@ class Chart {
       group = Svg.element('g');
     const frame = { right: left + width - 12, top: top + 8, bottom: top + height - 48 };
     const y = this.axis('y', ranges.y, frame.bottom, frame.top, 36);
-    // Numbers at the ticks make room for themselves beside the title.
+    // Wide numbers at the ticks need more room beside the title.
     const widest = y.categories ? 0 : Math.max(...y.ticks().map((tick) => Svg.width(tick.text)));
     frame.left = left + Math.max(66, 32 + widest);
     const x = this.axis('x', ranges.x, frame.left, frame.right, 58);
@@ -147,7 +150,7 @@ class Chart {
     const { figure } = this,
       width = frame.right - frame.left,
       length = frame.bottom - frame.top;
-    // Every so many words there is room for one.
+    // Returns k if there is room for every k-th word.
     const every = ({ categories }, room, size) =>
       categories ? Math.max(1, Math.ceil((categories.length * size) / room)) : 1;
     x.ticks().forEach((tick, i) => {
@@ -173,7 +176,7 @@ class Chart {
     if (panel.title.length) group.append(title(panel.title, { x: middle, y: top - 3 }));
   }
 
-  // One that is shorter than a pixel is still there.
+  // Returns a box, at least one pixel wide.
   static box(column, x, y) {
     const [from, to] = [x.place(column.from), x.place(column.to)].sort((a, b) => a - b),
       [high, low] = [y.clamped(column.low), y.clamped(column.high)].sort((a, b) => a - b);
@@ -188,7 +191,7 @@ class Chart {
     return box;
   }
 
-  // The symbol alone where the words are too long.
+  // Returns the title, or the symbol and unit if the title is too long.
   static fitting(about, length) {
     const whole = Format.title(about);
     if (Svg.width(whole) <= length + 40 || !about.symbol.length) return whole;
@@ -215,8 +218,8 @@ class Chart {
       : Svg.line(style, place, frame.top, place, frame.bottom);
   }
 
-  // What has jammed stands at its number, or at the edge of the frame: the upper one without a number, the lower one
-  // where a logarithmic axis has no place for it.
+  // Returns the height of a mark. A jammed point without a number is at the upper edge of the frame; one whose number is
+  // not positive is at the lower edge of a logarithmic axis.
   place(mark, y, frame) {
     if (mark.kind !== 'jammed') return y.place(mark.y);
     if (!Format.isNumber(mark.y)) return frame.top;
@@ -249,7 +252,7 @@ class Chart {
     return group;
   }
 
-  // Marks are chosen with pointer or arrow keys.
+  // Lets marks be chosen with the pointer or with arrow keys.
   listen(svg) {
     svg.setAttribute('tabindex', '0');
     svg.setAttribute('role', 'application');
@@ -268,7 +271,7 @@ class Chart {
     });
   }
 
-  // What the marks mean, in lines as long as the chart is wide.
+  // Returns the legend, in lines at most as long as the chart is wide.
   legend(width) {
     const { kinds = [], legend = [], hasBand, bandName = 'tolerance' } = this.figure,
       items = legend.map((one) => ({ kind: 'decided', ...one }));

@@ -1,13 +1,13 @@
 'use strict';
 
-// Numbers, names and symbols as people read them.
+// Texts of numbers, names and symbols.
 const Format = {
-  // Power of ten of the leading digit after rounding to two: 0.0996 is 1.0e-1.
+  // Returns the power of ten of the leading digit, after rounding to two digits: -1 for 0.0996, which is 1.0e-1.
   exponent(number) {
     return Number(number.toExponential(1).split('e')[1]);
   },
 
-  // To the place of 10^-decimals, also left of the point.
+  // Rounds to the place of 10^-decimals, also left of the point.
   rounded(number, decimals) {
     if (decimals >= 0) return number.toFixed(Math.min(decimals, 100));
     const unit = 10 ** -decimals;
@@ -79,13 +79,13 @@ const Format = {
     return typeof value === 'string' ? value : JSON.stringify(value);
   },
 
-  // Plain text as parts of Format.symbol().
+  // Returns plain text as parts, like those of Format.symbol().
   parts(text) {
     return [{ text, level: 0 }];
   },
 
-  // A symbol as engines write it, such as η_r or σ_xy^{contact normal}, as parts [{text, level}]: what follows _ is lowered
-  // (-1), what follows ^ raised (1), letters and digits or all between braces. An `element` is lowered behind the name.
+  // Returns the parts [{text, level}] of a symbol such as η_r or σ_xy^{contact normal}. Level -1 is a subscript, after _, 1
+  // a superscript, after ^: letters and digits, or all between braces. `element` is added to the subscript of the name.
   symbol(text, element = '') {
     const named = !element
       ? text
@@ -105,49 +105,49 @@ const Format = {
     return parts.map((part) => part.text).join('');
   },
 
-  // A pure number has none.
+  // Returns the unit to show; "" for a pure number.
   unit(unit) {
     return unit === '1' ? '' : unit;
   },
 
-  // {words, symbol: parts, unit} of what has no symbol.
+  // Returns a description {words, symbol: parts, unit} without a symbol.
   about(words, unit = '') {
     return { words, symbol: [], unit };
   },
 
-  // The symbol of what is described so, or else its words.
+  // Returns the symbol of a description, or its words if it has no symbol.
   short(about) {
     return about.symbol.length ? about.symbol : about.words;
   },
 
-  // {words, symbol: parts, unit} of a key of the scene. One that the engine has no words for is called by its last step,
-  // an element of a list by its last two.
+  // Returns the description of a key of the scene. A key for which the engine has no words is named by its last step, an
+  // element of a list by its last two.
   parameter({ pointer, words, symbol, unit }) {
     const steps = pointer.split('/').filter((step) => step !== '');
     const last = /^[0-9]+$/.test(steps[steps.length - 1]) ? steps.slice(-2) : steps.slice(-1);
     return { words: words || Format.words(last.join(' ')), symbol: Format.symbol(symbol), unit: Format.unit(unit) };
   },
 
-  // The same of a number that follows from the scene; `known` is what the engine says of such.
+  // Returns the description of a number that follows from the scene; `known` has those that the engine describes.
   group(name, known) {
     const { words = '', symbol = '', unit = '' } = known.find((one) => one.name === name) || {};
     return { words: words || Format.words(name), symbol: Format.symbol(symbol), unit: Format.unit(unit) };
   },
 
-  // {words, symbol, unit} of what is measured.
+  // Returns the description of a measured quantity.
   quantity(quantity) {
     const { element, name, symbol, unit } = quantity,
       words = Format.words(name) + (element ? `, ${element}` : '');
     return { words, symbol: symbol ? Format.symbol(symbol, element) : [], unit: Format.unit(unit) };
   },
 
-  // For a list to choose from, which shows plain text only.
+  // Returns a description as plain text, for a list of choices.
   option(about) {
     const plain = about.symbol.length && about.symbol.every((part) => part.level === 0);
     return about.words + (plain ? ` ${Format.plainText(about.symbol)}` : '') + (about.unit ? ` [${about.unit}]` : '');
   },
 
-  // "relative viscosity ηr [unit]" as parts.
+  // Returns the parts of a title: "relative viscosity ηr [unit]".
   title(about) {
     const symbol = about.symbol.length ? [...Format.parts(' '), ...about.symbol] : [],
       unit = about.unit ? [...Format.parts(' ['), ...Format.symbol(about.unit), ...Format.parts(']')] : [];

@@ -1,4 +1,4 @@
-// Keeps the page up to date: asks its server every second what has changed since it was asked last.
+// Keeps the page up to date: asks the server every second for the changes since the last answer.
 class Live {
   static every = 1000;
   static patience = 20000;
@@ -27,7 +27,7 @@ class Live {
       this.lost = this.lost || new Date();
     }
     this.say();
-    // A page that nobody looks at asks less often.
+    // A hidden page asks less often.
     setTimeout(() => this.ask(), Live.every * (document.hidden ? 10 : 1));
   }
 
@@ -47,10 +47,10 @@ class Live {
     this.campaign.show(this.data);
   }
 
-  // In words; only what has changed, because a reader says it aloud.
+  // Writes the state of the connection. Changes the text only if it is new, because screen readers read it aloud.
   say() {
     const time = (date) => date.toLocaleTimeString('en-GB'),
-      shown = `What is shown is of ${time(this.changed)}.`;
+      shown = `The page shows the state at ${time(this.changed)}.`;
     const text = this.lost
       ? `The server has not answered since ${time(this.lost)}. ${shown} Still asking.`
       : this.data.fault
@@ -61,8 +61,8 @@ class Live {
     this.line.className = this.lost || this.data.fault ? 'alarm' : 'faint';
   }
 
-  // What is known of the details of a point; asks for them, and again when its seeds are others than they were. Those of
-  // a page that is not live are in its document.
+  // Returns the known details of a point on a live page, or null; asks for them if they are missing or its seeds have
+  // changed. A page that is not live has them in its document.
   static details(point) {
     const live = Live.current,
       key = JSON.stringify([point.stop_tests.length, point.seeds.ended]);

@@ -1,4 +1,4 @@
-// The page: its parts, which stay, and the campaign, which may become another one while somebody looks.
+// The page of a campaign. Its parts stay; the data may change while the page is open.
 class Campaign {
   chosen = null; // hash of the point
 
@@ -36,8 +36,8 @@ class Campaign {
     window.scrollBy(0, now.getBoundingClientRect().top - top);
   }
 
-  // What somebody looks at: what has the focus, if it is to be seen, or else the part that reaches into the top of the
-  // window. It is to stay where it is, whatever above it becomes longer or shorter.
+  // Returns the element that must not move when parts above it change their height: the one with the focus if it is
+  // visible, otherwise the section at the top of the window.
   static anchor() {
     const candidates = [...document.querySelectorAll('main > section')];
     if (document.activeElement && document.activeElement !== document.body) candidates.unshift(document.activeElement);
@@ -48,7 +48,7 @@ class Campaign {
     return seen || document.body;
   }
 
-  // The place of the chosen point; -1 where there is none.
+  // Returns the place of the chosen point, or -1.
   place() {
     return this.data.points.findIndex((point) => point.hash === this.chosen);
   }
@@ -63,7 +63,7 @@ class Campaign {
   }
 }
 
-// Paper has no folds.
+// Opens all folded parts while the page is printed.
 function unfoldForPrint() {
   let folded = [];
   window.addEventListener('beforeprint', () => {

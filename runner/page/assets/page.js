@@ -1,11 +1,11 @@
-// The page: its data and its parts.
+// Elements of the page.
 const Page = {
   element(name, properties = {}, ...children) {
     const made = Object.assign(document.createElement(name), properties);
     made.append(...children);
     return made;
   },
-  // Text, or parts of Format.symbol(), into an element.
+  // Appends text, or parts of Format.symbol(), to an element.
   fill(element, content) {
     for (const { text, level } of Array.isArray(content) ? content : Format.parts(content))
       element.append(level ? Page.element(level > 0 ? 'sup' : 'sub', {}, text) : text);
@@ -23,7 +23,7 @@ const Page = {
   labelled(text, control) {
     return Page.element('label', {}, text, control);
   },
-  // options: [[value, text, group]], in the order of their groups.
+  // Returns a list of choices. `options` are [value, text, group], ordered by group.
   select(options, onChange) {
     const select = Page.element('select');
     Page.refill(select, options);
@@ -34,7 +34,7 @@ const Page = {
     const row = ([term, meaning]) => [Page.fill(Page.element('dt'), term), Page.fill(Page.element('dd'), meaning)];
     return Page.element('dl', {}, ...items.flatMap(row));
   },
-  // Other entries of a list; what was chosen stays chosen, and a list that is open stays as it is if nothing is new.
+  // Replaces the entries of a list, if they have changed. The entry with the chosen text stays chosen.
   refill(select, options) {
     const key = JSON.stringify(options);
     if (select.filled === key) return;
@@ -52,8 +52,8 @@ const Page = {
     const same = [...select.options].find((option) => option.text === chosen);
     if (same) select.value = same.value;
   },
-  // Makes a section anew when what it shows has changed. What was open stays open, the focus stays where it was, and
-  // text that somebody is about to copy is left alone until the next time.
+  // Builds a section anew if what it shows has changed. Open folds stay open, and the focus stays where it was. A section
+  // with selected text is left alone until the next call.
   renew(section, shown, build) {
     const key = JSON.stringify(shown),
       selection = document.getSelection();
@@ -76,7 +76,7 @@ const Page = {
   },
 };
 
-// One line that says how the campaign stands.
+// Returns the state of the campaign in one line.
 function headline({ progress }) {
   const parts = [`${progress.decided} of ${Format.counted(progress.points, 'point')} decided`];
   const others = Object.entries(progress.states).filter(([name]) => !['converged', 'complete', 'open'].includes(name));
@@ -86,7 +86,7 @@ function headline({ progress }) {
   if (ahead && ahead.likely > 0)
     parts.push(`${Format.duration(ahead.likely)} to go (${[ahead.low, ahead.high].map(Format.duration).join(' to ')})`);
   if (progress.owner !== null) parts.push(`${Format.counted(progress.workers, 'worker')} busy`);
-  else if (progress.check === 4) parts.push('nobody runs it now');
+  else if (progress.check === 4) parts.push('not running now');
   if (progress.seeds.handed_over) parts.push(`${Format.counted(progress.seeds.handed_over, 'seed')} handed over`);
   return parts.join(' · ');
 }

@@ -1,7 +1,6 @@
-// What is known of one point: how its mean came about, how seeds scatter, what was lost, what it cost. The figures are
-// pure; `show` writes them down.
+// The part of the page about one point: the convergence of its mean, the scatter of seeds, losses and cost.
 class PointView {
-  // `onPick(index)`: a point was chosen here.
+  // `onPick(index)` is called when a point is chosen here.
   constructor(host, onPick) {
     this.select = Page.select([], () => onPick(Number(this.select.value)));
     this.charts = ['mean', 'width', 'scatter'].map(() => new Chart());
@@ -18,7 +17,7 @@ class PointView {
     );
   }
 
-  // Logarithmic where there are many.
+  // Returns the axis of seeds, which is logarithmic if there are many.
   static seedsAxis(seeds) {
     const about = { words: 'seeds', symbol: Format.symbol('n'), unit: '' };
     return { about, log: seeds[seeds.length - 1] >= 20 * seeds[0] };
@@ -28,7 +27,7 @@ class PointView {
     return `${this.data.campaign} ${point.label} ${what}`;
   }
 
-  // The last stop test's, or what the seeds so far say.
+  // Returns the last stop test, or null.
   static last(point) {
     return point.stop_tests[point.stop_tests.length - 1] || null;
   }
@@ -85,10 +84,10 @@ class PointView {
         legend,
         panels: [{ marks: means, levels: levels.map(level), lines, bands }],
         hasBand: bands.length > 0,
-        bandName: 'its interval',
+        bandName: 'interval of the mean',
         height: 260,
-        caption: `Running mean over the first n seeds, its interval, and the stop tests at which it was judged.${
-          levels.length ? " Dashed: the last stop test's mean ± the half-width that is good enough." : ''
+        caption: `Running mean over the first n seeds with its interval, and the stop tests.${
+          levels.length ? ' Dashed: the mean at the last stop test ± the allowed half-width.' : ''
         }`,
       },
       {
@@ -105,7 +104,7 @@ class PointView {
           },
         ],
         height: 260,
-        caption: `Half-width of the interval by which stop tests decide.${last ? ' Dashed: what is good enough.' : ''}`,
+        caption: `Half-width of the interval by which stop tests decide.${last ? ' Dashed: the allowed half-width.' : ''}`,
       },
     ];
   }
@@ -131,7 +130,7 @@ class PointView {
       const columns = scatter.counts.map((high, i) => ({ from: edge(i), to: edge(i + 1), low: 0, high, series: 0 })),
         table = { columns: ['from', 'to', 'seeds'], rows: columns.map(({ from, to, high }) => [from, to, high]) },
         panel = { marks: [], levels: level(false), columns };
-      return figure(panel, this.about, Format.about('seeds'), table, 'How many seeds gave which value. Dashed: their mean.');
+      return figure(panel, this.about, Format.about('seeds'), table, 'Distribution of the values. Dashed: their mean.');
     }
     const rows = scatter.values.map((y, i) => [scatter.seeds[i] - 1, y]),
       text = (seed, y) => `seed ${seed}: ${Format.plain(y)}`,
@@ -142,7 +141,6 @@ class PointView {
     return figure(panel, Format.about('seed'), this.about, table, 'The value of each seed. Dashed: their mean.');
   }
 
-  // In sentences.
   sentences(point) {
     const last = PointView.last(point),
       { seeds } = point,
@@ -153,24 +151,24 @@ class PointView {
         hasShare = relative && last.mean && Format.isNumber(last.half_width),
         share = hasShare ? ` (${Format.percent(last.half_width / Math.abs(last.mean))})` : '',
         test = Format.counted(last.seeds, 'seed');
-      said.push(`${Format.withError(last.mean, last.half_width)}${share}: ${point.verdict}, at the stop test at ${test}.`);
+      said.push(`${Format.withError(last.mean, last.half_width)}${share}: ${point.verdict}, at the stop test with ${test}.`);
       const plain = point.plain[this.path];
       if (plain && plain[0] !== last.mean) {
-        const text = 'Without the control variate, a quantity of known mean zero that takes away scatter';
+        const text = 'Without the control variate, a quantity of known mean zero that reduces the scatter';
         said.push(`${text}: ${Format.withError(plain[0], plain[2])}.`);
       }
     } else if (estimate && Format.isNumber(estimate[0])) {
       const mean = Format.withError(estimate[0], estimate[2]),
         seeds = Format.counted(estimate[3], 'seed');
-      said.push(`${mean} over the ${seeds} so far: provisional, ${point.verdict}.`);
+      said.push(`${mean}, the mean of all seeds that have ended (${seeds}): provisional, ${point.verdict}.`);
     } else {
-      said.push(`Nothing is known yet: ${point.verdict}.`);
+      said.push(`There is no value yet: ${point.verdict}.`);
     }
     const { ended, jammed, has_jammed: hasJammed } = point.endings;
-    if (hasJammed) said.push(`It has jammed: ${jammed} of ${Format.counted(ended, 'seed')}.`);
+    if (hasJammed) said.push(`The point has jammed, in ${jammed} of ${Format.counted(ended, 'seed')}.`);
     if (!point.decided) said.push(`${seeds.wanted_ended} of the ${seeds.wanted} seeds of the next stop test have ended.`);
     const each = seeds.ended ? `, ${Format.duration(point.cpu_seconds / seeds.ended)} each` : '';
-    const extra = seeds.extra ? `; ${seeds.extra} of them extra, which do not count` : '';
+    const extra = seeds.extra ? `; ${seeds.extra} of them are extra and do not count` : '';
     said.push(
       `Processor time ${Format.duration(point.cpu_seconds)} for ${Format.counted(seeds.ended, 'seed')}${each}${extra}.`,
     );
@@ -186,19 +184,19 @@ class PointView {
     const groups = Object.entries(point.groups || {}).filter(([, value]) => Format.isNumber(value));
     this.facts.replaceChildren(Page.paragraph(this.sentences(point)));
     if (groups.length) this.facts.append(Page.paragraph(PointView.groups(groups, data.derived), 'faint'));
-    const empty = point.decided ? 'Nothing to draw: no seed has a value.' : '';
+    const empty = point.decided ? 'There is nothing to draw, because no seed has a value.' : '';
     const figures = [...this.convergence(point), this.scatter(point)].map((figure) => ({ ...figure, empty }));
     this.charts.forEach((chart, i) => chart.show(figures[i]));
     this.details.show(data, point, this.about);
     this.losses.replaceChildren();
     const causes = Object.entries(point.losses).map(([cause, count]) => `${count} ${Format.words(cause)}`);
     if (causes.length)
-      this.losses.append(Page.paragraph(`Lost seeds, which the mean leaves out: ${causes.join(', ')}.`));
+      this.losses.append(Page.paragraph(`The mean leaves out the lost seeds: ${causes.join(', ')}.`));
     const shown = [point.hash, data.quantities, point.estimates, point.plain];
     Page.renew(this.numbers, shown, () => this.showNumbers(point));
   }
 
-  // "Péclet number Pe 10 · Stokes number St 0.01" as parts.
+  // Returns the parts of "Péclet number Pe 10 · Stokes number St 0.01".
   static groups(groups, known) {
     return groups.flatMap(([name, value], i) => [
       ...Format.parts(i ? ' · ' : ''),
@@ -207,7 +205,7 @@ class PointView {
     ]);
   }
 
-  // Everything that was measured at the point.
+  // Shows the table of all quantities that were measured at the point.
   showNumbers(point) {
     const rows = this.data.quantities
       .map((quantity, i) => ({
@@ -225,7 +223,7 @@ class PointView {
       value: (row) => (row.plain ? row.plain[0] : null),
       shown: (row) => (row.plain ? Format.withError(row.plain[0], row.plain[2]) : ''),
     };
-    const details = Page.details(`All that was measured at this point (${rows.length} numbers)`);
+    const details = Page.details(`All quantities measured at this point (${rows.length} numbers)`);
     this.numbers.append(details);
     new SortedTable(
       details,
@@ -249,14 +247,14 @@ class PointView {
   }
 }
 
-// What results hold of a point and no table does: the course of the target within the window, profiles, distributions.
+// The charts of a point's details: the course of the target within the measured window, profiles and distributions.
 class DetailsView {
   constructor() {
     this.host = Page.element('div', { className: 'pair' });
     this.charts = [];
   }
 
-  // A live page asks for them; until they come there are none.
+  // Draws the details. On a live page there are none until the server has sent them.
   show(data, point, about) {
     const details = point.details || Live.details(point);
     const figures = details
@@ -276,7 +274,7 @@ class DetailsView {
     return seeds < of ? `the first ${seeds} of ${of} seeds` : Format.counted(seeds, 'seed');
   }
 
-  // A line with its interval where that is settled; it leads past what does not exist.
+  // Returns a line with its interval where that is settled. The line skips values that do not exist.
   static curve(xs, { mean, half_width: half }, isSettled = () => true) {
     const known = xs.map((_, i) => i).filter((i) => Format.isNumber(mean[i])),
       banded = known.filter((i) => Format.isNumber(half[i]) && isSettled(i)),
@@ -301,18 +299,18 @@ class DetailsView {
         ? 'There was no test for a transient.'
         : point.stop_tests.length
           ? 'No transient was found at the last stop test.'
-          : 'No stop test has tested it for a transient yet.';
+          : 'There was no stop test yet, and so no test for a transient.';
     return [
       {
         name: `${data.campaign} ${point.label} window`,
         height: 260,
-        x: { about: Format.about('part of the measured window', '%'), log: false },
+        x: { about: Format.about('position in the measured window', '%'), log: false },
         y: { about, log: false },
         panels: [{ ...DetailsView.curve(xs, details.blocks), levels: [{ value: whole, across: true, series: 1 }] }],
         table: { columns: ['window_percent', 'mean', 'half_width'], rows: xs.map((x, i) => [x, mean[i], half[i]]) },
         hasBand: half.some(Format.isNumber),
-        bandName: 'its interval',
-        caption: `Course within the window, mean of ${DetailsView.seeds(details)} in each of ${parts} parts. ${verdict}`,
+        bandName: 'interval of the mean',
+        caption: `Course within the window: mean of ${DetailsView.seeds(details)} in each of ${parts} parts. ${verdict}`,
       },
     ];
   }
@@ -333,7 +331,7 @@ class DetailsView {
           rows: axis.values.map((x, i) => [x, profile.mean[i], profile.standard_error[i], profile.half_width[i]]),
         },
         hasBand: profile.half_width.some(Format.isNumber),
-        bandName: 'its interval',
+        bandName: 'interval of the mean',
         caption: `${about.words}: mean of ${DetailsView.seeds(details)}.`,
       };
     });

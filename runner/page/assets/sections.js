@@ -1,4 +1,4 @@
-// What each section shows, so that it is made anew only when that has changed.
+// The data that each section shows; it is built anew only if they have changed.
 const doubtsShown = (data) => [data.points.map((point) => [point.label, point.losses, point.loss_reasons]), data.meanings, data.warnings],
   costShown = (data) => [data.progress.seeds, data.points.map(({ label, seeds, cpu_seconds }) => [label, seeds.ended, seeds.extra, cpu_seconds])],
   resultsShown = (data) => [data.target, data.parameters, data.quantities, data.points.map(resultShown)],
@@ -12,7 +12,7 @@ function resultsTable(data, sweep, host, onPick) {
     isShare = target.relative_tolerance !== undefined && !target.relative_to;
   const isKnown = (point) => column >= 0 && Sweep.isKnown(point, point.estimates[column]);
   const numbers = (point) => (isKnown(point) ? point.estimates[column] : [null, null, null, 0]);
-  const plain = (point) => point.plain[path] || numbers(point);  // the same without a control variate
+  const plain = (point) => point.plain[path] || numbers(point);  // without control variate
   const rows = data.points.map((point, i) => ({ point, i }));
   const measure = (row) => {
     const [mean, , half] = numbers(row.point);
@@ -39,7 +39,7 @@ function resultsTable(data, sweep, host, onPick) {
     },
     { title: Format.short(about), value: (row) => numbers(row.point)[0], shown: mean },
     {
-      title: isShare ? 'relative' : 'half-width',
+      title: isShare ? 'relative half-width' : 'half-width',
       minor: true,
       value: measure,
       shown: (row) => (isShare ? Format.percent(measure(row)) : Format.rough(measure(row))),
@@ -54,8 +54,8 @@ function resultsTable(data, sweep, host, onPick) {
     onPick: (row) => onPick(row.i),
     name: `${data.campaign} results`,
     caption:
-      'Seeds: those that have ended, of those that the deciding stop test takes (of an open point, the next stop test). ' +
-      `${about.words}: the mean, with the control variate where there is one, ± the half-width of its ` +
+      'Seeds: the number that have ended / the number that the deciding stop test takes (for an open point, the next one). ' +
+      `${about.words}: the mean, with the control variate if there is one, ± the half-width of its ` +
       `${Format.rough(100 * target.confidence)} % interval.${open ? ' *: provisional.' : ''}`,
     csv: {
       columns: ['label', 'hash', ...data.parameters.map((one) => one.pointer), 'verdict', 'seeds', 'count', 'mean',
@@ -77,12 +77,12 @@ function resultsTable(data, sweep, host, onPick) {
   });
 }
 
-// Who works on what: the workers now, and the attempts that ended last as a chart over time.
+// The workers now, and the last attempts as a chart over time.
 class WorkView {
   constructor(host) {
     this.now = Page.element('div');
     this.chart = new Chart();
-    host.append(Page.heading('h2', 'Who works on what'), this.now, this.chart.host);
+    host.append(Page.heading('h2', 'Workers'), this.now, this.chart.host);
   }
 
   show(data) {
@@ -115,7 +115,7 @@ class WorkView {
     { name: 'no result', series: 1 },
   ];
 
-  // Times are those of the owner's clock, to a second.
+  // Returns the chart of attempts. Times are those of the owner's clock, to a second.
   static figure(data) {
     const seconds = (text) => Date.parse(text) / 1000,
       { attempts } = data.work;
@@ -152,12 +152,12 @@ class WorkView {
         columns: ['worker', 'host', 'label', 'seed', 'began', 'ended', 'outcome'],
         rows: attempts.map((one) => [one.worker, one.host, data.points[one.point].label, one.seed, one.began, one.ended, one.outcome]),
       },
-      caption: `The last ${Format.counted(attempts.length, 'attempt')}, from ${attempts[0].began.replace('T', ' ').replace('Z', ' UTC')} on.`,
+      caption: `The last ${Format.counted(attempts.length, 'attempt')}, since ${attempts[0].began.replace('T', ' ').replace('Z', ' UTC')}.`,
     };
   }
 }
 
-// What may be doubted: lost seeds by cause, what each mark means, what engines warn of.
+// Writes the reservations about the numbers: the meaning of marks, lost seeds by cause, and warnings of the engine.
 function writeDoubts(data, host) {
   const losses = ({ label, losses: causes, loss_reasons: reasons }) =>
     Object.entries(causes).map(([cause, count]) => ({ point: label, cause, count, reason: reasons[cause] || '' }));
@@ -167,7 +167,7 @@ function writeDoubts(data, host) {
   host.append(Page.heading('h2', 'What to know before using the numbers'));
   if (meanings.length) host.append(Page.list(meanings));
   if (lost.length) {
-    const about = 'Seeds that ended without a value. Means leave them out.';
+    const about = 'Lost seeds have ended without a value. Means leave them out.';
     host.append(Page.heading('h3', 'Lost seeds'), Page.paragraph(about, 'faint'));
     new SortedTable(
       host,
@@ -175,7 +175,7 @@ function writeDoubts(data, host) {
         { title: 'point', text: true, wrap: true, value: (row) => row.point },
         { title: 'cause', text: true, value: (row) => row.cause },
         { title: 'seeds', value: (row) => row.count },
-        { title: 'why', text: true, wrap: true, value: (row) => row.reason },
+        { title: 'reason', text: true, wrap: true, value: (row) => row.reason },
       ],
       lost,
       { name: `${data.campaign} lost`, csv: { columns: ['label', 'cause', 'seeds', 'why'], rows: lost.map(Object.values) } },
@@ -200,7 +200,7 @@ function writeCost(data, host, onPick) {
   const { seeds, cpu_seconds: time } = data.progress,
     said = [`${Format.counted(seeds.ended, 'seed')} ended in ${Format.duration(time)} of processor time`];
   if (seeds.lost) said.push(`${seeds.lost} of them without a value`);
-  if (seeds.extra) said.push(`${seeds.extra} beyond what decided their point`);
+  if (seeds.extra) said.push(`${seeds.extra} of them extra, beyond the stop test that decided their point`);
   host.append(Page.paragraph(`${said.join(', ')}.`));
   const details = Page.details('By point');
   host.append(details);
@@ -217,7 +217,7 @@ function writeCost(data, host, onPick) {
         value: (row) => row.point.cpu_seconds,
         shown: (row) => Format.duration(row.point.cpu_seconds),
       },
-      { title: 'a seed', value: each, shown: (row) => Format.duration(each(row)) },
+      { title: 'per seed', value: each, shown: (row) => Format.duration(each(row)) },
     ],
     rows,
     {
@@ -231,7 +231,7 @@ function writeCost(data, host, onPick) {
   );
 }
 
-// From the smallest to the largest of numbers, or the words.
+// Returns the range of numbers, or the distinct words.
 function range(values) {
   const numbers = values.filter(Format.isNumber);
   if (numbers.length !== values.length) return [...new Set(values.map((value) => Format.value(value)))].join(', ');
@@ -240,7 +240,7 @@ function range(values) {
   return low === high ? Format.plain(low) : `${Format.rough(low)} to ${Format.rough(high)}`;
 }
 
-// Entries of a list of words or numbers, which stand one by one in the document, in one row.
+// Joins the entries of a list, which are separate keys in the document, in one row.
 function inOneRow(scene) {
   const rows = new Map();
   for (const key of scene) {
@@ -252,7 +252,7 @@ function inOneRow(scene) {
   return [...rows.values()];
 }
 
-// What the sweep sets, the keys that have words, and the numbers that follow, over all points.
+// Returns the swept parameters, the keys that have words, and the numbers that follow from the scenes, over all points.
 function sceneSummary(data, sweep) {
   const items = [],
     named = new Set();
@@ -275,7 +275,7 @@ function sceneSummary(data, sweep) {
 }
 
 function writeOrigin(data, sweep, host) {
-  host.append(Page.heading('h2', 'Where this comes from'));
+  host.append(Page.heading('h2', 'Where the numbers come from'));
   const scene = Page.details('The scene'),
     shared = inOneRow(data.scene).map((key) => ({ ...key, about: Format.parameter(key) }));
   scene.append(Page.list(sceneSummary(data, sweep)));
@@ -301,12 +301,12 @@ function writeOrigin(data, sweep, host) {
   }
   const provenance = Page.details('Engine, machines and checksums');
   provenance.append(Page.list(data.provenance));
-  const again = Page.details('To make it again');
+  const again = Page.details('How to reproduce the numbers');
   again.append(
     Page.element('pre', {}, data.commands),
     Page.paragraph(
-      'The same engine gives the same bytes with any number of workers: the last line tells whether ' +
-        'the numbers are the same. Another build gives other bytes, and means that agree within their errors.',
+      'The same engine gives the same bytes with any number of workers: the checksum in the last line tells whether ' +
+        'the numbers are the same. Another build gives other bytes, but means that agree within their errors.',
       'faint',
     ),
   );

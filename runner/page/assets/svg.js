@@ -1,6 +1,6 @@
-// Elements, marks and text of charts. Text only ever enters as text, so nothing in a name is obeyed.
+// Elements, marks and text of charts. Names enter as text only, so that none is taken for markup.
 const Svg = {
-  // Numbers among the attributes are rounded to a tenth.
+  // Returns an element. Numbers among its attributes are rounded to a tenth.
   element(name, attributes = {}, ...children) {
     const made = document.createElementNS('http://www.w3.org/2000/svg', name);
     for (const [key, value] of Object.entries(attributes))
@@ -25,7 +25,7 @@ const Svg = {
     return Svg.element('path', { class: style, d: Svg.through(places) + (closed ? 'Z' : '') });
   },
 
-  // Parts of Format.symbol() one after another; lowered and raised ones are smaller.
+  // Returns the text of parts of Format.symbol(); subscripts and superscripts are smaller.
   text(parts, attributes) {
     const made = Svg.element('text', attributes);
     let shift = 0;
@@ -39,13 +39,13 @@ const Svg = {
     return made;
   },
 
-  // What text of 13 px is expected to take; fonts differ.
+  // Returns the approximate width of text of 13 px; fonts differ.
   width(parts) {
     if (typeof parts === 'string') return Svg.width(Format.parts(parts));
     return parts.reduce((sum, part) => sum + part.text.length * (part.level ? 5.4 : 7), 0);
   },
 
-  // Corners around the middle, for a radius of 1; null: a circle. As many as are not confused with each other.
+  // The shapes of marks: corners around the middle, for a radius of 1; null is a circle.
   shapes: [
     null,
     [[-0.9, -0.9], [0.9, -0.9], [0.9, 0.9], [-0.9, 0.9]],
@@ -71,7 +71,7 @@ const Svg = {
     return Svg.path(style, corners, true);
   },
 
-  // A file of its own, in the colours of a light page and without variables, which drawing programs do not know.
+  // Returns the chart as a file, in the colours of a light page and without variables, which drawing programs lack.
   standalone(svg) {
     const copy = svg.cloneNode(true),
       colours = new Map();
@@ -97,9 +97,9 @@ const Svg = {
   },
 };
 
-// What a chart or table can be saved as. Links hold their files, so that they work without a network or a server.
+// Links that save a chart or table. They hold their files, so that they work without a network or a server.
 const Saving = {
-  // As RFC 4180 quotes; what a spreadsheet would run as a formula stands behind an apostrophe.
+  // Returns a field quoted as in RFC 4180. An apostrophe precedes text that a spreadsheet would run as a formula.
   csvField(value) {
     if (value === null || value === undefined) return '';
     if (typeof value !== 'string') return Format.isNumber(value) ? String(value) : JSON.stringify(value);
@@ -111,13 +111,13 @@ const Saving = {
     return [columns, ...rows].map((row) => row.map(Saving.csvField).join(',') + '\n').join('');
   },
 
-  // Text as a JSON string of ASCII, which Python reads as the same string.
+  // Returns a value as JSON in ASCII, which Python reads as the same value.
   ascii(value) {
     const escape = (c) => `\\u${c.charCodeAt(0).toString(16).padStart(4, '0')}`;
     return JSON.stringify(value).replace(/[^\x20-\x7e]/g, escape);
   },
 
-  // The script that draws the figure again; its data stand in it as one string.
+  // Returns the script that draws the figure again, with its data as one string.
   script(figure) {
     const data = Saving.ascii(Saving.ascii(figure));
     return `${drawingScript}\n\nFIGURE = json.loads(${data})\n\nif __name__ == "__main__":\n    main(FIGURE)\n`;

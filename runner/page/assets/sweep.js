@@ -1,4 +1,4 @@
-// What the sweep varies, and the figure of a measured quantity over one of its parameters. Pure.
+// The swept parameters of a campaign, and figures of measured quantities over them.
 class Sweep {
   constructor(data) {
     this.data = data;
@@ -18,7 +18,7 @@ class Sweep {
     return path.replace(/^\//, '');
   }
 
-  // What the campaign aims at: its path, its column among the quantities (-1: not measured yet), what it is.
+  // Returns the target's path, its column among the quantities (-1 if not measured yet), and its description.
   static aim({ target, quantities }) {
     const path = Sweep.bare(target.observable),
       column = quantities.findIndex((quantity) => quantity.path === path),
@@ -26,7 +26,7 @@ class Sweep {
     return { path, column, about };
   }
 
-  // One parameter: the cell of each point, its values in order, each once. What is no number is text.
+  // Returns a parameter with the cell of each point and its distinct values in order. Cells are all numbers or all words.
   column(parameter) {
     const { pointer, meaning } = parameter,
       raw = this.points.map((point) => point.settings[pointer]);
@@ -44,7 +44,7 @@ class Sweep {
     return { pointer, meaning, about: Format.parameter(parameter), numeric, cells, values };
   }
 
-  // Whether `axis` says what `other` is.
+  // True if the value of `other` follows from that of `axis`.
   isInStep(other, axis) {
     const partner = new Map();
     return this.points.every((_, i) => {
@@ -54,12 +54,13 @@ class Sweep {
     });
   }
 
+  // Returns the parameters that distinguish curves over `axis`.
   others(axis) {
     return this.parameters.filter((one) => one !== axis && one.values.length > 1 && !this.isInStep(one, axis));
   }
 
-  // By which parameters panels are usually made: by none while curves are few enough to be told apart, by all where
-  // each point has several numbers, or else by the one with fewest values.
+  // Returns the parameters by which panels are made unless chosen: none if the curves are few enough to be distinguished,
+  // all others if each point has several numbers, otherwise the one with the fewest values.
   usualPanels(axis, perPoint = 1) {
     const mostPanels = 12,
       others = this.others(axis);
@@ -69,8 +70,8 @@ class Sweep {
     return [others.reduce((best, one) => (one.values.length < best.values.length ? one : best))];
   }
 
-  // What may be drawn: each measured quantity, the target first, and sums that are split by term: names with the same
-  // beginning and the same elements, such as stress/...
+  // Returns the quantities that can be drawn, the target first. Sums that are split by term are choices of their own:
+  // quantities with the same first name and the same element, such as stress/...
   choices() {
     const { quantities, target } = this.data,
       targets = [target, ...(target.also || [])].map((one) => Sweep.bare(one.observable));
@@ -102,16 +103,16 @@ class Sweep {
     return drawn.sort((a, b) => order.indexOf(a.group) - order.indexOf(b.group));
   }
 
-  // How sure the number of a point is: of a stop test that decides, of one that does not, or of the seeds so far; or that it
-  // has jammed.
+  // Returns the kind of a point's mark: "jammed", "provisional" before it is decided, "decided" if it is converged or
+  // complete, otherwise "undecided".
   static kind(point) {
     if (point.endings.has_jammed) return 'jammed';
     if (!point.decided) return 'provisional';
     return /^(converged|complete)/.test(point.state) ? 'decided' : 'undecided';
   }
 
-  // Whether the point has a number. At one that has jammed a number of half of its seeds or fewer is that of those
-  // which happened to flow.
+  // True if the point has a number. At a jammed point a mean over half of its seeds or fewer does not count, because it
+  // is that of the seeds that happened to flow.
   static isKnown({ endings }, estimate) {
     if (!estimate || !Format.isNumber(estimate[0])) return false;
     return !endings.has_jammed || 2 * estimate[3] > endings.ended;
@@ -124,8 +125,8 @@ class Sweep {
     return [...name, ...Format.parts(` = ${cell}`)];
   }
 
-  // The figure of a choice over `axis`, with a panel for each combination of values of `panelBy`. Scales are those that
-  // fit unless log.x or log.y is given.
+  // Returns the figure of a choice over `axis`, with a panel for each combination of values of `panelBy`. The numbers
+  // decide whether scales are logarithmic, unless log.x or log.y is given.
   figure(choice, axis, panelBy, log = {}, stacked = false) {
     const { quantities } = this.data,
       panels = new Map(),
@@ -193,8 +194,8 @@ class Sweep {
     const hidden = marks.filter((mark) => !Chart.isVisible(mark, scales.x, scales.y)).length;
     const notes = [];
     if (hidden)
-      notes.push(`Left out, because a logarithmic axis has no place for them: ${hidden} that are not positive.`);
-    if (absent) notes.push(`Left out, because they do not exist yet: ${Format.counted(absent, 'number')}.`);
+      notes.push(`A logarithmic axis leaves out numbers that are not positive, which are ${hidden} here.`);
+    if (absent) notes.push(`Numbers that are not measured yet are left out: ${Format.counted(absent, 'number')}.`);
     return {
       name: `${this.data.campaign} ${choice.id} over ${axis.about.words}`,
       panels: list,
@@ -216,9 +217,9 @@ class Sweep {
     };
   }
 
-  // The mean of a sum takes its control variate along, those of its parts do not: what lies between is a part, too.
+  // Adds the control variate as a part of a stacked sum: the mean of the sum includes it, those of the parts do not.
   addControl(panels, total, series, path) {
-    const place = Math.max(series.size, 6); // a colour that is like none of the first
+    const place = Math.max(series.size, 6); // a colour that differs from the first ones
     for (const { marks } of panels) {
       for (const mark of marks.filter((one) => one.series === total && Format.isNumber(one.y))) {
         const plain = this.points[mark.point].plain[path];
@@ -230,8 +231,7 @@ class Sweep {
     }
   }
 
-  // Whether the choice is a sum and all of its parts, at every point, so that these may be stacked. What is measured may
-  // lie a little beside it by rounding.
+  // True if the choice is a sum and all of its parts, at every point and within rounding, so that these can be stacked.
   isSum(choice) {
     const { quantities } = this.data,
       total = choice.indices.find((index) => quantities[index].name.endsWith('/total'));
@@ -246,13 +246,13 @@ class Sweep {
     });
   }
 
-  // Whether no two points of a panel lie at the same place.
+  // True if no two points of a panel are at the same place on the axis.
   isAlone(axis, panelBy) {
     const seen = new Set(this.points.map((_, i) => JSON.stringify([axis, ...panelBy].map((one) => one.cells[i]))));
     return seen.size === this.points.length;
   }
 
-  // Parts one above another, those below zero downward, and the sum as a mark with its bar.
+  // Turns the parts into stacked boxes, negative ones below zero. The sum remains a mark with its bar.
   static stack(panel, total, log) {
     const parts = panel.marks.filter((mark) => mark.series !== total && Format.isNumber(mark.y)),
       along = (x) => (log ? Math.log10(x) : x),
@@ -274,7 +274,7 @@ class Sweep {
     [panel.lines, panel.bands] = [[], []];
   }
 
-  // Lines that guide the eye through each series, and the tolerance as a band around it.
+  // Adds lines that guide the eye through each series, and the tolerance as a band around it.
   static connect(panel, series) {
     [panel.lines, panel.bands] = [[], []];
     for (let place = 0; place < series; ++place) {
@@ -291,7 +291,7 @@ class Sweep {
   }
 }
 
-// The chart over the sweep and what is chosen for it.
+// The chart over the sweep, with its controls.
 class SweepView {
   constructor(host, onPick) {
     [this.quantity, this.axis, this.panels] = ['quantity', 'axis', 'panels'].map((id) => {
@@ -335,12 +335,12 @@ class SweepView {
     const quantities = this.choices.map((one, i) => [...option(one, i), one.group]);
     Page.refill(this.quantity, quantities);
     Page.refill(this.axis, sweep.parameters.map(option));
-    Page.refill(this.panels, [['usual', 'as fits'], ['none', 'none'], ...sweep.parameters.map(option)]);
+    Page.refill(this.panels, [['usual', 'automatic'], ['none', 'none'], ...sweep.parameters.map(option)]);
     if (isFirst) this.axis.value = String(sweep.parameters.indexOf(sweep.usual));
     this.draw();
   }
 
-  // Another quantity or axis: scales are again those that fit.
+  // Draws another quantity or axis; the numbers decide again whether scales are logarithmic.
   renew() {
     this.setByHand = false;
     this.draw();
@@ -369,9 +369,9 @@ class SweepView {
     this.logX.checked = figure.x.log;
     this.logY.checked = figure.y.log;
     this.logX.disabled = !axis.numeric;
-    const bars = `Bars are ${Format.rough(100 * this.data.target.confidence)} % intervals`;
+    const bars = `Bars are ${Format.rough(100 * this.data.target.confidence)} % confidence intervals`;
     figure.caption =
-      (stacked ? `${bars} of the sum; parts below zero hang below it.` : `${bars}; lines only guide the eye.`) +
+      (stacked ? `${bars} of the sum; negative parts are stacked below zero.` : `${bars}; lines only guide the eye.`) +
       (figure.hasBand ? ' Bands: the tolerance around each mean.' : '') +
       (figure.kinds.includes('provisional')
         ? ' Provisional: the point is not decided yet, and its number may still change.'

@@ -1,10 +1,10 @@
-// A table that sorts by a click on a title. columns: [{title: parts or text, value(row), by which it sorts, shown(row), the
-// value unless given, text: whether words, wrap, minor: left out where it is narrow}].
+// A table that is sorted by a click on a title. A column has a title (text or parts), value(row), by which rows are sorted,
+// shown(row), by default the value, and the flags text (for words), wrap, and minor (left out in a narrow window).
 class SortedTable {
-  // By which column a table of that name was sorted last, so that it stays so when it is made anew.
+  // The column by which a table of that name was last sorted, which applies again when it is built anew.
   static sorted = new Map();
 
-  // `onPick(row)`: a row was chosen, by its first cell.
+  // `onPick(row)` is called when a row is chosen, by its first cell.
   constructor(host, columns, rows, { caption = '', onPick = null, name = 'table', csv = null } = {}) {
     Object.assign(this, { columns, rows, onPick, name, by: null, descending: false });
     this.lines = rows.map((row) => this.line(row));
@@ -49,7 +49,7 @@ class SortedTable {
     this.sort(...SortedTable.sorted.get(this.name));
   }
 
-  // Numbers before words; what does not exist comes last either way.
+  // Sorts numbers before words; values that do not exist come last in both directions.
   sort(i, descending) {
     Object.assign(this, { by: i, descending });
     if (!this.columns[i]) return;
@@ -71,7 +71,7 @@ class SortedTable {
     SortedTable.mark(this.lines, index, 'aria-selected', 'true');
   }
 
-  // The one at `place` alone has the attribute.
+  // Gives the attribute to the element at `place` and to no other.
   static mark(elements, place, name, value) {
     for (const element of elements) element.removeAttribute(name);
     if (elements[place]) elements[place].setAttribute(name, value);

@@ -1,4 +1,4 @@
-// The program in a folder of its own, with the file of a campaign of two points.
+// Runs the program in a temporary folder with the file of a campaign of two points.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,5 +1,4 @@
-// The program itself: exit codes, one clear message for each fault, and nothing written by those who only
-// look.
+// Exit codes and messages of the program; verbs that only read write nothing.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -19,7 +18,7 @@ TEST_F(CommandLine, AFileMayFollowTheNameOfABundle) {
   write();
   const Answer answer = peclet("ingest --forget a --forget b small.json");
   EXPECT_EQ(answer.code, 2);
-  EXPECT_NE(answer.text.find("--forget a: is no bundle"), std::string::npos) << answer.text;
+  EXPECT_NE(answer.text.find("--forget a: is not a bundle"), std::string::npos) << answer.text;
 }
 
 TEST_F(CommandLine, FaultsOfUsageAreExitCodeTwo) {
@@ -124,7 +123,7 @@ TEST_F(CommandLine, AShareMayBeGivenInPerCent) {
                    "--tolerance: 800%: must be a number > 0 and < 1"));
 }
 
-// The same advice from those who look as from those who run.
+// Verbs that only read give the same advice as `run`.
 TEST_F(CommandLine, ARenamedFileIsRecognisedByEveryVerb) {
   write();
   ASSERT_EQ(peclet("run small.json --quiet --workers 1").code, 0);
@@ -177,8 +176,7 @@ TEST_F(CommandLine, FaultsOfUsageAreOneLineThatNamesTheVerb) {
        "peclet: stauts: there is no such verb; `peclet --help` lists them; did you mean status?\n"},
       {"cancel small.json",
        "peclet: cancel: point: is missing: Labels of points, their values alone, or 4 or more digits of "
-       "their "
-       "hashes; `peclet cancel --help` says more\n"},
+       "their hashes; `peclet cancel --help` says more\n"},
       {"run small.json --wrokers 2",
        "peclet: run: --wrokers: there is no such option; `peclet run --help` lists them; did you mean "
        "--workers?\n"},

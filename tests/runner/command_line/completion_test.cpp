@@ -1,4 +1,4 @@
-// Manual pages and completion say what --help says, and are what groff and bash take.
+// Manual pages and completion agree with --help, and groff and bash accept them.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -25,7 +25,7 @@ std::set<std::string> matches(const std::string& text, const std::string& patter
   return found;
 }
 
-// Names at the beginning of lines of the list of verbs, and of the options of one.
+// Return the names of the verbs in --help, and those of the options of a verb.
 std::set<std::string> verbs_of_help() {
   const std::string help = shell(program + " --help").text;
   const std::size_t begin = help.find("Subcommands:"), end = help.find("Exit codes");
@@ -35,7 +35,7 @@ std::set<std::string> options_of_help(const std::string& verb) {
   return matches(shell(program + " " + verb + " --help").text, "^  (?:-h,)?(--[a-z-]+)");
 }
 
-// Words that bash offers for the last of `words`, in `folder`.
+// Returns the words that bash offers for the last of `words`, in `folder`.
 std::set<std::string> offered(const std::string& words, const fs::path& folder) {
   const std::string script = "cd '" + folder.string() + "'; eval \"$('" + program +
                              "' completion bash)\"; COMP_WORDS=(peclet " + words +
@@ -106,7 +106,7 @@ TEST(Manual, HasAPageForEveryVerbThatGroffTakes) {
   for (const std::string& verb : verbs) {
     const std::string name = verb.empty() ? "peclet" : "peclet-" + verb;
     const std::string page = (folder.path() / (name + ".1")).string();
-    // -ww: every complaint about what the macros of man do not expect.
+    // -ww prints every warning about the macros of man.
     EXPECT_EQ(shell("groff -K utf8 -man -Tutf8 -ww -z '" + page + "'").text, "") << name;
     const std::string text = shell("groff -K utf8 -man -Tascii -rLL=200n -P-cbou '" + page + "'").text;
     EXPECT_TRUE(says(text, "\n       " + name + " - ")) << text;

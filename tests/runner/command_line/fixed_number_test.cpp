@@ -40,7 +40,7 @@ class FixedNumberCampaign : public testing::Test {
     Database database = campaign_.reader();
     return export_json(database, true);
   }
-  // What a campaign of the same document gives that has never been another one.
+  // Returns the export of a new campaign with the same document.
   std::string undisturbed(const Environment& environment = {}) const {
     CampaignOnDisk fresh;
     fresh.document = campaign_.document;
@@ -109,7 +109,7 @@ TEST_F(FixedNumberCampaign, IsRaisedWhileItRuns) {
   EXPECT_EQ(canonical(), undisturbed());
 }
 
-// Whoever finds that the number was not enough writes a target, and the seeds that have ended count.
+// A fixed number that was not enough may be replaced by a target; the seeds that have ended count.
 TEST_F(FixedNumberCampaign, BecomesATargetAndBack) {
   ASSERT_EQ(campaign_.run(), 0) << campaign_.log();
   const Json fixed = campaign_.document;

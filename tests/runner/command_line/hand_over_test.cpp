@@ -1,5 +1,4 @@
-// Seeds in the hands of a batch system whose word is worth nothing: a few scripts, and tasks that the test
-// runs.
+// Seeds that are handed over to an unreliable batch system: a few scripts, and tasks that the test runs.
 #include "runner/command_line/hand_over.h"
 
 #include <unistd.h>
@@ -72,7 +71,7 @@ TEST_F(HandOver, WhoFollowsCarriesOutWhatIsAskedForWithoutWaitingForTheNextTurn)
   ASSERT_TRUE(
       comes_true([&] { return current_owner(campaign_directory(options.campaign, {})).has_value(); }));
   cancel_points({options.campaign, {}, {"peclet=1", "peclet=2"}});
-  states("");                                                            // the jobs that it ends leave
+  states("");                                                            // the cancelled jobs leave
   if (!comes_true([&] { return code != -1; })) kill(getpid(), SIGTERM);  // its next turn is days away
   owner.join();
   EXPECT_EQ(code, 3);
@@ -173,7 +172,7 @@ TEST_F(HandOver, AFailedQueryIsNoNewsOfAnyTask) {
   EXPECT_EQ(seeds_out(), 8) << "what has ended is taken in all the same";
   EXPECT_EQ(count("SELECT count(*) FROM bundle_seed WHERE outcome IS NOT NULL AND outcome != 'result'"), 0);
   queries(true);
-  states("1 waiting\n2 nonsense\n");  // an answer that is none
+  states("1 waiting\n2 nonsense\n");  // an invalid answer
   ASSERT_EQ(ingest(), 0);
   EXPECT_EQ(seeds_out(), 8);
 }

@@ -1,4 +1,4 @@
-# Installs the build into a folder of its own, moves the folder, and looks at what is there and whether it works.
+# Installs the build into a folder of its own, moves the folder, and checks that its files are there and work.
 set(prefix ${BUILD}/install-test)
 file(REMOVE_RECURSE ${prefix} ${prefix}-moved)
 execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix} OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
@@ -50,7 +50,7 @@ if(NOT list MATCHES "only-installed +not yet" OR NOT list MATCHES "zero-shear" O
   message(SEND_ERROR "the installed studies are not found: ${code}\n${list}")
 endif()
 
-# And the adapter, by its name alone, from a folder that knows nothing of it.
+# The adapter is found by its name alone, from an unrelated folder.
 set(ensemble ${prefix}/ensemble)
 foreach(part dumbbells.in dumbbell.mol)
   file(COPY ${prefix}/share/peclet/results/lammps-ensemble/${part} DESTINATION ${ensemble})

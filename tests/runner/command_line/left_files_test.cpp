@@ -31,7 +31,7 @@ std::set<std::string> files_below(const fs::path& folder) {
   return found;
 }
 
-// That the files in the folder are those of the table, and no others. Returns how many.
+// Expects the files of the table in the folder, and no others. Returns their number.
 std::size_t expect_all_in_place(const CampaignDirectory& directory) {
   Database reader = Database::open_reader(directory.database());
   std::set<std::string> known;
@@ -48,7 +48,7 @@ std::size_t expect_all_in_place(const CampaignDirectory& directory) {
 
 class LeftFiles : public testing::Test {
  protected:
-  // Eight seeds of each point, or a few more.
+  // Each point needs eight seeds, or a few more.
   LeftFiles() { campaign_.document["target"]["relative_tolerance"] = 0.5; }
   void run(const Environment& environment = {{"PECLET_FAKE_FILES", "2"}}) {
     ASSERT_EQ(campaign_.run(environment), 0) << campaign_.log();
@@ -228,7 +228,7 @@ TEST_F(HandOverOfFiles, BringsThemHome) {
               files_below(bundle(1) / "tasks").begin()->find("/files/") == std::string::npos);
 }
 
-// A task that dies between the first file and the result goes on from there.
+// A task that died between the first file and the result is continued from there.
 TEST_F(HandOverOfFiles, GoesOnWhereATaskDied) {
   set("PECLET_FAKE_FILES", "2");
   ASSERT_EQ(hand_over(), 0);

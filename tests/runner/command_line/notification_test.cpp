@@ -1,4 +1,4 @@
-// What a run tells the command of --notify, and what becomes of it.
+// The command of --notify: what a run tells it, and how its failure is reported.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -11,7 +11,7 @@
 namespace peclet::runner {
 namespace {
 
-// In the campaign's folder; the variables a line each.
+// Returns a command that writes its variables into a file in the campaign's folder, one on each line.
 std::string noting(const CampaignOnDisk& campaign) {
   return "printf '%s\\n' \"$PECLET_SUMMARY\" $PECLET_EXIT_CODE \"$PECLET_CAMPAIGN\" > '" +
          (campaign.directory().root() / "note").string() + "'; test -e \"$PECLET_DIRECTORY/campaign.db\"";
@@ -76,7 +76,7 @@ TEST(Notification, ThatFailsChangesNothingOfTheRun) {
   EXPECT_EQ(notify("true", outcome), "");
 }
 
-// The campaign is its command's: it may go on with it.
+// The command may run the campaign again, because the owner has released it.
 TEST(Notification, ComesWhenNobodyHoldsTheCampaignAnyMore) {
   CampaignOnDisk campaign;
   const std::filesystem::path lock = campaign.directory().lock();

@@ -1,4 +1,4 @@
-// Real processes: `peclet plan --pilot`, and what the campaign after it makes of it.
+// Real processes of `peclet plan --pilot`, and of the campaign that follows.
 #include <gtest/gtest.h>
 
 #include <csignal>

@@ -33,7 +33,7 @@ TEST(Run, ConvergesAndCleansUp) {
   CampaignOnDisk campaign;
   EXPECT_EQ(campaign.run(), 0) << campaign.log();
   EXPECT_EQ(campaign.count("SELECT count(*) FROM estimates WHERE verdict = 'converged'"), 2);
-  // Seeds beyond the deciding stop test that were running then may have been stopped: theirs alone are kept.
+  // Only seeds that were stopped beyond the deciding stop test may have kept their checkpoints.
   EXPECT_LE(std::distance(std::filesystem::directory_iterator(campaign.directory().checkpoints()),
                           std::filesystem::directory_iterator()),
             campaign.count("SELECT count(*) FROM attempt WHERE outcome = 'drained'"));
@@ -70,7 +70,7 @@ class FailuresInARun : public testing::TestWithParam<bool> {};
 TEST_P(FailuresInARun, AreCountedByCauseAndNeverWithTheSeedThatWaits) {
   CampaignOnDisk campaign(1);
   campaign.document["realisations"]["minimum"] = 12;
-  campaign.options.lease_seconds = 2;  // far more than a sound seed may take on a machine that does much else
+  campaign.options.lease_seconds = 2;  // far more than a seed without a fault takes on a busy machine
   Environment environment =
       with_faults("crash:0 exit:1x1 kill:2x2 hang:3x1 garble:4 refuse:5x2 overlap:6 mute:8 twice:9");
   if (GetParam()) {
@@ -182,7 +182,7 @@ TEST(Run, ATimeLimitStopsAndCanBeResumed) {
 
 TEST(Run, ALostConnectionStopsAsCtrlCDoes) {
   CampaignOnDisk campaign;
-  auto* const before = std::signal(SIGHUP, SIG_DFL);  // whatever these tests were started with
+  auto* const before = std::signal(SIGHUP, SIG_DFL);  // the tests may have been started with nohup
   campaign.start(campaign.held_from(7));
   std::signal(SIGHUP, before);
   campaign.wait_for_results(0);

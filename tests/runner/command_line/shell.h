@@ -1,4 +1,4 @@
-// What a shell answers.
+// The output and exit code of a command in a shell.
 #pragma once
 
 #include <sys/wait.h>

@@ -1,4 +1,4 @@
-// What the program says of engines that are absent or no engines, and where it starts them.
+// Messages about engines that are absent or not engines, and the folder in which engines run.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""watch_keys.py PECLET FAKE_ENGINE      what is typed while `peclet watch` shows its table
+"""watch_keys.py PECLET FAKE_ENGINE
 
-Keys are not shown within the table, and the terminal shows them again afterwards.
+Keys typed while `peclet watch` shows its table are not echoed, and the echo is back afterwards.
 """
 import json
 import os
@@ -14,7 +14,7 @@ import time
 
 
 def shown(terminal, seconds):
-    """What the terminal has got within some seconds."""
+    """Returns the output on the terminal within some seconds."""
     os.set_blocking(terminal, False)
     text, end = b"", time.monotonic() + seconds
     while time.monotonic() < end:

@@ -50,7 +50,7 @@ std::vector<std::string> lines(const std::string& text) {
   return found;
 }
 
-// All words of the text, in one line.
+// Returns all words of the text in one line.
 std::string words(const std::string& text) {
   std::istringstream all(text);
   std::string joined;

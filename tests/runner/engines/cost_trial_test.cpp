@@ -1,4 +1,4 @@
-// What a realisation may cost, from the beginning of one.
+// The cost of a realisation, estimated from its beginning.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -9,7 +9,7 @@
 namespace peclet::runner {
 namespace {
 
-// Faults of the fake engine, in whose processes they are inherited.
+// Sets the faults of the fake engine, whose processes inherit the variable.
 class FakeFaults {
  public:
   explicit FakeFaults(const char* faults) { setenv("PECLET_FAKE_FAULTS", faults, 1); }
@@ -31,7 +31,7 @@ TEST(CostTrial, ARealisationThatEndsWithinItTellsItsTime) {
   EXPECT_LT(*seconds, 10);
 }
 
-// What jams ends sooner than what flows, and would make a campaign look cheap.
+// A realisation that jams ends sooner than one that flows, and would make a campaign look cheap.
 TEST(CostTrial, OneThatEndsEarlyTellsNoTimeButWhy) {
   const FakeFaults jams("overlap:0");
   const CostTrial found = trial();

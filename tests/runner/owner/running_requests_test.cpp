@@ -270,7 +270,7 @@ TEST(Requests, AreCarriedOutOnceWhenTheOwnerDiesBefore) {
   campaign.signal(SIGSTOP);
   CancelOptions options{campaign.options.campaign, {}, {"peclet=2"}};
   options.patience = 0;
-  EXPECT_NE(cancel_points(options).text.find("will come to it"), std::string::npos);
+  EXPECT_NE(cancel_points(options).text.find("will carry the request out"), std::string::npos);
   EXPECT_EQ(waiting_requests(campaign.directory()).size(), 1U);
   campaign.signal(SIGKILL);
   EXPECT_EQ(campaign.finish(), -SIGKILL);
@@ -306,7 +306,8 @@ TEST(Requests, OfAnOwnerThatDoesNotComeToThemAreLeftToIt) {
   options.patience = 0.3;
   const Reply reply = cancel_points(options);
   EXPECT_EQ(reply.exit_code, 4);
-  EXPECT_NE(reply.text.find("has not come to it in 0.3 s, but will"), std::string::npos) << reply.text;
+  EXPECT_NE(reply.text.find("has not carried the request out within 0.3 s, but will"), std::string::npos)
+      << reply.text;
   campaign.signal(SIGCONT);
   campaign.release();
   EXPECT_EQ(campaign.finish(), 3) << campaign.log();

@@ -1,4 +1,4 @@
-// From the seeds of a campaign to its curves, and to whether each point flows.
+// The curves of a campaign and the states of their points, from seeds.
 #include <gtest/gtest.h>
 
 #include "contract/errors.h"
@@ -50,7 +50,7 @@ TEST(JammingCurves, SayOfEachPointWhetherItFlows) {
   EXPECT_EQ(points[4].at("seeds"), 8);
 }
 
-// A result with a rate, and so a value of what the campaign aims at: it ends as `jammed`, not as lost.
+// A seed that stands still has a result with a rate, and so a value of the target: it is jammed, not lost.
 TEST(JammingCurves, WhatStandsStillUnderItsStressHasJammed) {
   JammingCampaign campaign(jamming_document(fractions));
   for (int seed = 0; seed < 4; ++seed) {
@@ -95,8 +95,8 @@ TEST(JammingCurves, RefuseWhatIsNotAVolumeFractionOrNotAQuantity) {
   EXPECT_EQ(refusal(campaign, {.over = "friction"}),
             "--over: friction: must be a swept volume fraction: numbers > 0 and < 1");
   EXPECT_TRUE(
-      says(refusal(campaign, {.over = "peclet"}), "--over: peclet: must be what one thing is called"));
-  EXPECT_TRUE(says(refusal(campaign, {.quantity = "presure"}), "must be a number that is measured"));
+      says(refusal(campaign, {.over = "peclet"}), "--over: peclet: must be the name of one swept parameter"));
+  EXPECT_TRUE(says(refusal(campaign, {.quantity = "presure"}), "must be a measured quantity"));
 }
 
 }  // namespace

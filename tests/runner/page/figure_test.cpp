@@ -1,5 +1,4 @@
-// Figures of a campaign: which numbers they have, and the script that is made of them. What is drawn of them:
-// tests/python/drawing_test.py.
+// Figures of a campaign: their numbers and their scripts. tests/python/drawing_test.py tests the drawing.
 #include "runner/page/figure.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +13,7 @@
 namespace peclet::runner {
 namespace {
 
-// The string between r""" and """ behind the mark, which a reader of Python takes from a script.
+// Returns the raw string behind the mark in a script, as Python reads it.
 std::string raw_string(const std::string& script) {
   const std::string mark = "FIGURE = json.loads(r\"\"\"";
   const std::size_t begin = script.find(mark) + mark.size();
@@ -77,11 +76,11 @@ TEST_F(CampaignFigure, RefusesWhatIsNotThere) {
   EXPECT_EQ(refusal({}), "--quantity: relative_viscosity: nothing has been measured yet");
   complete_widely(0);
   EXPECT_EQ(refusal({.quantity = "presure", .over = {}, .scale = {}, .tolerance = false}),
-            "--quantity: presure: must be a number that is measured; did you mean pressure?");
+            "--quantity: presure: must be a measured quantity; did you mean pressure?");
   EXPECT_EQ(refusal({.quantity = {}, .over = "peclet", .scale = {}, .tolerance = false}),
-            "--over: peclet: must be what one thing is called that is swept: /point");
+            "--over: peclet: must be the name of one swept parameter: /point");
   EXPECT_EQ(refusal({.quantity = "pressure", .over = {}, .scale = {}, .tolerance = true}),
-            "--band: pressure: has no tolerance: the campaign does not aim at it");
+            "--band: pressure: has no tolerance: it is not a target of the campaign");
 }
 
 // Points at x = 0, 1 and 2, of which the second one has jammed.
@@ -109,7 +108,7 @@ TEST_F(CampaignFigure, HasTheNumberOfAJamThatAllSeedsHave) {
 TEST_F(CampaignFigure, IsRefusedWhereALogarithmicAxisHasAPlaceForNoNumber) {
   complete_widely(0);  // at x = 0
   EXPECT_EQ(refusal({.quantity = {}, .over = {}, .scale = "x", .tolerance = false}),
-            "--quantity: relative_viscosity: has no number that a logarithmic axis has a place for");
+            "--quantity: relative_viscosity: has no number that a logarithmic axis can show");
   complete_widely(1);
   EXPECT_EQ(refusal({.quantity = {}, .over = {}, .scale = "x", .tolerance = false}), "");
 }

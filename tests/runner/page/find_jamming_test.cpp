@@ -1,5 +1,4 @@
-// `peclet jamming` from the seeds of a campaign to the text, and to the campaign file with the proposed
-// points. The fits are tested in tests/python/jamming_test.py.
+// `peclet jamming`: its text and the file with proposed points. tests/python/jamming_test.py tests the fits.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -14,7 +13,7 @@
 namespace peclet::runner {
 namespace {
 
-// The interpreter that sees Debian's NumPy goes first.
+// Puts Debian's interpreter, which has NumPy, first on PATH.
 class PythonOfDebian : public testing::Test {
  protected:
   PythonOfDebian() { setenv("PATH", ("/usr/bin:" + path_).c_str(), 1); }

@@ -1,4 +1,4 @@
-// Campaigns over volume fraction, filled with curves that follow a law.
+// Campaigns over the volume fraction, with viscosities that follow a law.
 #pragma once
 
 #include <cmath>
@@ -30,8 +30,8 @@ class JammingCampaign {
   explicit JammingCampaign(const Json& document)
       : campaign_(parse_campaign(document, "jam.json")), stored_(campaign_) {}
 
-  // Eight seeds whose mean is exactly `viscosity`, of relative deviation `relative` (n - 1), and of this mean
-  // overlap; their largest one is fifty times that.
+  // Stores eight seeds whose mean is exactly `viscosity`, with the relative standard deviation `relative` (n
+  // - 1), this mean overlap, and a largest overlap fifty times as large.
   void complete(int point, double viscosity, double relative = 0.01, double overlap = 1e-4) {
     for (int seed = 0; seed < 8; ++seed) {
       const double away = (seed % 2 == 0 ? 1 : -1) * relative * std::sqrt(7.0 / 8);

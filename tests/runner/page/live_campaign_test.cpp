@@ -1,4 +1,4 @@
-// What a live page is told of a campaign whose database changes.
+// The changes that a live page gets when the database of its campaign changes.
 #include "runner/page/live_campaign.h"
 
 #include <gtest/gtest.h>
@@ -18,10 +18,10 @@ Json parsed(const std::shared_ptr<const std::string>& text) {
 class LivePage : public testing::Test {
  protected:
   LiveCampaign live() { return {campaign_.directory().root(), ""}; }
-  // What is new since the token, once there is something; null after some seconds without.
+  // Waits for changes since the token and returns them; null if there are none within some seconds.
   static Json news(LiveCampaign& live, const std::string& token) {
     for (int attempt = 0; attempt < 1000; ++attempt) {
-      live.stop_test();
+      live.refresh();
       if (const auto found = live.changes_since(token)) return Json::parse(*found);
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
@@ -47,12 +47,12 @@ TEST_F(LivePage, TellsEverythingAtFirstAndThenOnlyWhatHasChanged) {
   ASSERT_EQ(second["points"].size(), 1U) << second.dump();
   EXPECT_EQ(second["points"]["1"]["seeds"]["ended"], 1);
   EXPECT_EQ(second["head"]["progress"]["seeds"]["ended"], 2);
-  // Whoever knows nothing, or something of another process, is told everything.
+  // A token of another process gets everything.
   EXPECT_EQ(parsed(live.changes_since("1-2.1"))["points"].size(), 3U);
   EXPECT_EQ(live.exit_code(), ExitCode::unfinished);
 }
 
-// Whatever is asked for, a bounded number of texts is kept.
+// A bounded number of texts is kept, for any tokens.
 TEST_F(LivePage, TokensThatWereMadeUpAreToldEverythingInOneText) {
   campaign_.complete(0, 0, 10);
   LiveCampaign live = this->live();
@@ -68,10 +68,10 @@ TEST_F(LivePage, WhatHasNotChangedIsNoNews) {
   campaign_.complete(0, 0, 10);
   LiveCampaign live = this->live();
   const std::string token = token_of(parsed(live.changes_since("")));
-  // A commit that changes nothing which the page shows.
+  // A commit that changes nothing on the page.
   campaign_.database().connection().execute("UPDATE point SET priority = priority");
   std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  live.stop_test();
+  live.refresh();
   EXPECT_EQ(live.changes_since(token), nullptr);
 }
 

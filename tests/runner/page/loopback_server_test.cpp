@@ -1,5 +1,5 @@
-// Bytes sent to the server of a campaign with two points, good requests and bad ones, whole and in pieces,
-// and the status of the answer. More of it in tests/pages/live_server_test.py.
+// Valid and invalid requests, sent whole and in pieces to the server of a campaign with two points, and the
+// status of the answers. tests/pages/live_server_test.py has more of them.
 #include "runner/page/loopback_server.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ namespace {
 
 using namespace std::string_view_literals;
 
-// One byte per piece for short requests, a few pieces for long ones.
+// Sends a request in pieces of equal length, at least one byte, and returns the answer.
 std::string exchange(int port, const std::string& request, std::size_t pieces) {
   const auto check = [](bool good, const char* doing) {
     if (!good) throw std::system_error(errno, std::generic_category(), doing);

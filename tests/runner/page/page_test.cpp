@@ -1,5 +1,4 @@
-// The page that an adviser gets: its document, and the file that holds it. What a browser makes of it:
-// tests/pages.
+// The page of a campaign: its document and its file. tests/pages tests it in a browser.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
@@ -55,7 +54,7 @@ TEST_F(CampaignPage, HasTheEstimateThatDecidesAndEveryOther) {
   EXPECT_TRUE(page["meanings"].contains("capped"));
 }
 
-// Of an open point there is what its seeds say so far: mean 10.25, standard error |11 - 9| / 2.
+// The mean of an open point is that of all seeds that have ended: 10.25, with standard error |11 - 9| / 2.
 TEST_F(CampaignPage, OfAnOpenPointHasWhatIsKnownSoFar) {
   campaign_.complete(1, 0, 9);
   campaign_.complete(1, 2, 11);
@@ -158,7 +157,7 @@ TEST_F(CampaignPage, ExplainsTheMarksAndShowsWhatTheEngineWarnsOf) {
   EXPECT_EQ(page["warnings"][0]["message"], "0.02 > 0.01 & more");
 }
 
-// One of four has jammed, which is too few for the point to have.
+// One of four seeds has jammed, which is too few for the point to be jammed.
 TEST_F(CampaignPage, TellsAFlaggedJamFromAPointThatHasJammed) {
   campaign_.complete_with(0, 0, 10, [](Json& result) {
     result["ending"]["cause"] = "jammed";
@@ -173,7 +172,7 @@ TEST_F(CampaignPage, TellsAFlaggedJamFromAPointThatHasJammed) {
 }
 
 // The viscosity is 10.265 with a standard deviation of 0.01 sqrt(5/3); 3.182 is Student's t for 3 degrees of
-// freedom. What measures counts with its error.
+// freedom. The rule subtracts the half-width of the observable to which the tolerance is relative.
 TEST_F(CampaignPage, ShowsWhatTheRuleAllowsOfAnObservableThatAnotherMeasures) {
   Tolerance tolerance(0.05);
   tolerance.relative_to = "relative_viscosity";
@@ -226,7 +225,7 @@ TEST_F(CampaignPage, DependsOnTheDatabaseAlone) {
     campaign_.database().connection().execute(fmt::format("UPDATE {} = '2001-02-03T04:05:06Z'", aged));
   }
   const std::string before = report_html(campaign_.database());
-  // Elsewhere, and with nothing in it that was read off a clock now.
+  // A copy in another folder gives the same page, which has no time of the present clock.
   const TemporaryFolder elsewhere;
   campaign_.database().connection().execute(
       fmt::format("VACUUM INTO '{}'", (elsewhere.path() / "copy.db").string()));
@@ -235,13 +234,13 @@ TEST_F(CampaignPage, DependsOnTheDatabaseAlone) {
   EXPECT_FALSE(says(before, utc_now().substr(0, 10)));
 }
 
-TEST_F(CampaignPage, IsRefusedWhenALookIsNotWhatTheResultsSay) {
+TEST_F(CampaignPage, IsRefusedWhenAStopTestIsNotWhatTheResultsSay) {
   complete_widely(0);
   campaign_.database().connection().execute("UPDATE stop_test SET mean = 9");
   EXPECT_THROW(data(), IntegrityError);
 }
 
-// What stands between the two.
+// Returns the text between `begin` and `end`.
 std::string between(const std::string& text, const std::string& begin, const std::string& end) {
   const std::size_t from = text.find(begin) + begin.size();
   return text.substr(from, text.find(end, from) - from);

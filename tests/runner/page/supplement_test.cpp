@@ -21,7 +21,7 @@ class Supplement : public testing::Test {
       for (int seed = 0; seed < 4; ++seed) campaign_.complete(point, seed, 10 + point + 0.01 * seed);
     }
   }
-  // What a shell says in the folder in which the archive lies.
+  // Runs a command in the folder of the archive.
   Answer in_folder(const std::string& command) const {
     return shell("cd '" + folder_.path().string() + "' && " + command);
   }
