@@ -220,7 +220,7 @@ constexpr const char* campaign_rows = R"(
 /scene | object | The scene that all points share; the engine is its judge.
 /sweep | array; default [] | What differs between the points. Several entries make a grid; the last varies
     fastest.
-/sweep/* | object | One direction of the grid.
+/sweep/* | object
 /sweep/*/set | anything | JSON pointer into the scene, or an array of pointers that are set in step.
 /sweep/*/values | array of 1 or more | One per point; with several pointers each is an array with a value for
     every pointer.
@@ -229,7 +229,7 @@ constexpr const char* campaign_rows = R"(
 {target}
 /target/also? | array of 0 to {targets} | Further observables; a point is done when all of them are known well
     enough.
-/target/also/* | object | One of them.
+/target/also/* | object
 /target/also/*/observable | string | A number in the result's mean.
 {also}
 /target/confidence | number > 0.5 and < 1; default {confidence} | Of the two-sided interval: Student's t, and
@@ -243,14 +243,14 @@ constexpr const char* campaign_rows = R"(
     the minimum.
 /show? | array of 1 to {shown} | Where the number of realisations is fixed: numbers in the result's mean that
     tables show, the first one also charts; relative_viscosity unless given.
-/show/* | string | One of them.
+/show/* | string
 /keep_files? | integer >= 0 and <= {realisations} or one of all, none | Which of the files are kept that
     realisations leave beside their results: all (unless given), none, or those of this many first seeds of
     each point.
 /engine | array of 1 or more; default ["peclet-engine","serve"] | Program and arguments. Without a slash it is
     looked for beside peclet, then on PATH, then among peclet's own adapters (lammps_engine.py); a relative
     path starts at the campaign file, in whose folder it runs.
-/engine/* | string | A word of the command.
+/engine/* | string
 )";
 
 }  // namespace
