@@ -453,6 +453,28 @@ void add_members(const KeyTable& table, const std::string& pointer, Json& schema
   }
 }
 
+// Returns the key of the elements of an array, or null.
+const Key* element_of(const KeyTable& table, const Key& key) {
+  if (key.kind != KeyKind::array) return nullptr;
+  return table.find(key.same_as.empty() ? key.pointer : key.same_as, "*");
+}
+
+bool is_element(const KeyTable& table, const Key& key) {
+  if (name_of(key) != "*") return false;
+  const Key* const above = table.find(std::string_view(key.pointer).substr(0, key.pointer.rfind('/')));
+  return above != nullptr && above->kind == KeyKind::array;
+}
+
+// Returns what the manual says of a key: "an array of 3, each a number > 0".
+std::string allowed_in_manual(const KeyTable& table, const Key& key) {
+  std::string allowed = allowed_values(key);
+  if (allowed.starts_with("must be ")) allowed = allowed.substr(std::string_view("must be ").size());
+  if (const Key* const element = element_of(table, key))
+    return fmt::format("{}, each {}", allowed, allowed_in_manual(table, *element));
+  if (!key.same_as.empty()) allowed += fmt::format(", with the keys of `{}`", key.same_as);
+  return allowed;
+}
+
 // Returns the text as a cell of a Markdown table.
 std::string cell(const std::string& text) {
   std::string escaped;
@@ -600,20 +622,20 @@ Json KindTables::json_schema(const std::string& identifier) const {
 std::string KeyTable::markdown() const {
   std::string page = "| key | meaning | unit | default | allowed |\n|---|---|---|---|---|\n";
   for (const Key& key : keys_) {
+    if (is_element(*this, key)) continue;
     std::string fallback = key.required && key.only_if.empty() ? "required" : "";
     if (!key.instead_of.empty()) fallback = fmt::format("instead of `{}`", key.instead_of);
     if (const Key* const other = alternative_to(below(key.pointer.substr(0, key.pointer.rfind('/'))), key)) {
       fallback += fmt::format(", or `{}`", name_of(*other));
     }
     if (!key.default_value.is_null()) fallback = fmt::format("`{}`", key.default_value.dump());
-    std::string allowed = allowed_values(key);
-    if (allowed.starts_with("must be ")) allowed = allowed.substr(std::string_view("must be ").size());
-    if (!key.same_as.empty()) {
-      allowed +=
-          fmt::format(", with the {} of `{}`", key.kind == KeyKind::array ? "elements" : "keys", key.same_as);
+    std::string meaning = key.meaning, unit = key.unit;
+    if (const Key* const element = key.same_as.empty() ? element_of(*this, key) : nullptr) {
+      if (!element->meaning.empty()) meaning += ' ' + element->meaning;
+      if (unit.empty()) unit = element->unit;
     }
-    page += fmt::format("| `{}` | {} | {} | {} | {} |\n", key.pointer, cell(key.meaning), cell(key.unit),
-                        cell(fallback), cell(allowed));
+    page += fmt::format("| `{}` | {} | {} | {} | {} |\n", key.pointer, cell(meaning), cell(unit),
+                        cell(fallback), cell(allowed_in_manual(*this, key)));
   }
   return page;
 }

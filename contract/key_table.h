@@ -109,7 +109,7 @@ class KeyTable {
   // Returns the JSON Schema, draft 2020-12, of the whole document.
   Json json_schema(const std::string& identifier) const;
 
-  // Returns a Markdown table: key, meaning, unit, default, allowed.
+  // Returns a Markdown table: key, meaning, unit, default, allowed. The row of an array has its elements.
   std::string markdown() const;
 
   // Returns the key with this pointer, or null.

@@ -48,15 +48,14 @@ ImposedFlow read_flow(const FlowSource& source) {
 
 std::string duration_keys(const std::string& pointer, const std::string& range, const std::string& meaning) {
   return fmt::format(R"(
-{0} | object | {2} Ends at the first of its limits; at least one is required.
-{1}/strain? | number {3} | Strain: shear rate times time.
-{1}/brownian_times? | number {3}; in eta a^3 / k_B T | Time in units of the Brownian time.
-{1}/time? | number {3}; in time | Time.
-{1}/cycles? | number {3} | Least number of cycles of {4}.
-{1}/stress_times? | number {3}; in eta / stress | Time in units of viscosity over {5}.
+{0} | object | {1} Ends at the first of its limits; at least one is required.
+{0}/strain? | number {2} | Strain: shear rate times time.
+{0}/brownian_times? | number {2}; in eta a^3 / k_B T | Time in units of the Brownian time.
+{0}/time? | number {2}; in time | Time.
+{0}/cycles? | number {2} | Least number of cycles of {3}.
+{0}/stress_times? | number {2}; in eta / stress | Time in units of viscosity over {4}.
 )",
-                     pointer, pointer.substr(0, pointer.find('?')), meaning, range, flows_with("cycles"),
-                     flows_with("stress_times"));
+                     pointer, meaning, range, flows_with("cycles"), flows_with("stress_times"));
 }
 
 void check_duration(const SceneDocument& scene, const FlowKind& flow, const std::string& pointer) {

@@ -47,7 +47,7 @@ const FlowKind& flow_kind_of(const SceneDocument& scene);
 ImposedFlow read_flow(const FlowSource& source);
 
 // Returns the rows of a duration, which may have a limit in each of its units. `range` is the range of the
-// limits, "> 0". A key whose pointer ends in ? is optional.
+// limits, "> 0".
 std::string duration_keys(const std::string& pointer, const std::string& range, const std::string& meaning);
 
 // Throws InputError if the duration at this pointer has a limit whose unit the flow lacks.

@@ -44,7 +44,7 @@ std::shared_ptr<const Deformation> read_segments(const FlowSource& source) {
 constexpr const char* segment_keys = R"(
 /flow/segments? | array of 1 to 64 | Shear whose rate changes, in place of shear_rate: a list of segments in
     time, for reversals, stops and ramps.
-/flow/segments/* | object | One segment; the last one does not end and has a shear_rate only.
+/flow/segments/* | object | The last segment does not end and has a shear_rate only.
 /flow/segments/*/shear_rate | number; in 1 / time | Shear rate, of either sign.
 /flow/segments/*/final_rate? | number; in 1 / time | Shear rate at the end of the segment, to which the rate
     changes linearly; shear_rate unless given.

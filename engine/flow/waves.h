@@ -68,7 +68,7 @@ class Waves final : public FlowVariation {
 inline constexpr const char* wave_keys = R"(
 /flow/waves? | array of 1 to 64 | Waves along y that are added to the flow: u_x = sum of sine sin(k y) +
     cosine cos(k y) with k = 2 pi periods / L.
-/flow/waves/* | object | One wave.
+/flow/waves/* | object
 /flow/waves/*/periods | integer >= 1 and <= 1000 | Periods of the wave along the edge of the box.
 /flow/waves/*/sine | number; in length / time; default 0 | Amplitude of the sine.
 /flow/waves/*/cosine | number; in length / time; default 0 | Amplitude of the cosine.

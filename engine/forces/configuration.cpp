@@ -129,21 +129,21 @@ const KeyTable& configuration_keys() {
 /state | object | the configuration
 /state/box | object | the periodic cell
 /state/box/lengths | array of 3; in length | Lx, Ly, Lz
-/state/box/lengths/* | number > 0 | edge
+/state/box/lengths/* | number > 0
 /state/box/tilt | number; in length; default 0.0 | x component of the second lattice vector
 /state/radius | array of 1 or more; in length | radii
-/state/radius/* | number > 0 | radius
+/state/radius/* | number > 0
 /state/position | array; in length | centres
-/state/position/* | array of 3 | components x, y, z
-/state/position/*/* | number | component
+/state/position/* | array of 3
+/state/position/*/* | number
 /state/velocity | array; in length / time; as /state/position | velocities in the laboratory frame
 /state/angular_velocity | array; in 1 / time; as /state/position | angular velocities
 /state/springs? | array | contact springs
-/state/springs/* | object | one pair
+/state/springs/* | object
 /state/springs/*/i | integer >= 0 | first particle
 /state/springs/*/j | integer >= 0 | second particle, above i
 /state/springs/*/image | array of 3 | lattice vectors added to the second particle's position as given
-/state/springs/*/image/* | integer | component
+/state/springs/*/image/* | integer
 /state/springs/*/tangential | array of 3; as /state/position/* | sliding spring
 /state/springs/*/rolling | array of 3; as /state/position/* | rolling spring
 /state/springs/*/slides | true or false; default false | whether the contact slides, with kinetic friction
@@ -152,7 +152,7 @@ const KeyTable& configuration_keys() {
 /state/noise/force | array; as /state/position | normal vectors of the forces
 /state/noise/torque | array; as /state/position | normal vectors of the torques
 /state/noise/pairs? | array | normal vectors of pairs
-/state/noise/pairs/* | object | one pair
+/state/noise/pairs/* | object
 /state/noise/pairs/*/i | integer >= 0 | first particle
 /state/noise/pairs/*/j | integer >= 0 | second particle, above i
 /state/noise/pairs/*/image | array of 3; as /state/springs/*/image | lattice vectors added to the second

@@ -25,7 +25,10 @@ std::string observable_keys() {
         fmt::format("in whole steps; {} unless given.",
                     kind.sampling == Sampling::often ? "one step" : "a 256th of the production window");
     if (kind.interval_is_a_duration) {
-      blocks += duration_keys(interval, "> 0", "Interval between samples, " + unless_given);
+      blocks += fmt::format(
+          "{} | object; as /duration/production | Interval between samples, {} Ends at the first of its "
+          "limits; at least one is required.\n",
+          interval, unless_given);
     } else if (kind.sampling != Sampling::of_every_step) {
       blocks += fmt::format("{} | number > 0; in time | Time between samples, {}\n", interval, unless_given);
     }

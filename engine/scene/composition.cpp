@@ -192,10 +192,12 @@ constexpr const char* particle_rows = R"(
     how much of the volume is grains.
 /particles/mixture/colloids | array of 1 to {most} | Sizes of the colloids, as in species; shares are within
     the group.
-/particles/mixture/colloids/* | object; as /particles/species/* | One size, or one distribution of sizes.
+/particles/mixture/colloids/* | object; as /particles/species/* | Each is one size, or one distribution of
+    sizes.
 /particles/mixture/grains | array of 1 to {most} | Sizes of the grains, as in species; shares are within the
     group.
-/particles/mixture/grains/* | object; as /particles/species/* | One size, or one distribution of sizes.
+/particles/mixture/grains/* | object; as /particles/species/* | Each is one size, or one distribution of
+    sizes.
 /particles/mixture/alpha | number >= 0 and <= 1; named share of grains in the solid volume, α | Volume of the
     grains over that of all spheres: 0 leaves colloids only, 1 grains only.
 /particles/mixture/reference? | one of colloids, grains, mean | Radius of reference, in place of

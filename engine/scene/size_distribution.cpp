@@ -149,7 +149,7 @@ void add_classes(const SceneDocument& scene, const std::string& pointer, const S
 
 // {0}: largest number of sizes.
 constexpr const char* species_rows = R"(
-/particles/species/* | object | One size, or one distribution of sizes.
+/particles/species/* | object | Each is one size, or one distribution of sizes.
 /particles/species/*/radius | number > 0; in length | Radius.
 /particles/species/*/volume_share? | number > 0 | Share of the particles' volume, relative to the other
     species (the shares need not add up to 1).
@@ -172,10 +172,10 @@ constexpr const char* species_rows = R"(
 /particles/species/*/distribution/classes? | integer >= 1 and <= {0}; if form lognormal, uniform, gaussian |
     Number of sizes; 16 unless given. Not of a histogram, which has its own.
 /particles/species/*/distribution/radii | array of 1 to {0}; if form histogram | Radii of a histogram.
-/particles/species/*/distribution/radii/* | number > 0; in length | One radius.
+/particles/species/*/distribution/radii/* | number > 0; in length
 /particles/species/*/distribution/shares | array of 1 to {0}; if form histogram | Shares of a histogram, of
     each radius, relative to each other.
-/particles/species/*/distribution/shares/* | number >= 0 | One share; a radius of share 0 has no sphere.
+/particles/species/*/distribution/shares/* | number >= 0 | A radius of share 0 has no sphere.
 )";
 
 }  // namespace

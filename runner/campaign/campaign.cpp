@@ -220,7 +220,7 @@ constexpr const char* campaign_rows = R"(
 /scene | object | The scene that all points share; the engine checks it.
 /sweep | array; default [] | Parameters that differ between the points. Several entries make a grid; the last
     varies fastest.
-/sweep/* | object | One axis of the grid.
+/sweep/* | object
 /sweep/*/set | anything | JSON pointer into the scene, or an array of pointers that are set together.
 /sweep/*/values | array of 1 or more | The values along this axis; with several pointers, each is an array with
     one value for every pointer.
@@ -229,7 +229,7 @@ constexpr const char* campaign_rows = R"(
 {target}
 /target/also? | array of 0 to {targets} | Further observables; a point is done when all observables meet their
     tolerances.
-/target/also/* | object | One further observable.
+/target/also/* | object
 /target/also/*/observable | string | Path of a number in the result's mean.
 {also}
 /target/confidence | number > 0.5 and < 1; default {confidence} | Confidence of the two-sided interval:
@@ -243,13 +243,13 @@ constexpr const char* campaign_rows = R"(
     converged then is capped. Not below the minimum.
 /show? | array of 1 to {shown} | For a fixed number of realisations: paths of the numbers in the result's mean
     that tables show. Charts show the first one. relative_viscosity unless given.
-/show/* | string | One path.
+/show/* | string
 /keep_files? | integer >= 0 and <= {realisations} or one of all, none | Seeds of each point whose files beside
     the result are kept: all (unless given), none, or a number of first seeds.
 /engine | array of 1 or more; default ["peclet-engine","serve"] | Program and arguments. A program without a
     slash is searched for beside peclet, then on PATH, then among peclet's own adapters (lammps_engine.py). A
     relative path starts at the folder of the campaign file, in which the engine runs.
-/engine/* | string | The program or an argument.
+/engine/* | string
 )";
 
 }  // namespace

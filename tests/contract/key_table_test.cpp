@@ -152,8 +152,11 @@ TEST(KeyTable, SchemaSaysWhatPeopleCallAKey) {
       "coefficient of friction", "symbol": "μ", "description": "Sliding."})"));
 }
 
-TEST(KeyTable, ManualHasOneRowForEachKey) {
+TEST(KeyTable, ManualHasOneRowForEachKeyAndElementsInTheRowOfTheirArray) {
   const std::string page = table().markdown();
+  EXPECT_NE(page.find("| `/balls` | It. It. |  |  | an array of 1 or more, each an object |\n"),
+            std::string::npos);
+  EXPECT_EQ(page.find("| `/balls/*` |"), std::string::npos);
   EXPECT_NE(page.find("| `/balls/*/radius` | Radius. | length | required | a number >= 0 and < 1 |\n"),
             std::string::npos);
   EXPECT_NE(page.find("| `/box/shape` | It. |  | `\"cubic\"` | one of: cubic, flat |\n"), std::string::npos);

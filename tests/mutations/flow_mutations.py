@@ -23,7 +23,7 @@ FLOW = [
         "engine_tests:StressControl.GivesTheStrainItsShareOfTheTemperature",
     ),
     (
-        "a stress whose deficit nobody makes up for",
+        "a stress whose deficit is not made up for",
         "engine/realisation/driver.cpp",
         "deficit_ += stress_ - stress;",
         "deficit_ += 0 * (stress_ - stress);",

@@ -240,10 +240,10 @@ def write_halves(before, rows):
     names = ["nothing", *(mutation[0] for mutation in NAMED)]
     with open(os.path.join(HERE, "mutations.md"), "w") as f:
         f.write(
-            f"{before}\n\n{MARK}\n`mutations.py --named` shows each to the one test of seconds that has to notice "
-            "it. A row is made by itself (`--only WORD`); its last column is\n"
-            "the tree of `engine/` that it was made with (`git rev-parse HEAD:engine`).\n\n| broken | noticed by | "
-            "engine |\n|---|---|---|\n"
+            f"{before}\n\n{MARK}\n`mutations.py --named` tries each with the one test of seconds that must notice it. "
+            "Each row is made separately (`--only\n"
+            "WORD`); its last column is the tree of `engine/` at that time (`git rev-parse HEAD:engine`).\n\n"
+            "| broken | noticed by | engine |\n|---|---|---|\n"
         )
         f.write("".join(rows[name] + "\n" for name in names if name in rows))
 
@@ -310,7 +310,7 @@ def main():
         noticed = known.noticed[known.key(mutation)]
         missed += bool(mutation[1]) != bool(noticed) or any(CRASH in who for who in noticed)
         lines.append(
-            f"| {mutation[0]} | {'; '.join(noticed) or ('nobody' if mutation[1] else 'nobody, as it should be')} |"
+            f"| {mutation[0]} | {'; '.join(noticed) or ('no test' if mutation[1] else 'no test, as it should be')} |"
         )
         print(lines[-1], flush=True)
         if arguments.named and known.lasting:
@@ -318,10 +318,10 @@ def main():
             write_halves(before, rows)
     if not arguments.named and not arguments.only:
         write_halves(
-            "# Who notices broken physics\n\nOne line of the engine is broken at a time, in a copy.\n\n## Coarse "
-            "mistakes\n\n`mutations.py` shows each to the quick forms of the studies and "
-            f"to all tests of the engine and of the physics. Commit {commit}, {processor()}, "
-            f"{datetime.date.today().isoformat()}.\n\n"
+            "# Which tests notice broken physics\n\nOne line of the engine is broken at a time, in a copy of the source."
+            "\n\n## Coarse mistakes\n\n`mutations.py` tries each with the quick forms of the studies and with all tests of "
+            "the engine and of the physics.\n"
+            f"Commit {commit}, {processor()}, {datetime.date.today().isoformat()}.\n\n"
             "| broken | noticed by |\n|---|---|\n" + "\n".join(lines),
             rows,
         )
