@@ -97,7 +97,7 @@ def spool_edited(night):
     night.wait_for("the end of its workers", lambda: not workers_of(night))
     night.remembers()
     night.remarks(
-        "The run is killed. In the spool lies a result that nobody has booked; somebody corrects a number in it, and "
+        "The run is killed. In the spool lies a result that is not booked yet. A number in it is edited by hand, and "
         "a bracket goes missing."
     )
     with open(night.path("night.peclet", "spool", "0123456789abcdef-000000-99.json"), "w") as f:
