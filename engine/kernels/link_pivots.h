@@ -1,5 +1,5 @@
-// Computes the pivots of a system of links: the inverses of the particles' own 6 x 6 blocks less K
-// (link_kernels.h).
+// Computes the pivots of a system of links: the inverse of (D - K) for each particle, with its own 6 x 6
+// block D and K of link_kernels.h.
 //
 // Everything is static: code compiled for one processor must not be linked into the rest of the program.
 #pragma once

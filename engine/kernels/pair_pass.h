@@ -93,8 +93,8 @@ class PairWatcher {
   // Begins a step, or a part of it with this weight; parts follow each other. `system` has the positions and
   // velocities at which the forces act.
   virtual void begin(const System& system, double weight) = 0;
-  // Takes a pair of the system of begin(): its part of the stress, times the volume, and the force on its
-  // first sphere, noise included.
+  // Receives a pair of the system given to begin(): its stress times the volume, and the force on its first
+  // sphere, noise included.
   virtual void take(const System& system, const Pair& pair, const PairSums& sums, const Vector3& force) = 0;
   // Takes a particle's part in the stress of the motion, times the volume; called only with noise.
   virtual void take_motion(const System& system, std::size_t particle, const SymmetricTensor& stress) = 0;

@@ -202,7 +202,7 @@ class LinearResponse : public Observable {
     double last_time = 0, last_moment = 0, last_middle = 0, last_slope = 0;
     std::complex<double> sum = background_;
     for (std::size_t k = 0; k < moments.time.size(); ++k) {
-      // Adds nothing beyond twice the plateau's time.
+      // The integral ends at twice the lag time of the plateau.
       if (moments.time[k] > lag_time(2 * plateau_, timestep_) + 0.5 * timestep_) break;
       const double slope = (moments.value[k] - last_moment) / (moments.time[k] - last_time);
       if (k == 0) {

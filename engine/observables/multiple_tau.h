@@ -10,9 +10,9 @@
 
 namespace peclet::engine {
 
-// A mean at a lag [samples].
+// The mean of a correlation at one lag.
 struct LagMean {
-  std::uint64_t lag;
+  std::uint64_t lag;  // in samples
   double mean;
 };
 

@@ -232,7 +232,7 @@ class Trajectory : public Observable, private PairWatcher {
     });
     frames_.add("log/particles/contact_number", number);
     if (!with_contacts_) return;
-    // A sphere may touch two images of another one: such contacts stay in the order of the list.
+    // The sort is stable: contacts of one pair through two images keep the order of the list.
     std::ranges::stable_sort(bonds, {}, &Bond::group);
     std::vector<std::uint32_t> group;
     std::vector<float> gap, normal, tangential;

@@ -174,7 +174,7 @@ constexpr const char* run_rows = R"(
 
 std::string lacking_equilibrium(const Physics& physics) {
   if (physics.contact && physics.contact->friction > 0) {
-    return "/contact/friction > 0: friction leads to no equilibrium of known probabilities";
+    return "/contact/friction > 0: friction leads to no equilibrium of known probabilities: set it to 0";
   }
   if (physics.contact && physics.contact->normal_damping > 0) {
     return "/contact/normal_damping > 0: no noise balances its dissipation";

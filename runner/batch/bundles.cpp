@@ -45,7 +45,8 @@ void Bundles::take_back_seeds(const BundleRecord& bundle) {
   }
 }
 
-// Queues the seeds again and removes the folder. Tasks of a job that exists after all find no manifest.
+// Queues the seeds again and removes the folder. If the batch system has the job after all, its tasks find
+// no manifest and end.
 void Bundles::withdraw(const BundleRecord& bundle) {
   Transaction booking(database_.connection());
   take_back_seeds(bundle);

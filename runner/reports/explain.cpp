@@ -230,7 +230,8 @@ std::string next_step(const PointSummary& point, const TargetRecord& target,
       if (stop_test.verdict == Verdict::complete)
         return "nothing; more realisations (`peclet set --realisations`) reopen the point";
       if (stop_test.near_maximum) {
-        return "set a larger /realisations/maximum and a smaller tolerance (`peclet set`), or nothing";
+        return "for a narrower interval set a larger /realisations/maximum and a smaller tolerance (`peclet "
+               "set`)";
       }
       return "nothing; a smaller tolerance (`peclet set`) reopens the point";
     case Verdict::converged_with_losses:

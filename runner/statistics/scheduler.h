@@ -75,7 +75,7 @@ class Scheduler {
 
   // Records that a worker has the seed.
   void begin(SeedId id);
-  // Records that the seed has come back without an outcome.
+  // Records that a worker gave the seed back without an outcome; it may be given out again.
   void give_back(SeedId id);
   // Records that the seed has ended, for the first time or again (late result of a quarantined seed). Returns
   // true if the stop tests of its point may have changed.
@@ -91,13 +91,13 @@ class Scheduler {
   // Returns the number of seeds of the next stop test, or the ceiling if that is less; for a decided point,
   // the seeds of the deciding stop test.
   int wanted(int point) const;
-  // Returns how many of these have ended.
+  // Returns how many of the wanted() seeds have ended.
   int ended(int point) const;
   // Returns the estimates of observable + control over all ended seeds, ordered as Target::observables().
   std::vector<Estimate> all_seeds(int point) const;
   // Returns the number of seeds of the point that run or have ended.
   int begun(int point) const { return point_at(point).begun; }
-  // Returns how many of these have ended.
+  // Returns how many seeds of the point have ended.
   int all_ended(int point) const { return point_at(point).all_ended; }
   const Target& target() const { return target_; }
   int points() const { return static_cast<int>(points_.size()); }

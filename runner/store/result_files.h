@@ -47,7 +47,7 @@ std::vector<fs::path> left_files_of(const fs::path& spool);
 // ResultError, which says what is wrong with the file, and std::system_error if the machine fails to read it.
 Descriptor open_left_file(const fs::path& path, std::uint64_t bytes, const std::string& sha256);
 
-// Returns what is wrong with the file at `path`, or with the machine that reads it; "" if nothing is.
+// Returns why the file at `path` cannot be read or differs from `bytes` and `sha256`; "" if it matches.
 std::string fault_of_file(const fs::path& path, std::uint64_t bytes, const std::string& sha256);
 
 // Opens the files of the result, in its order, as open_left_file() does. The ResultError names the file.

@@ -85,7 +85,7 @@ class Inflation {
   }
 
  private:
-  // Returns false if the bytes were made with another dictionary.
+  // Gives the stream its dictionary. Returns false if the bytes were deflated with another one.
   bool is_taken(std::string_view dictionary) {
     return inflateSetDictionary(&stream_, bytes_of(dictionary), size_of(dictionary)) == Z_OK;
   }
