@@ -318,9 +318,10 @@ def main():
             write_halves(before, rows)
     if not arguments.named and not arguments.only:
         write_halves(
-            "# Which tests notice broken physics\n\nOne line of the engine is broken at a time, in a copy of the source."
-            "\n\n## Coarse mistakes\n\n`mutations.py` tries each with the quick forms of the studies and with all tests of "
-            "the engine and of the physics.\n"
+            "# Which tests notice broken physics\n\nOne line of the engine is broken at a time, in a copy of the "
+            "source."
+            "\n\n## Coarse mistakes\n\n`mutations.py` tries each with the quick forms of the studies and with all "
+            "tests of the engine and of the physics.\n"
             f"Commit {commit}, {processor()}, {datetime.date.today().isoformat()}.\n\n"
             "| broken | noticed by |\n|---|---|\n" + "\n".join(lines),
             rows,

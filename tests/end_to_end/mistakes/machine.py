@@ -96,7 +96,7 @@ def full_disk(night):
         "{ (sleep 1; head -c 20m /dev/zero > night.peclet/film.mkv; sleep 3; rm night.peclet/film.mkv) 2> /dev/null & "
         "peclet run night.json --workers 2; cp -r night.peclet kept.peclet; }'"
     )
-    night.types(script, 0, ["is full", "no further seed is given out", "there is room again", "2 converged"])
+    night.types(script, 0, ["is full", "no further seed is given out", "nothing is in the way any more", "2 converged"])
 
 
 CASES = [export_on_full_disk, full_disk, read_only_folder, run_as_root, many_workers, empty_environment, clock_set_back]
