@@ -9,9 +9,9 @@
 #include <unistd.h>
 
 #include <cstring>
-#include <system_error>
 
 #include "contract/durable_file.h"
+#include "tests/contract/refusal.h"
 #include "tests/contract/temporary_folder.h"
 
 namespace peclet {
@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class GuardedFile : public TemporaryFolder {
+class GuardedFile : public FolderOfTest {
  protected:
   fs::path fifo() const {
     EXPECT_EQ(mkfifo((folder() / "fifo").c_str(), 0600), 0);
@@ -41,12 +41,7 @@ class GuardedFile : public TemporaryFolder {
 };
 
 std::string refusal(const fs::path& path, int flags) {
-  try {
-    open_regular(path, flags);
-    return "";
-  } catch (const UnsuitableFile& error) {
-    return error.what();
-  }
+  return refusal_by<UnsuitableFile>([&] { open_regular(path, flags); });
 }
 
 TEST_F(GuardedFile, NothingButARegularFileIsOpened) {
@@ -54,14 +49,14 @@ TEST_F(GuardedFile, NothingButARegularFileIsOpened) {
   write_durably(victim, "precious");
   for (const int flags : {O_RDONLY, O_WRONLY, O_RDWR | O_CREAT | O_TRUNC, O_WRONLY | O_CREAT | O_APPEND}) {
     fs::remove_all(folder() / "link");
-    EXPECT_NE(refusal(link(victim), flags).find("is a link: must be a regular file"), std::string::npos);
-    fs::remove(folder() / "link");
-    EXPECT_NE(refusal(link("link"), flags).find("is a link"), std::string::npos);  // to itself
-    fs::remove(folder() / "link");
-    EXPECT_NE(refusal(link("absent"), flags).find("is a link"), std::string::npos);
+    EXPECT_TRUE(contains(refusal(link(victim), flags), "is a link: must be a regular file"));
+    for (const char* target : {"link", "absent"}) {
+      fs::remove(folder() / "link");
+      EXPECT_TRUE(contains(refusal(link(target), flags), "is a link"));
+    }
     EXPECT_FALSE(fs::exists(folder() / "absent"));
-    EXPECT_NE(refusal(folder(), flags).find("is a folder"), std::string::npos);
-    EXPECT_NE(refusal("/dev/null", flags).find("is a device"), std::string::npos);
+    EXPECT_TRUE(contains(refusal(folder(), flags), "is a folder"));
+    EXPECT_TRUE(contains(refusal("/dev/null", flags), "is a device"));
   }
   EXPECT_EQ(read_file(victim), "precious");
 }
@@ -69,9 +64,9 @@ TEST_F(GuardedFile, NothingButARegularFileIsOpened) {
 // Opening one side of a FIFO waits for the other; a fault would make this test hang.
 TEST_F(GuardedFile, NobodyWaitsForAFifoOrASocket) {
   const fs::path pipe = fifo();
-  EXPECT_NE(refusal(pipe, O_RDONLY).find("is a FIFO"), std::string::npos);
-  EXPECT_NE(refusal(pipe, O_WRONLY).find("is a FIFO"), std::string::npos);
-  EXPECT_NE(refusal(socket(), O_RDONLY).find("is a socket"), std::string::npos);
+  EXPECT_TRUE(contains(refusal(pipe, O_RDONLY), "is a FIFO"));
+  EXPECT_TRUE(contains(refusal(pipe, O_WRONLY), "is a FIFO"));
+  EXPECT_TRUE(contains(refusal(socket(), O_RDONLY), "is a socket"));
   EXPECT_THROW(read_regular(pipe, 10), UnsuitableFile);
 }
 
@@ -113,14 +108,9 @@ TEST_F(GuardedFile, AFolderIsOnesOwnAndNoLink) {
     ASSERT_EQ(chown(foreign.c_str(), 12345, 12345), 0);
   }
   const uid_t other = geteuid() == 0 ? 0 : geteuid() + 1;
-  try {
-    require_own_folder(foreign, false, other);
-    FAIL();
-  } catch (const UnsuitableFile& error) {
-    const std::string cure = fmt::format("`sudo chown -R {} {}`", user_name(other), foreign.string());
-    EXPECT_NE(std::string(error.what()).find("belongs to the user"), std::string::npos);
-    EXPECT_NE(std::string(error.what()).find(cure), std::string::npos) << error.what();
-  }
+  const std::string message = refusal_by<UnsuitableFile>([&] { require_own_folder(foreign, false, other); });
+  EXPECT_TRUE(contains(message, "belongs to the user"));
+  EXPECT_TRUE(contains(message, fmt::format("`sudo chown -R {} {}`", user_name(other), foreign.string())));
 }
 
 TEST_F(GuardedFile, ACopyIsThatOfARegularFile) {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "contract/errors.h"
+#include "tests/contract/refusal.h"
 
 namespace peclet {
 namespace {
@@ -100,12 +100,9 @@ TEST(KeyTable, AnythingIsAllowedBelowAnyAndInAnObjectWithoutKeys) {
 
 TEST(KeyTable, ABlockCanBeCheckedAlone) {
   EXPECT_EQ(table().validate(Json{{"length", 1}}, "f", "/box")["cells"], 4);
-  try {
-    table().validate(Json{{"length", -1}}, "f", "/box");
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_EQ(error.pointer(), "/length");
-  }
+  EXPECT_TRUE(refusal_by([] {
+                table().validate(Json{{"length", -1}}, "f", "/box");
+              }).starts_with("f: /length: "));
 }
 
 TEST(KeyTable, ADocumentMayBeASingleValue) {
@@ -154,24 +151,21 @@ TEST(KeyTable, SchemaSaysWhatPeopleCallAKey) {
 
 TEST(KeyTable, ManualHasOneRowForEachKeyAndElementsInTheRowOfTheirArray) {
   const std::string page = table().markdown();
-  EXPECT_NE(page.find("| `/balls` | It. It. |  |  | an array of 1 or more, each an object |\n"),
-            std::string::npos);
-  EXPECT_EQ(page.find("| `/balls/*` |"), std::string::npos);
-  EXPECT_NE(page.find("| `/balls/*/radius` | Radius. | length | required | a number >= 0 and < 1 |\n"),
-            std::string::npos);
-  EXPECT_NE(page.find("| `/box/shape` | It. |  | `\"cubic\"` | one of: cubic, flat |\n"), std::string::npos);
+  EXPECT_TRUE(contains(page, "| `/balls` | It. It. |  |  | an array of 1 or more, each an object |\n"));
+  EXPECT_FALSE(contains(page, "| `/balls/*` |"));
+  EXPECT_TRUE(
+      contains(page, "| `/balls/*/radius` | Radius. | length | required | a number >= 0 and < 1 |\n"));
+  EXPECT_TRUE(contains(page, "| `/box/shape` | It. |  | `\"cubic\"` | one of: cubic, flat |\n"));
 }
 
 TEST(KeyTable, AnArrayMayHaveAMostNumberOfItems) {
   const KeyTable table("T", "/sizes | array of 1 to 3 | They.");
   EXPECT_NO_THROW(table.validate({{"sizes", {1, 2, 3}}}, "f.json"));
   for (const Json& sizes : {Json::array(), Json{1, 2, 3, 4}}) {
-    try {
-      table.validate({{"sizes", sizes}}, "f.json");
-      ADD_FAILURE() << sizes;
-    } catch (const InputError& error) {
-      EXPECT_EQ(error.allowed(), "must be an array of 1 to 3");
-    }
+    EXPECT_TRUE(contains(refusal_by([&] {
+                           table.validate({{"sizes", sizes}}, "f.json");
+                         }),
+                         ": must be an array of 1 to 3"));
   }
   EXPECT_EQ(table.json_schema("t")["properties"]["sizes"]["maxItems"], 3);
 }
@@ -198,42 +192,25 @@ const KeyTable& words() {
 
 TEST(KeyTable, ValuesOfEachKindAreTakenOrRefused) {
   const std::string hash(64, 'a'), longest_of_words(64, 'w'), longest_of_names(120, 'N');
-  for (const Json& good : std::vector<Json>{{{"hash", hash}},
-                                            {{"hash", nullptr}},
-                                            {{"word", "timestep-2"}},
-                                            {{"word", longest_of_words}},
-                                            {{"name", "P/P0 \u00b5"}},
-                                            {{"name", longest_of_names}},
-                                            {{"symbol", ""}},
-                                            {{"one", 1}},
-                                            {{"three", {1, 2, 3}}},
-                                            {{"count", 9007199254740991}},
-                                            {{"by_name", {{"a/b", 1.5}, {"*", nullptr}}}},
-                                            {{"first", {{"size", 1}}}, {"second", {{"size", 2}}}},
-                                            {{"when", 0}},
-                                            {{"when", "never"}},
-                                            {{"unknown", true}}})
-    EXPECT_NO_THROW(words().validate(good, "f")) << good;
-  for (const Json& bad : std::vector<Json>{{{"hash", std::string(63, 'a')}},
-                                           {{"hash", std::string(64, 'A')}},
-                                           {{"word", ""}},
-                                           {{"word", "-a"}},
-                                           {{"word", "A"}},
-                                           {{"word", longest_of_words + "w"}},
-                                           {{"word", nullptr}},
-                                           {{"name", ""}},
-                                           {{"name", "a\nb"}},
-                                           {{"name", longest_of_names + "N"}},
-                                           {{"when", -1}},
-                                           {{"when", "soon"}},
-                                           {{"one", 2}},
-                                           {{"three", {1, 2, 3, 4}}},
-                                           {{"count", 9007199254740992.0}},
-                                           {{"count", -1}},
-                                           {{"by_name", {{"a", "1"}}}},
-                                           {{"second", Json::object()}},
-                                           {{"second", {{"size", "1"}}}}})
-    EXPECT_THROW(words().validate(bad, "f"), InputError) << bad;
+  const auto quoted = [](const char* key, const std::string& word) { return Json{{key, word}}.dump(); };
+  for (const std::string& good :
+       {quoted("hash", hash), quoted("word", longest_of_words), quoted("name", longest_of_names),
+        std::string(R"({"hash": null, "word": "timestep-2", "name": "P/P0 µ", "symbol": ""})"),
+        std::string(R"({"one": 1, "three": [1, 2, 3], "count": 9007199254740991, "when": 0})"),
+        std::string(R"({"by_name": {"a/b": 1.5, "*": null}, "when": "never", "unknown": true})"),
+        std::string(R"({"first": {"size": 1}, "second": {"size": 2}})")}) {
+    EXPECT_NO_THROW(words().validate(Json::parse(good), "f")) << good;
+  }
+  for (const std::string& bad :
+       {quoted("hash", std::string(63, 'a')), quoted("hash", std::string(64, 'A')), quoted("word", ""),
+        quoted("word", "-a"), quoted("word", "A"), quoted("word", longest_of_words + "w"), quoted("name", ""),
+        quoted("name", "a\nb"), quoted("name", longest_of_names + "N"), quoted("when", "soon"),
+        std::string(R"({"word": null})"), std::string(R"({"when": -1})"), std::string(R"({"one": 2})"),
+        std::string(R"({"three": [1, 2, 3, 4]})"), std::string(R"({"count": 9007199254740992.0})"),
+        std::string(R"({"count": -1})"), std::string(R"({"by_name": {"a": "1"}})"),
+        std::string(R"({"second": {}})"), std::string(R"({"second": {"size": "1"}})")}) {
+    EXPECT_THROW(words().validate(Json::parse(bad), "f"), InputError) << bad;
+  }
 }
 
 TEST(KeyTable, SchemaSaysWhatTheKindsAllow) {
@@ -244,7 +221,7 @@ TEST(KeyTable, SchemaSaysWhatTheKindsAllow) {
   EXPECT_EQ(keys["by_name"]["additionalProperties"]["type"], (Json{"number", "null"}));
   EXPECT_EQ(keys["second"]["required"], Json::array({"size"}));
   EXPECT_FALSE(words().json_schema("t").contains("additionalProperties"));
-  EXPECT_NE(words().markdown().find("| an object, with the keys of `/first` |"), std::string::npos);
+  EXPECT_TRUE(contains(words().markdown(), "| an object, with the keys of `/first` |"));
 }
 
 TEST(KindTables, ADocumentIsJudgedByTheTableOfItsKind) {
@@ -262,12 +239,7 @@ TEST(KindTables, ADocumentIsJudgedByTheTableOfItsKind) {
            {{{"verb", "run"}, {"at", "x"}}, "f: /verb: \"run\": must be one of: go, stay"},
            {{{"verb", "go"}, {"at", "x"}}, "f: /far: missing: must be a number"},
            {{{"verb", "stay"}, {"at", "x"}, {"far", 1}}, "f: /far: unknown key: allowed keys: verb, at"}}) {
-    try {
-      tables.validate(document, "f");
-      ADD_FAILURE() << document;
-    } catch (const InputError& error) {
-      EXPECT_EQ(std::string(error.what()), message);
-    }
+    EXPECT_EQ(refusal_by([&] { tables.validate(document, "f"); }), message);
   }
   const Json kinds = tables.json_schema("t")["oneOf"];
   EXPECT_EQ(kinds[0]["required"], (Json{"verb", "at", "far"}));
@@ -298,12 +270,7 @@ TEST(KeyTable, SomeKeysAreOnlyGivenBesideOthers) {
            {{{"form", "flat"}, {"friction", 1}},
             "f: /slip: missing: must be an object with low, high or width, because friction is given"},
            {{{"form", "flat"}, {"load", 1}}, "f: /load: 1: must be left out without friction"}}) {
-    try {
-      table.validate(document, "f");
-      ADD_FAILURE() << document;
-    } catch (const InputError& error) {
-      EXPECT_EQ(std::string(error.what()), message);
-    }
+    EXPECT_EQ(refusal_by([&] { table.validate(document, "f"); }), message);
   }
   const Json schema = table.json_schema("t");
   EXPECT_EQ(schema["dependentRequired"],

@@ -3,29 +3,22 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <filesystem>
 #include <iterator>
-#include <string>
+
+#include "tests/engine/temporary_folder.h"
 
 namespace peclet {
 
-class TemporaryFolder : public testing::Test {
+class FolderOfTest : public testing::Test {
  protected:
-  TemporaryFolder() : folder_(make()) {}
-  ~TemporaryFolder() override { std::filesystem::remove_all(folder_); }
   std::size_t entries() const {
     return static_cast<std::size_t>(
-        std::distance(std::filesystem::directory_iterator(folder_), std::filesystem::directory_iterator()));
+        std::distance(std::filesystem::directory_iterator(folder()), std::filesystem::directory_iterator()));
   }
-  const std::filesystem::path& folder() const { return folder_; }
+  const std::filesystem::path& folder() const { return folder_.path(); }
 
  private:
-  static std::filesystem::path make() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "contract_XXXXXX").string();
-    return ::mkdtemp(pattern.data());
-  }
-  std::filesystem::path folder_;
+  const TemporaryFolder folder_;
 };
 
 }  // namespace peclet

@@ -3,7 +3,6 @@
 #include "engine/kernels/pair_access.h"
 #include "engine/kernels/pair_pass.h"
 #include "engine/realisation/packing.h"
-#include "engine/terms/drag.h"
 #include "tests/engine/draws.h"
 
 namespace peclet::engine {

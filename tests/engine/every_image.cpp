@@ -46,4 +46,10 @@ std::vector<SeenPair> every_image(const VectorField& position, const Vector3& le
   return seen;
 }
 
+std::size_t count_near(const System& system, double factor) {
+  const std::vector<double>& radius = system.particles.radius;
+  const auto range = [&](std::uint32_t i, std::uint32_t j) { return factor * (radius[i] + radius[j]); };
+  return every_image(system.particles.position, system.box.lengths(), system.box.tilt(), range).size();
+}
+
 }  // namespace peclet::engine

@@ -4,8 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "engine/state/periodic_cell.h"
-#include "engine/state/vector_field.h"
+#include "engine/state/system.h"
 
 namespace peclet::engine {
 
@@ -23,5 +22,8 @@ struct SeenPair {
 // lattice is (Lx, 0, 0), (tilt, Ly, 0), (0, 0, Lz), computed here.
 std::vector<SeenPair> every_image(const VectorField& position, const Vector3& lengths, double tilt,
                                   const std::function<double(std::uint32_t, std::uint32_t)>& range);
+
+// Returns the number of pairs nearer than `factor` times the sum of their radii.
+std::size_t count_near(const System& system, double factor);
 
 }  // namespace peclet::engine

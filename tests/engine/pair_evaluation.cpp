@@ -93,4 +93,16 @@ void expect_same_bits(const Evaluation& expected, const Evaluation& found, const
   }
 }
 
+void expect_same_bits_on_threads(const Physics& physics, const System& system) {
+  const Evaluation one = evaluated(physics, system, 1);
+  for (const int threads : {2, 3}) {
+    expect_same_bits(one, evaluated(physics, system, threads), std::to_string(threads) + " threads");
+  }
+}
+
+void expect_single_twin(const Physics& physics, const System& system, InstructionSet set,
+                        const std::string& what) {
+  expect_near(evaluated(physics, system, 1, InstructionSet::baseline), evaluated(physics, system, 1, set),
+              what + name_of(set));
+}
 }  // namespace peclet::engine

@@ -14,6 +14,15 @@ constexpr double timestep = 1e-4;
 constexpr std::uint64_t seed = 5;
 constexpr double tolerance = 1e-12;  // of the largest component; only the order of sums differs
 
+// Every term that acts between velocities relative to the fluid at rest.
+constexpr Terms all_terms = {.lubrication = true,
+                             .noise = true,
+                             .contact = true,
+                             .damping = true,
+                             .friction = true,
+                             .rolling = true,
+                             .conservative = true,
+                             .kinetic = true};
 // Returns every compiled combination of terms.
 std::vector<Terms> every_recipe();
 
@@ -42,4 +51,8 @@ void expect_near(const std::vector<double>& expected, const std::vector<double>&
 void expect_near(const Evaluation& expected, const Evaluation& found, const std::string& what);
 void expect_same_bits(const Evaluation& expected, const Evaluation& found, const std::string& what);
 
+// Expects the bits of one thread on two and three, and the forces of the baseline on another set.
+void expect_same_bits_on_threads(const Physics& physics, const System& system);
+void expect_single_twin(const Physics& physics, const System& system, InstructionSet set,
+                        const std::string& what);
 }  // namespace peclet::engine

@@ -5,7 +5,6 @@ Tests pictures of `peclet-engine snapshot` with Debian's python3-pil. A sphere i
 right place. Every colouring and the chains of a real trajectory give pictures of many colours, and viridis
 equals matplotlib's in all of its 256 colours.
 """
-import json
 import os
 import subprocess
 import sys
@@ -15,7 +14,7 @@ import matplotlib
 import numpy
 from PIL import Image
 
-from trajectory_text import SCENE
+from trajectory_text import SCENE, start
 
 SPHERE = '1\nLattice="4 0 0 0 4 0 0 0 4" Origin="-2 -2 -2" Properties=pos:R:3:radius:R:1 pbc="T T T"\n0 0 0 1.9\n'
 
@@ -45,11 +44,7 @@ def a_sphere_is_a_disc(engine, folder):
 
 
 def a_trajectory_has_pictures(engine, folder):
-    scene = os.path.join(folder, "scene.json")
-    with open(scene, "w") as file:
-        json.dump(SCENE, file)
-    out = os.path.join(folder, "out.json")
-    subprocess.run([engine, "run", scene, "--quiet", "--output", out], check=True)
+    assert start(engine, folder, SCENE).wait() == 0
     trajectory, drawn = os.path.join(folder, "out.trajectory.gsd"), os.path.join(folder, "out.png")
     seen = set()
     for options in (["--colour", c] for c in ("species", "speed", "contacts", "stress")):

@@ -30,4 +30,24 @@ inline Json small_scene(const Json& patch) {
   return scene;
 }
 
+// Returns several patches as one, which still has their nulls.
+inline Json together(const std::vector<Json>& patches) {
+  Json all = Json::object();
+  for (const Json& patch : patches) all.update(patch, /*merge_objects=*/true);
+  return all;
+}
+
+// Patches of the small scene. Light spheres let large steps resolve part of the range of their inertia.
+inline const Json implicit_and_light =
+    Json::parse(R"({"integrator": {"method": "implicit"}, "particles": {"density": 0.01}})");
+inline const Json without_noise = Json::parse(R"({"fluid": {"thermal_energy": null}})");
+inline const Json without_friction =
+    Json::parse(R"({"contact": {"friction": null, "rolling_stiffness": null, "rolling_friction": null}})");
+inline const Json elastic_contacts =
+    together({without_friction, Json::parse(R"({"contact": {"normal_damping": null}})")});
+inline const Json at_rest = Json::parse(R"({"flow": {"shear_rate": 0}})");
+inline const Json strained_lubrication =
+    Json::parse(R"({"lubrication": {"form": "mari", "inner_gap": null, "outer_gap": null,
+                                                   "regularisation": 0.03, "outer_distance": 0.1}})");
+
 }  // namespace peclet::engine

@@ -17,7 +17,7 @@ import tempfile
 import gsd.hoomd
 import numpy
 
-from trajectory_text import SCENE
+from trajectory_text import SCENE, start
 
 FIRST = SCENE | {
     "contact": {"normal_stiffness": 1e4},
@@ -34,14 +34,10 @@ NEXT = FIRST | {
 TERMS = "lubrication", "contact_normal"
 
 
-def run(engine, folder, name, scene):
-    path = os.path.join(folder, name)
-    with open(path + ".json", "w") as file:
-        json.dump(scene, file)
-    subprocess.run(
-        [engine, "run", path + ".json", "--seed", "3", "--quiet", "--output", path + ".out.json"], check=True
-    )
-    with gsd.hoomd.open(path + ".out.trajectory.gsd") as trajectory:
+def run(engine, folder, scene):
+    """Returns the first and the last frame of a realisation."""
+    assert start(engine, folder, scene).wait() == 0
+    with gsd.hoomd.open(os.path.join(folder, "out.trajectory.gsd")) as trajectory:
         return [trajectory[0], trajectory[len(trajectory) - 1]]
 
 
@@ -69,12 +65,12 @@ def forces_of(engine, folder, text):
 def main():
     engine = os.path.abspath(sys.argv[1])
     with tempfile.TemporaryDirectory() as folder:
-        last = run(engine, folder, "first", FIRST)[1]
-        path = os.path.join(folder, "first.out.final.xyz")
+        last = run(engine, folder, FIRST)[1]
+        path = os.path.join(folder, "out.final.xyz")
         with open(path, "rb") as file:
             text = file.read()
-        start = {"file": path, "sha256": hashlib.sha256(text).hexdigest()}
-        first = run(engine, folder, "next", NEXT | {"start": start})[0]
+        given = {"file": path, "sha256": hashlib.sha256(text).hexdigest()}
+        first = run(engine, folder, NEXT | {"start": given})[0]
         forces = forces_of(engine, folder, text.decode())
     assert (first.bonds.group == last.bonds.group).all() and first.bonds.N > 20
     strongest = last.log["bonds/normal_force"].max()

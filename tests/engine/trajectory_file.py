@@ -12,7 +12,6 @@ import json
 import os
 import re
 import signal
-import subprocess
 import sys
 import tempfile
 import time
@@ -21,24 +20,13 @@ import gsd.fl
 import gsd.hoomd
 import numpy
 
-SCENE = {
-    "particles": {
-        "count": 60,
-        "density": 0.1,
-        "species": [{"radius": 1, "volume_share": 1}, {"radius": 1.4, "volume_share": 1}],
-    },
-    "volume_fraction": 0.45,
-    "fluid": {"viscosity": 0.1},
-    "flow": {"shear_rate": 2},
-    "contact": {"normal_stiffness": 1e4, "friction": 0.5},
-    "lubrication": {"form": "kim-karrila", "inner_gap": 0.03, "outer_gap": 0.1},
-    "integrator": {"timestep": 0.0005},
-    "guard": {"largest_overlap": 0.2, "largest_displacement": 0.2},
-    "duration": {"equilibration": {"time": 0.1}, "production": {"time": 0.48}},
+import trajectory_text
+from trajectory_text import lattice_of, start
+
+SCENE = trajectory_text.SCENE | {
     "observables": ["stress", "trajectory", "contact_network"],
     "trajectory": {"interval": {"strain": 0.001}, "contacts": True},
     "contact_network": {"interval": 0.0005},
-    "files": {"final_configuration": True},
 }
 NOISE = {"fluid": {"viscosity": 0.1, "thermal_energy": 0.02}}
 EXPLICIT = {"integrator": {"method": "explicit", "timestep": 0.0005}}
@@ -47,14 +35,6 @@ EQUILIBRATION, PRODUCTION = 200, 960  # steps; each of the window has a frame
 TERMS = ("solvent", "stresslet", "lubrication", "contact_normal", "friction", "total")
 
 Realisation = collections.namedtuple("Realisation", "result frames final")
-
-
-def start(engine, folder, scene, *options):
-    path = os.path.join(folder, "scene.json")
-    with open(path, "w") as file:
-        json.dump(scene, file)
-    out = os.path.join(folder, "out.json")
-    return subprocess.Popen([engine, "run", path, "--seed", "3", "--quiet", "--output", out, *options])
 
 
 def run(engine, folder, scene, *options):
@@ -87,12 +67,6 @@ def realisation(engine, scene):
         with gsd.hoomd.open(os.path.join(folder, "out.trajectory.gsd")) as trajectory:
             frames = list(trajectory)
         return Realisation(json.loads(text_of(folder, "out.json")), frames, final_of(text_of(folder, "out.final.xyz")))
-
-
-def lattice_of(frame):
-    """Returns the lattice by the schema: lx, ly, lz, and tilts over the length of their second axis."""
-    lx, ly, lz, xy, xz, yz = frame.configuration.box.astype(float)
-    return numpy.array([[lx, xy * ly, xz * lz], [0, ly, yz * lz], [0, 0, lz]])
 
 
 def layout(frames, path):

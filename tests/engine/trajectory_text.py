@@ -54,7 +54,17 @@ write_dump all custom {out} id type x y z ix iy iz xu yu zu vx vy vz q modify fo
 """
 
 
+def start(engine, folder, scene, *options):
+    """Starts a realisation of seed 3, whose result and files will be out.*."""
+    path = os.path.join(folder, "scene.json")
+    with open(path, "w") as file:
+        json.dump(scene, file)
+    out = os.path.join(folder, "out.json")
+    return subprocess.Popen([engine, "run", path, "--seed", "3", "--quiet", "--output", out, *options])
+
+
 def lattice_of(frame):
+    """Returns the lattice by the schema: lx, ly, lz, and tilts over the length of their second axis."""
     lx, ly, lz, xy, xz, yz = frame.configuration.box.astype(float)
     return numpy.array([[lx, xy * ly, xz * lz], [0, ly, yz * lz], [0, 0, lz]])
 
@@ -158,14 +168,8 @@ def hostile_files_end_in_words(engine, folder, trajectory):
     with open(trajectory, "rb") as file:
         whole = file.read()
     path = os.path.join(folder, "hostile.gsd")
-    for bytes_ in (
-        whole[:300],
-        whole[:-40],
-        b"x" * 999,
-        b"",
-        whole[:8] + b"\xff" * 32 + whole[40:],
-        b"\x00" + whole[1:],
-    ):
+    broken = whole[:8] + b"\xff" * 32 + whole[40:]
+    for bytes_ in (whole[:300], whole[:-40], b"x" * 999, b"", broken, b"\x00" + whole[1:]):
         with open(path, "wb") as file:
             file.write(bytes_)
         out = os.path.join(folder, "hostile.xyz")
@@ -192,11 +196,7 @@ def arguments_are_answered(engine, trajectory):
 def main():
     engine, lammps = os.path.abspath(sys.argv[1]), sys.argv[2] if len(sys.argv) > 2 else None
     with tempfile.TemporaryDirectory() as folder:
-        scene = os.path.join(folder, "scene.json")
-        with open(scene, "w") as file:
-            json.dump(SCENE, file)
-        run = [engine, "run", scene, "--seed", "3", "--quiet", "--output", os.path.join(folder, "out.json")]
-        subprocess.run(run, check=True)
+        assert start(engine, folder, SCENE).wait() == 0
         trajectory = os.path.join(folder, "out.trajectory.gsd")
         with gsd.hoomd.open(trajectory) as file:
             frames = list(file)

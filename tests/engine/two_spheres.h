@@ -1,6 +1,10 @@
 // A pair of spheres as the terms see it, and its grand resistance matrix from unit motions.
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+
 #include "engine/terms/lubrication.h"
 #include "tests/engine/draws.h"
 #include "tests/engine/linear_algebra.h"
@@ -60,4 +64,13 @@ inline Matrix12 grand_resistance(const PairResistance& resistance, const PairGeo
   return matrix;
 }
 
+// Expects a symmetric positive semidefinite matrix of rank five.
+inline void expect_rank_five(const Matrix12& R) {
+  const double scale = largest_entry(R);
+  EXPECT_LE(largest_entry(R - R.transpose()), 1e-14 * scale);
+  const Vector12 eigenvalues = Eigen::SelfAdjointEigenSolver<Matrix12>(R).eigenvalues();
+  EXPECT_GT(eigenvalues[0], -1e-14 * scale);
+  EXPECT_LT(eigenvalues[6], 1e-14 * scale);
+  EXPECT_GT(eigenvalues[7], 1e-6 * scale);
+}
 }  // namespace peclet::engine

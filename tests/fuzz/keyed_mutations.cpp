@@ -13,7 +13,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -97,14 +96,9 @@ class Mutation {
   // Overwrites bytes with a number at which integers and floats of files tend to go wrong.
   template <class Value>
   void put_number(std::string& bytes, std::size_t place) {
-    constexpr std::array<Value, 8> integers = {0,
-                                               1,
-                                               2,
-                                               255,
-                                               65535,
-                                               static_cast<Value>(-1),
-                                               static_cast<Value>(Value{1} << (8 * sizeof(Value) - 1)),
-                                               static_cast<Value>(~(Value{1} << (8 * sizeof(Value) - 1)))};
+    constexpr Value half = static_cast<Value>(Value{1} << (8 * sizeof(Value) - 1));
+    constexpr std::array<Value, 8> integers = {
+        0, 1, 2, 255, 65535, static_cast<Value>(-1), half, static_cast<Value>(~half)};
     const Value value = integers[below(integers.size())];
     std::memcpy(bytes.data() + place, &value, std::min(sizeof value, bytes.size() - place));
   }
@@ -118,30 +112,12 @@ class Mutation {
 
   // Replaces a word of a text.
   void put_word(std::string& bytes, std::size_t place) {
-    constexpr std::array<const char*, 24> words = {"nan",
-                                                   "-1",
-                                                   "1e300",
-                                                   "inf",
-                                                   "0",
-                                                   "99999999999999999999",
-                                                   "1e-300",
-                                                   "2147483648",
-                                                   "-2147483649",
-                                                   "+1",
-                                                   "\"",
-                                                   "'",
-                                                   "=",
-                                                   ":",
-                                                   "\r\n",
-                                                   "\n\n",
-                                                   "\t",
-                                                   "4294967296",
-                                                   "1e30",
-                                                   "0.5",
-                                                   "id:I:1:",
-                                                   "pos:R:3:",
-                                                   "Lattice=\"1 0 0 0 1 0 0 0 1\" ",
-                                                   "Time=1 "};
+    // clang-format off
+    constexpr std::array<const char*, 24> words = {
+        "nan", "-1", "1e300", "inf", "0", "99999999999999999999", "1e-300", "2147483648", "-2147483649", "+1",
+        "\"", "'", "=", ":", "\r\n", "\n\n", "\t", "4294967296", "1e30", "0.5", "id:I:1:", "pos:R:3:",
+        "Lattice=\"1 0 0 0 1 0 0 0 1\" ", "Time=1 "};
+    // clang-format on
     std::size_t end = place;
     while (end < bytes.size() && std::strchr(" \t\n\":=", bytes[end]) == nullptr) ++end;
     if (below(3) == 0) end = place;
@@ -155,43 +131,22 @@ class Mutation {
       bytes += static_cast<char>(below(256));
       return;
     }
+    // clang-format off
     switch (below(12)) {
-      case 0:
-        bytes[place] = static_cast<char>(bytes[place] ^ (1 << below(8)));
-        break;
-      case 1:
-        bytes[place] = static_cast<char>(below(256));
-        break;
-      case 2:
-        put_number<std::uint16_t>(bytes, place);
-        break;
-      case 3:
-        put_number<std::uint32_t>(bytes, place & ~std::size_t{3});
-        break;
-      case 4:
-        put_number<std::uint64_t>(bytes, place & ~std::size_t{7});
-        break;
-      case 5:
-        put_float<float>(bytes, place & ~std::size_t{3});
-        break;
-      case 6:
-        put_float<double>(bytes, place & ~std::size_t{7});
-        break;
-      case 7:
-        bytes.erase(place, length);
-        break;
-      case 8:
-        bytes.insert(place, bytes.substr(below(bytes.size()), length));
-        break;
-      case 9:
-        copy_within(bytes, place, length);
-        break;
-      case 10:
-        splice(bytes, place);
-        break;
-      default:
-        put_word(bytes, place);
+      case 0: bytes[place] = static_cast<char>(bytes[place] ^ (1 << below(8))); break;
+      case 1: bytes[place] = static_cast<char>(below(256)); break;
+      case 2: put_number<std::uint16_t>(bytes, place); break;
+      case 3: put_number<std::uint32_t>(bytes, place & ~std::size_t{3}); break;
+      case 4: put_number<std::uint64_t>(bytes, place & ~std::size_t{7}); break;
+      case 5: put_float<float>(bytes, place & ~std::size_t{3}); break;
+      case 6: put_float<double>(bytes, place & ~std::size_t{7}); break;
+      case 7: bytes.erase(place, length); break;
+      case 8: bytes.insert(place, bytes.substr(below(bytes.size()), length)); break;
+      case 9: copy_within(bytes, place, length); break;
+      case 10: splice(bytes, place); break;
+      default: put_word(bytes, place);
     }
+    // clang-format on
     constexpr std::size_t longest = 1U << 16U;
     if (bytes.size() > longest) bytes.resize(longest);
   }

@@ -5,6 +5,7 @@
 // standard deviations with probability 3.8e-8.
 #include <gtest/gtest.h>
 
+#include "tests/engine/few_spheres.h"
 #include "tests/engine/linear_algebra.h"
 #include "tests/physics/laboratory.h"
 #include "tests/physics/sampled_covariance.h"
@@ -21,13 +22,8 @@ using Components = Eigen::Vector<double, components>;  // forces of all spheres,
 using Matrix = Eigen::Matrix<double, components, components>;
 using Form = LubricationParameters::Form;
 
-// A cell hardly wider than two unit spheres, and inclined: the first two spheres touch through two images.
 System cluster(const Physics& physics) {
-  System system;
-  const std::vector<double> radius = {1.0, 1.0, 1.4, 0.5};
-  system.particles = make_particles(radius, 1);
-  const std::vector<double> sizes = distinct_radii(radius);
-  system.list = NeighbourList(range_table(make_pair_kinds(physics, sizes), sizes.size()), 0.1);
+  System system = spheres_in({4.02, 6.0, 7.0}, physics, {1.0, 1.0, 1.4, 0.5}, 1);
   system.box = PeriodicCell({4.02, 6.0, 7.0}, simple_shear(0), /*tilt=*/1.3);
   system.particles.position.set(0, {0.3, 0.3, 3.0});
   system.particles.position.set(1, {2.305, 0.31, 3.02});

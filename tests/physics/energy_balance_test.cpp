@@ -11,7 +11,6 @@
 #include <gtest/gtest.h>
 
 #include "engine/integrators/spurious_energy.h"
-#include "engine/realisation/packing.h"
 #include "engine/terms/drag.h"
 #include "tests/physics/laboratory.h"
 #include "tests/physics/reference_resistance.h"
@@ -39,18 +38,9 @@ Laboratory sheared_suspension(double timestep) {
   experiment.physics = sheared_physics();
   experiment.radius.assign(28, 1.0);
   experiment.radius.resize(40, 1.4);
-  const double edge = cube_edge(experiment.radius, 0.5);
-  experiment.box = PeriodicCell({edge, edge, edge}, simple_shear(rate));
   experiment.timestep = timestep;
-  Laboratory laboratory(experiment);
-  ParticleState& all = laboratory.particles();
-  place_randomly(all, experiment.box, /*seed=*/9);
-  for (std::size_t i = 0; i < all.count(); ++i) {
-    all.velocity.set(i, {rate * all.position[i].y, 0, 0});
-    all.angular_velocity.set(i, {0, 0, -0.5 * rate});
-  }
-  laboratory.start();
-  return laboratory;
+  set_cube(experiment, 0.5);
+  return flowing_suspension(experiment, 9);
 }
 
 struct PairPower {
@@ -144,9 +134,8 @@ TEST(EnergyBalance, HoldsAtEveryInstantOfASheardSuspension) {
   const double timestep = 5e-3;
   Laboratory laboratory = sheared_suspension(timestep);
   for (int moment = 0; moment < 14; ++moment) {
-    for (int step = 0; step < 1000; ++step) {  // a strain of 0.05: the box flips meanwhile
-      laboratory.step();
-    }
+    // After a strain of 0.05: the box flips meanwhile.
+    for (int step = 0; step < 1000; ++step) laboratory.step();
     System system = laboratory.system();
     const std::size_t count = system.particles.count();
     ForceField field(laboratory.physics(), system.particles, timestep, /*seed=*/1, /*threads=*/1);

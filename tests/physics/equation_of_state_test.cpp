@@ -40,20 +40,17 @@ double expected_pressure() {
 }
 
 Scene scene_at_rest() {
-  return read_scene(
-      {{"particles",
-        {{"count", 250},
-         {"density", 0.1},
-         {"species",
-          {{{"radius", 1}, {"volume_share", 1}}, {{"radius", second_radius}, {"volume_share", 1}}}}}},
-       {"volume_fraction", volume_fraction},
-       {"fluid", {{"viscosity", 0.1}, {"thermal_energy", kT}}},
-       {"flow", {{"shear_rate", 0}}},
-       {"contact", {{"normal_stiffness", stiffness}}},
-       {"lubrication", {{"form", "kim-karrila"}, {"inner_gap", 1e-3}, {"outer_gap", 0.05}}},
-       {"duration",
-        {{"equilibration", {{"brownian_times", 20}}}, {"production", {{"brownian_times", 200}}}}}},
-      "scene.json");
+  Json document = Json::parse(R"({
+      "particles": {"count": 250, "density": 0.1,
+                    "species": [{"volume_share": 1, "radius": 1}, {"volume_share": 1}]},
+      "fluid": {"viscosity": 0.1}, "flow": {"shear_rate": 0},
+      "lubrication": {"form": "kim-karrila", "inner_gap": 1e-3, "outer_gap": 0.05},
+      "duration": {"equilibration": {"brownian_times": 20}, "production": {"brownian_times": 200}}})");
+  document["particles"]["species"][1]["radius"] = second_radius;
+  document["volume_fraction"] = volume_fraction;
+  document["fluid"]["thermal_energy"] = kT;
+  document["contact"] = {{"normal_stiffness", stiffness}};
+  return read_scene(document, "scene.json");
 }
 
 TEST(Pressure, AtRestIsThatOfHardSpheres) {

@@ -60,12 +60,7 @@ Laboratory free_spheres(double timestep) {
   experiment.box = PeriodicCell({130, 130, 130}, Matrix3{});
   experiment.timestep = timestep;
   experiment.skin = 10;
-  Laboratory laboratory(experiment);
-  place_randomly(laboratory.particles(), experiment.box, /*seed=*/3);
-  std::mt19937_64 generator(11);
-  laboratory.thermalise(generator);
-  laboratory.start();
-  return laboratory;
+  return thermal_suspension(experiment, 3, 11);
 }
 
 // The step limit of the fastest mode, the spin of the small spheres: lambda dt = 2.
@@ -140,14 +135,9 @@ TEST_P(DenseSuspension, HasTheTemperatureOfItsNoise) {
   Experiment experiment;
   experiment.physics = scene.physics;
   experiment.radius = species_radii(scene.particles);
-  const double edge = cube_edge(experiment.radius, scene.volume_fraction);
-  experiment.box = PeriodicCell({edge, edge, edge}, Matrix3{});
+  set_cube(experiment, scene.volume_fraction);
   experiment.timestep = GetParam() * largest_timestep(scene);
-  Laboratory laboratory(experiment);
-  place_randomly(laboratory.particles(), experiment.box, /*seed=*/5);
-  std::mt19937_64 generator(12);
-  laboratory.thermalise(generator);
-  laboratory.start();
+  Laboratory laboratory = thermal_suspension(experiment, 5, 12);
   Temperatures series(2);
   double contacts = 0;
   const double decay_times = 4 * blocks;  // of the slowest mode, all spheres together

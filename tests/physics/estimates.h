@@ -18,9 +18,7 @@ inline Estimate estimate(const std::vector<double>& values) {
   const auto n = static_cast<double>(values.size());
   double sum = 0, squares = 0;
   for (const double value : values) sum += value;
-  for (const double value : values) {
-    squares += (value - sum / n) * (value - sum / n);
-  }
+  for (const double value : values) squares += (value - sum / n) * (value - sum / n);
   return {sum / n, std::sqrt(squares / (n * (n - 1)))};
 }
 
@@ -29,10 +27,8 @@ inline Estimate estimate(const std::vector<double>& values) {
 inline Estimate block_estimate(const std::vector<double>& series, std::size_t blocks) {
   const std::size_t length = series.size() / blocks;
   std::vector<double> means(blocks);
-  for (std::size_t k = 0; k < blocks * length; ++k) {
+  for (std::size_t k = 0; k < blocks * length; ++k)
     means[k / length] += series[k] / static_cast<double>(length);
-  }
   return estimate(means);
 }
-
 }  // namespace peclet::engine

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/realisation/packing.h"
+#include "tests/engine/components.h"
 #include "tests/physics/laboratory.h"
 
 namespace peclet::engine {
@@ -65,8 +66,7 @@ void expect_same_stress(Laboratory& one, Laboratory& other) {
     for (std::size_t term = 0; term < count_of_stress_terms; ++term) {
       const SymmetricTensor s = a.stress[term], t = b.stress[term];
       const double scale = std::abs(s.xx) + std::abs(s.yy) + std::abs(s.zz);
-      for (const auto component : {&SymmetricTensor::xx, &SymmetricTensor::yy, &SymmetricTensor::zz,
-                                   &SymmetricTensor::xy, &SymmetricTensor::xz, &SymmetricTensor::yz}) {
+      for (const auto component : every_component) {
         ASSERT_NEAR(s.*component, t.*component, 1e-9 * scale) << "step " << step << ", term " << term;
       }
     }

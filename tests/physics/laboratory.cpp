@@ -46,23 +46,47 @@ void Laboratory::thermalise(std::mt19937_64& generator) {
   }
 }
 
+double set_cube(Experiment& experiment, double volume_fraction, double tilt_over_edge) {
+  const double edge = cube_edge(experiment.radius, volume_fraction);
+  experiment.box =
+      PeriodicCell({edge, edge, edge}, simple_shear(experiment.physics.flow.rate()), tilt_over_edge * edge);
+  return edge;
+}
+
+Laboratory flowing_suspension(const Experiment& experiment, std::uint64_t packing_seed) {
+  Laboratory laboratory(experiment);
+  ParticleState& all = laboratory.particles();
+  place_randomly(all, experiment.box, packing_seed);
+  const BackgroundFlow flow(experiment.box);
+  for (std::size_t i = 0; i < all.count(); ++i) {
+    all.velocity.set(i, flow.velocity(all.position[i]));
+    all.angular_velocity.set(i, flow.spin(all.position[i]));
+  }
+  laboratory.start();
+  return laboratory;
+}
+
+Laboratory thermal_suspension(const Experiment& experiment, std::uint64_t packing_seed,
+                              std::uint64_t thermal_seed) {
+  Laboratory laboratory(experiment);
+  place_randomly(laboratory.particles(), experiment.box, packing_seed);
+  std::mt19937_64 generator(thermal_seed);
+  laboratory.thermalise(generator);
+  laboratory.start();
+  return laboratory;
+}
+
 Laboratory single_spheres(std::size_t count, double thermal_energy, double timestep, double skin,
                           std::optional<double> solver_tolerance) {
   Experiment experiment;
   experiment.physics.viscosity = natural_viscosity;
   experiment.physics.thermal_energy = thermal_energy;
   experiment.radius.assign(count, 1.0);
-  const double edge = cube_edge(experiment.radius, 5e-4);
-  experiment.box = PeriodicCell({edge, edge, edge}, Matrix3{});
+  set_cube(experiment, 5e-4);
   experiment.timestep = timestep;
   experiment.skin = skin;
   experiment.solver_tolerance = solver_tolerance;
-  Laboratory laboratory(experiment);
-  place_randomly(laboratory.particles(), experiment.box, /*seed=*/4);
-  std::mt19937_64 generator(21);
-  laboratory.thermalise(generator);
-  laboratory.start();
-  return laboratory;
+  return thermal_suspension(experiment, 4, 21);
 }
 
 std::vector<Vector3> unwrapped_places(const Laboratory& laboratory) {

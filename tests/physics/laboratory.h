@@ -56,11 +56,38 @@ class Laboratory {
   std::unique_ptr<Integrator> integrator_;
 };
 
+// Returns the edge of the experiment's cube at this volume fraction, and sets its box, sheared by the flow.
+double set_cube(Experiment& experiment, double volume_fraction, double tilt_over_edge = 0);
+
+// Returns the experiment with spheres packed by the seed, moving with the flow.
+Laboratory flowing_suspension(const Experiment& experiment, std::uint64_t packing_seed);
+
+// Returns the same with thermal velocities of the seed; the fluid is at rest.
+Laboratory thermal_suspension(const Experiment& experiment, std::uint64_t packing_seed,
+                              std::uint64_t thermal_seed);
+
 // Returns spheres of radius 1 at volume fraction 5e-4 with thermal velocities, drag and its noise alone.
 Laboratory single_spheres(std::size_t count, double thermal_energy, double timestep, double skin,
                           std::optional<double> solver_tolerance = {});
 
 // Returns the unwrapped position of every particle, by id; particles change their index in memory.
 std::vector<Vector3> unwrapped_places(const Laboratory& laboratory);
+
+// Calls claim(i, j, r, shift) for every pair and image nearer than range(i, j), without the engine's list.
+// `shift` is the displacement of j's image.
+template <class Range, class Claim>
+void for_every_image(const System& system, const Range& range, const Claim& claim) {
+  const VectorField& place = system.particles.position;
+  for (std::size_t i = 0; i < place.size(); ++i) {
+    for (std::size_t j = i + 1; j < place.size(); ++j) {
+      for (int image = 0; image < 125; ++image) {
+        const Vector3 shift =
+            system.box.edges() * Vector3{image % 5 - 2.0, image / 5 % 5 - 2.0, image / 25 - 2.0};
+        const Vector3 r = place[j] - place[i] + shift;
+        if (norm(r) <= range(i, j)) claim(i, j, r, shift);
+      }
+    }
+  }
+}
 
 }  // namespace peclet::engine

@@ -136,9 +136,7 @@ std::vector<double> expected_shares(const PairDensityRun& run, StepBias bias) {
     shares.push_back(integral(run, bias, edges[k], edges[k + 1]));
     total += shares.back();
   }
-  for (double& share : shares) {
-    share /= total;
-  }
+  for (double& share : shares) share /= total;
   return shares;
 }
 
@@ -147,9 +145,7 @@ double probability_of(const std::vector<std::vector<double>>& shares, const std:
   const auto n = static_cast<double>(shares.size());
   std::vector<double> mean(p), difference(p);
   for (std::size_t a = 0; a < p; ++a) {
-    for (const std::vector<double>& row : shares) {
-      mean[a] += row[a] / n;
-    }
+    for (const std::vector<double>& row : shares) mean[a] += row[a] / n;
     difference[a] = mean[a] - expected[a];
   }
   std::vector<std::vector<double>> covariance(p, std::vector<double>(p));

@@ -144,9 +144,7 @@ TEST(PairNoise, IsFreshAtEveryStep) {
 
 TEST(PairNoise, IsZeroBeyondTheOuterGap) {
   NoisyPair pair(3.0, 0.0501, 1);
-  for (const double component : pair.noise(7)) {
-    EXPECT_EQ(component, 0.0);
-  }
+  for (const double component : pair.noise(7)) EXPECT_EQ(component, 0.0);
 }
 
 }  // namespace

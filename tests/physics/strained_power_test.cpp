@@ -49,8 +49,7 @@ Laboratory strained_suspension(bool waves) {
   experiment.radius.assign(40, 1.0);
   experiment.radius.resize(54, 1.4);
   experiment.radius.resize(57, 3.0);
-  const double edge = cube_edge(experiment.radius, 0.5);
-  experiment.box = PeriodicCell({edge, edge, edge}, simple_shear(rate), 0.3 * edge);
+  set_cube(experiment, 0.5, 0.3);
   experiment.timestep = 2e-3;
   Laboratory laboratory(experiment);
   ParticleState& all = laboratory.particles();
@@ -125,26 +124,19 @@ PairPower power_of_pair(const Peculiar& i, const Peculiar& j, const Vector3& r) 
 
 // Returns the sums over all pairs and images of the sheared lattice; the engine's neighbour list is not used.
 PairPower power_of_all(const System& system, const std::vector<Peculiar>& spheres) {
-  const VectorField& place = system.particles.position;
-  const Matrix3& edges = system.box.edges();
   PairPower total;
-  for (std::size_t i = 0; i < spheres.size(); ++i) {
-    for (std::size_t j = i + 1; j < spheres.size(); ++j) {
-      for (int image = 0; image < 125; ++image) {
-        const int along_x = image % 5 - 2, along_y = image / 5 % 5 - 2, along_z = image / 25 - 2;
-        const Vector3 shift = edges * Vector3{1.0 * along_x, 1.0 * along_y, 1.0 * along_z};
-        const Vector3 r = place[j] - place[i] + shift;
-        if (norm(r) > spheres[i].radius + spheres[j].radius + outer) continue;
-        const PairPower power = power_of_pair(spheres[i], spheres[j], r);
-        total.of_motion += power.of_motion;
-        total.of_strain += power.of_strain;
-        total.together += power.together;
-        total.of_contact += power.of_contact;
-        total.stored += power.stored;
-        total.of_distance += power.of_distance;
-      }
-    }
-  }
+  const auto range = [&](std::size_t i, std::size_t j) {
+    return spheres[i].radius + spheres[j].radius + outer;
+  };
+  for_every_image(system, range, [&](std::size_t i, std::size_t j, const Vector3& r, const Vector3&) {
+    const PairPower power = power_of_pair(spheres[i], spheres[j], r);
+    total.of_motion += power.of_motion;
+    total.of_strain += power.of_strain;
+    total.together += power.together;
+    total.of_contact += power.of_contact;
+    total.stored += power.stored;
+    total.of_distance += power.of_distance;
+  });
   return total;
 }
 

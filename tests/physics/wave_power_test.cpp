@@ -13,7 +13,6 @@
 #include <gtest/gtest.h>
 
 #include "engine/flow/waves.h"
-#include "engine/realisation/packing.h"
 #include "tests/physics/laboratory.h"
 #include "tests/physics/reference_resistance.h"
 
@@ -54,18 +53,9 @@ Laboratory wavy_suspension() {
   experiment.radius.assign(40, 1.0);
   experiment.radius.resize(54, 1.4);
   experiment.radius.resize(57, 3.0);
-  const double edge = cube_edge(experiment.radius, 0.5);
-  experiment.box = PeriodicCell({edge, edge, edge}, simple_shear(rate), 0.3 * edge);
+  set_cube(experiment, 0.5, 0.3);
   experiment.timestep = 2e-3;
-  Laboratory laboratory(experiment);
-  ParticleState& all = laboratory.particles();
-  place_randomly(all, experiment.box, /*seed=*/9);
-  for (std::size_t i = 0; i < all.count(); ++i) {
-    all.velocity.set(i, {rate * all.position[i].y, 0, 0});
-    all.angular_velocity.set(i, {0, 0, -0.5 * rate});
-  }
-  laboratory.start();
-  return laboratory;
+  return flowing_suspension(experiment, 9);
 }
 
 struct PairPower {
@@ -98,22 +88,16 @@ PairPower power_of_pair(const ParticleState& all, std::size_t i, std::size_t j, 
 // Returns the sums over all pairs and images of the sheared lattice; the engine's neighbour list is not used.
 PairPower power_of_all(const System& system) {
   const ParticleState& all = system.particles;
-  const Matrix3& edges = system.box.edges();
   PairPower total;
-  for (std::size_t i = 0; i < all.count(); ++i) {
-    for (std::size_t j = i + 1; j < all.count(); ++j) {
-      for (int image = 0; image < 125; ++image) {
-        const int along_x = image % 5 - 2, along_y = image / 5 % 5 - 2, along_z = image / 25 - 2;
-        const Vector3 shift = edges * Vector3{1.0 * along_x, 1.0 * along_y, 1.0 * along_z};
-        const Vector3 r = all.position[j] - all.position[i] + shift;
-        if (norm(r) > all.radius[i] + all.radius[j] + attraction_range) continue;
-        const Vector3 du = all.velocity[j] - all.velocity[i] + Vector3{rate * shift.y, 0, 0};
-        const PairPower power = power_of_pair(all, i, j, r, du);
-        total.dissipated += power.dissipated;
-        total.stored += power.stored;
-      }
-    }
-  }
+  const auto range = [&](std::size_t i, std::size_t j) {
+    return all.radius[i] + all.radius[j] + attraction_range;
+  };
+  for_every_image(system, range, [&](std::size_t i, std::size_t j, const Vector3& r, const Vector3& shift) {
+    const Vector3 du = all.velocity[j] - all.velocity[i] + Vector3{rate * shift.y, 0, 0};
+    const PairPower power = power_of_pair(all, i, j, r, du);
+    total.dissipated += power.dissipated;
+    total.stored += power.stored;
+  });
   return total;
 }
 

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <map>
 #include <memory>
-#include <optional>
-#include <stdexcept>
 
 #include "contract/provenance.h"
 #include "engine/realisation/simulation.h"
@@ -141,6 +139,7 @@ struct Measured {
 std::vector<Measured> measure(std::vector<Runner>& runners, int rounds) {
   std::vector<Measured> results;
   std::vector<double> rebuild_share;
+  std::vector<std::uint64_t> iterations, steps;
   for (const Runner& runner : runners) {
     const System& system = runner.system();
     const auto count = static_cast<double>(runner.count());
@@ -153,13 +152,10 @@ std::vector<Measured> measure(std::vector<Runner>& runners, int rounds) {
     result.rebuild = runner.measure_rebuild();
     rebuild_share.push_back(runner.is_implicit() ? 0 : result.rebuild / runner.steps_per_rebuild());
     results.push_back(result);
+    iterations.push_back(runner.iterations());
+    steps.push_back(system.step);
   }
   std::vector<std::vector<double>> times(runners.size()), ratios(runners.size());
-  std::vector<std::uint64_t> iterations, steps;
-  for (const Runner& runner : runners) {
-    iterations.push_back(runner.iterations());
-    steps.push_back(runner.system().step);
-  }
   for (int r = 0; r < rounds; ++r) {
     std::optional<double> first;
     for (std::size_t k = 0; k < runners.size(); ++k) {
@@ -169,9 +165,7 @@ std::vector<Measured> measure(std::vector<Runner>& runners, int rounds) {
         times[k].push_back(*time);
       }
       first = k == 0 ? time : first;
-      if (time && first) {
-        ratios[k].push_back(*time / *first);
-      }
+      if (time && first) ratios[k].push_back(*time / *first);
     }
   }
   for (std::size_t k = 0; k < runners.size(); ++k) {
@@ -264,16 +258,15 @@ void run(const Group& group, const Machine& machine) {
   // All contestants of a group have steps of one kind.
   if (!runners.front().is_implicit()) {
     print_roofline(runners, results, machine);
-    std::fflush(stdout);
-    return;
+  } else {
+    std::vector<std::string> names;
+    std::vector<SolverCost> costs;
+    for (const Runner& runner : runners) {
+      names.push_back(runner.contestant().name);
+      costs.push_back(solver_cost(runner.contestant().scene, runner.system(), runner.timestep()));
+    }
+    print_solvers(names, costs, machine);
   }
-  std::vector<std::string> names;
-  std::vector<SolverCost> costs;
-  for (const Runner& runner : runners) {
-    names.push_back(runner.contestant().name);
-    costs.push_back(solver_cost(runner.contestant().scene, runner.system(), runner.timestep()));
-  }
-  print_solvers(names, costs, machine);
   std::fflush(stdout);
 }
 

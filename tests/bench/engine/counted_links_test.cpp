@@ -21,13 +21,11 @@ std::span<const LinkLevel> levels_of(const LinkSystem& system) {
 
 // Returns the squared residual that the compiled kernels leave after equally many iterations.
 double squared_residual(const Links& links, const std::vector<MotionRow>& right, int iterations) {
-  std::vector<MotionRow> rows[7];
-  for (std::vector<MotionRow>& each : rows) each = right;
-  const SolverRows places = {rows[0].data(), rows[1].data(), rows[2].data(), rows[3].data(),
-                             rows[4].data(), rows[5].data(), rows[6].data()};
+  SolverStorage storage(right.size());
+  storage.of[0] = right;
   Team alone;
-  const double squared = links.kernels().begin(links.view(), places, alone);
-  return links.kernels().solve(links.view(), places, squared, 0, iterations, alone).squared_residual;
+  const double squared = links.kernels().begin(links.view(), storage.view(), alone);
+  return links.kernels().solve(links.view(), storage.view(), squared, 0, iterations, alone).squared_residual;
 }
 
 TEST(SolverOperations, AreThoseOfWorkThatGivesTheKernelsResult) {
@@ -92,11 +90,7 @@ TEST(SolverCost, IsThatOfEveryNearPair) {
   const Scene scene = chosen_groups({"implicit"}).at(0).contestants.at(0).scene;
   const System system = dense_suspension(scene.physics, 200, 5);
   const double outer = 1 + 0.5 * scene.physics.lubrication->outer_gap;
-  const std::vector<double>& radius = system.particles.radius;
-  const std::size_t near =
-      every_image(system.particles.position, system.box.lengths(), system.box.tilt(),
-                  [&](std::uint32_t i, std::uint32_t j) { return outer * (radius[i] + radius[j]); })
-          .size();
+  const std::size_t near = count_near(system, outer);
   const SolverCost cost = solver_cost(scene, system, 1e-9);
   EXPECT_EQ(cost.rows, 200);
   EXPECT_EQ(cost.links, static_cast<double>(near));

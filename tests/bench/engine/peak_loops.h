@@ -32,9 +32,7 @@ constexpr int chains = 12;
 template <class Real, class Operation>
 double run_chains(std::uint64_t rounds, const Operation& operation) {
   Real x[chains];
-  for (int k = 0; k < chains; ++k) {
-    x[k] = Real{1.0 + 0.01 * k};
-  }
+  for (int k = 0; k < chains; ++k) x[k] = Real{1.0 + 0.01 * k};
   for (std::uint64_t r = 0; r < rounds; ++r) {
     for (Real& each : x) each = operation(each);
   }

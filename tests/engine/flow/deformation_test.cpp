@@ -13,18 +13,13 @@ namespace peclet::engine {
 namespace {
 
 TEST(SteadyShear, StrainsByItsRateTimesTheTime) {
-  const SteadyShear shear(0.7);
-  EXPECT_EQ(shear.velocity_gradient(3), simple_shear(0.7));
-  EXPECT_EQ(shear.displacement_gradient(3), simple_shear(0.7 * 3));
-  EXPECT_EQ(shear.largest_rate(), 0.7);
-  EXPECT_DOUBLE_EQ(shear.time_of(1.4, 0), 2);
-}
-
-TEST(SteadyShear, OtherWayRoundReachesAStrainAsSoon) {
-  const SteadyShear shear(-0.5);
-  EXPECT_EQ(shear.largest_rate(), 0.5);
-  EXPECT_DOUBLE_EQ(shear.time_of(1, 0), 2);
-  EXPECT_EQ(shear.displacement_gradient(3), simple_shear(-1.5));
+  for (const double rate : {0.7, -0.5}) {
+    const SteadyShear shear(rate);
+    EXPECT_EQ(shear.velocity_gradient(3), simple_shear(rate));
+    EXPECT_EQ(shear.displacement_gradient(3), simple_shear(rate * 3));
+    EXPECT_EQ(shear.largest_rate(), std::abs(rate));
+    EXPECT_DOUBLE_EQ(shear.time_of(2 * std::abs(rate), 0), 2);
+  }
 }
 
 TEST(SteadyShear, AtRestReachesNoStrain) {
@@ -52,11 +47,9 @@ TEST(OscillatoryShear, GoesToAndFro) {
 TEST(OscillatoryShear, CountsItsStrainInBothDirections) {
   const OscillatoryShear shear(0.2, 3);
   const double period = 2 * std::numbers::pi / 3;
-  EXPECT_NEAR(shear.time_of(0.1, 0), period / 12, 1e-12);
-  EXPECT_NEAR(shear.time_of(0.2, 0), period / 4, 1e-12);
-  EXPECT_NEAR(shear.time_of(0.3, 0), period * 5 / 12, 1e-12);
-  EXPECT_NEAR(shear.time_of(0.4, 0), period / 2, 1e-12);
-  EXPECT_NEAR(shear.time_of(0.8, 0), period, 1e-12);
+  for (const auto& [strain, twelfths] : {std::pair{0.1, 1}, {0.2, 3}, {0.3, 5}, {0.4, 6}, {0.8, 12}}) {
+    EXPECT_NEAR(shear.time_of(strain, 0), period * twelfths / 12, 1e-12) << strain;
+  }
   EXPECT_NEAR(shear.time_of(8.1, 0), 10 * period + period / 12, 1e-11);
   EXPECT_NEAR(shear.mean_rate() * period, 0.8, 1e-12);
   const double never = std::numeric_limits<double>::infinity();
@@ -95,11 +88,11 @@ TEST(ImposedFlow, HasTheRateOfItsSteadyPart) {
   // (sigma_xx - (sigma_yy + sigma_zz) / 2) / sqrt(3), and its opposite in biaxial extension.
   const ImposedFlow uniaxial(std::make_shared<UniaxialExtension>(0.5)),
       biaxial(std::make_shared<UniaxialExtension>(-0.5));
+  const SymmetricTensor stress = {.xx = 3, .yy = -2, .zz = 7, .xy = 5};
   EXPECT_DOUBLE_EQ(uniaxial.steady_rate(), 0.5 * std::sqrt(3.0));
-  EXPECT_DOUBLE_EQ(uniaxial.shear_part({.xx = 3, .yy = -2, .zz = 7, .xy = 5}), 0.5 / std::sqrt(3.0));
-  EXPECT_DOUBLE_EQ(biaxial.shear_part({.xx = 3, .yy = -2, .zz = 7, .xy = 5}), -0.5 / std::sqrt(3.0));
-  const ImposedFlow shear = steady_shear(0.3);
-  EXPECT_EQ(shear.shear_part({.xx = 3, .yy = -2, .zz = 7, .xy = 5}), 5);
+  EXPECT_DOUBLE_EQ(uniaxial.shear_part(stress), 0.5 / std::sqrt(3.0));
+  EXPECT_DOUBLE_EQ(biaxial.shear_part(stress), -0.5 / std::sqrt(3.0));
+  EXPECT_EQ(steady_shear(0.3).shear_part(stress), 5);
   EXPECT_EQ(ImposedFlow().shear_part({.xy = 5}), 5);
 }
 
@@ -130,17 +123,28 @@ TEST(PlanarExtension, BringsItsLatticeBack) {
   EXPECT_NEAR(determinant(whole), 1, 1e-12);
 }
 
-// A cell that follows by basis changes keeps its volume and its width up to the largest strain.
-TEST(PlanarExtension, KeepsItsCellWide) {
-  const PlanarExtension extension(1);
-  PeriodicCell cell = PeriodicCell::with_edges(extension.edges_at_start({1, 1, 1}), {});
-  for (double strain = 0; strain <= PlanarExtension::largest_strain; strain += 0.01) {
-    cell.deform(extension.displacement_gradient(strain), extension.velocity_gradient(strain));
+// Follows a flow in steps of strain, with basis changes; calls look(cell, strain) after each.
+template <class Look>
+void follow(const Deformation& flow, double largest_strain, double step, const Look& look) {
+  PeriodicCell cell = PeriodicCell::with_edges(flow.edges_at_start({1, 1, 1}), {});
+  for (double strain = 0; strain <= largest_strain; strain += step) {
+    cell.deform(flow.displacement_gradient(strain), flow.velocity_gradient(strain));
     cell.change_basis(cell.due_change());
+    look(cell, strain);
+  }
+}
+
+// Expects that the cell keeps its volume and its width up to the largest strain.
+void expect_wide_cell(const Deformation& flow, double largest_strain, double tolerance) {
+  follow(flow, largest_strain, 0.01, [&](const PeriodicCell& cell, double strain) {
     const Vector3 widths = cell.frame().widths();
     ASSERT_GT(std::min({widths.x, widths.y, widths.z}), 0.66) << strain;
-    ASSERT_NEAR(cell.volume(), 1, 1e-6) << strain;
-  }
+    ASSERT_NEAR(cell.volume(), 1, tolerance) << strain;
+  });
+}
+
+TEST(PlanarExtension, KeepsItsCellWide) {
+  expect_wide_cell(PlanarExtension(1), PlanarExtension::largest_strain, 1e-6);
 }
 
 // The lattice of the unit cube has |x y z| >= 1/7 at every point but the origin, with equality at the edges.
@@ -169,15 +173,10 @@ TEST(UniaxialExtension, KeepsItsCellWideAndItsImagesApart) {
     const UniaxialExtension extension(rate);
     EXPECT_NEAR(1 + extension.displacement_gradient(2).column[0].x, std::exp(2 * rate), 1e-12);
     EXPECT_NEAR(1 + extension.displacement_gradient(2).column[2].z, std::exp(-rate), 1e-12);
-    PeriodicCell cell = PeriodicCell::with_edges(extension.edges_at_start({1, 1, 1}), {});
-    for (double strain = 0; strain <= UniaxialExtension::largest_strain; strain += 0.01) {
-      cell.deform(extension.displacement_gradient(strain), extension.velocity_gradient(strain));
-      cell.change_basis(cell.due_change());
-      const Vector3 widths = cell.frame().widths();
-      ASSERT_GT(std::min({widths.x, widths.y, widths.z}), 0.66) << strain;
-      ASSERT_NEAR(cell.volume(), 1, 1e-8) << strain;
+    expect_wide_cell(extension, UniaxialExtension::largest_strain, 1e-8);
+    follow(extension, UniaxialExtension::largest_strain, 0.01, [&](const PeriodicCell& cell, double strain) {
       ASSERT_NEAR(cell.net_strain(), rate * strain, 1e-9);
-    }
+    });
   }
 }
 
@@ -187,19 +186,14 @@ TEST(Deformation, BringsImagesOfTurnedCubesNoNearerThanItSays) {
   const UniaxialExtension uniaxial(1), biaxial(-1);
   EXPECT_NEAR(planar.nearest_image(), std::sqrt(2.0) / std::pow(5, 0.25), 1e-4);
   EXPECT_NEAR(uniaxial.nearest_image(), std::sqrt(3.0) / std::cbrt(7.0), 1e-4);
-  for (const Deformation* flow :
-       {static_cast<const Deformation*>(&planar), static_cast<const Deformation*>(&uniaxial),
-        static_cast<const Deformation*>(&biaxial)}) {
-    PeriodicCell cell = PeriodicCell::with_edges(flow->edges_at_start({1, 1, 1}), {});
+  for (const Deformation* flow : std::initializer_list<const Deformation*>{&planar, &uniaxial, &biaxial}) {
     double nearest = 2;
-    for (double strain = 0; strain <= 6; strain += 0.002) {
-      cell.deform(flow->displacement_gradient(strain), flow->velocity_gradient(strain));
-      cell.change_basis(cell.due_change());
+    follow(*flow, 6, 0.002, [&](const PeriodicCell& cell, double) {
       for (int n = 1; n < 125; ++n) {
         const LatticeShift k{n / 25 - 2, n / 5 % 5 - 2, n % 5 - 2};
         if (k != LatticeShift{}) nearest = std::min(nearest, norm(cell.displacement(k)));
       }
-    }
+    });
     EXPECT_GE(nearest, flow->nearest_image());
     EXPECT_LT(nearest, flow->nearest_image() + 0.01);
   }
@@ -226,12 +220,10 @@ TEST_F(Programme, HasRatesAndStrainsOfItsSegments) {
 }
 
 TEST_F(Programme, CountsStrainInBothDirectionsFromAnyTime) {
-  EXPECT_NEAR(segments.time_of(0.5, 0), 0.25, 1e-12);
-  EXPECT_NEAR(segments.time_of(2.5, 0), 1.5, 1e-12);
-  EXPECT_NEAR(segments.time_of(1.5, 0.5), 1, 1e-12);
-  EXPECT_NEAR(segments.time_of(3.5, 0), 3.5, 1e-12);
-  EXPECT_NEAR(segments.time_of(4, 0), 5.5, 1e-12);  // includes the rest
-  EXPECT_NEAR(segments.time_of(1, 4), 2.5, 1e-12);
+  const double times[][3] = {{0.5, 0, 0.25}, {2.5, 0, 1.5}, {1.5, 0.5, 1},
+                             {3.5, 0, 3.5},  {4, 0, 5.5},   {1, 4, 2.5}};  // the last two include the rest
+  for (const auto& [strain, from, time] : times)
+    EXPECT_NEAR(segments.time_of(strain, from), time, 1e-12) << strain;
   EXPECT_NEAR(segments.strain_between(0.5, 0, 13), 4.5, 1e-12);
   EXPECT_NEAR(segments.strain_between(0.5, 5, 13), 1.5, 1e-12);
   EXPECT_TRUE(std::isinf(Segments({{1, 1, 1}}, 0).time_of(1.5, 0)));

@@ -7,8 +7,7 @@
 #include "engine/flow/extension.h"
 #include "engine/flow/segments.h"
 #include "engine/flow/shear.h"
-#include "engine/integrators/implicit.h"
-#include "engine/integrators/velocity_verlet.h"
+#include "tests/engine/few_spheres.h"
 
 namespace peclet::engine {
 namespace {
@@ -18,35 +17,27 @@ using Flow = std::shared_ptr<const Deformation>;
 Flow oscillation() { return std::make_shared<OscillatoryShear>(0.3, 2); }
 Flow extension() { return std::make_shared<PlanarExtension>(0.5); }
 
+constexpr Vector3 places_at_start[] = {{3, 5, 7}, {12, 15, 18}};
+
 System carried(const Flow& deformation, bool implicit, int steps, double step, double density = 1e-6) {
   Physics physics;
   physics.viscosity = 1;
   physics.flow = ImposedFlow(deformation);
-  System system;
-  system.particles = make_particles({1, 1}, density);
-  system.box = PeriodicCell({40, 40, 40}, deformation->velocity_gradient(0));
   physics.contact = ContactParameters{.normal_stiffness = 1};  // gives the list a range
-  system.list = NeighbourList(range_table(make_pair_kinds(physics, {1}), 1), 0.1);
+  System system = spheres_in({40, 40, 40}, physics, {1, 1}, density);
   for (const std::size_t i : {0U, 1U}) {
-    const Vector3 place = i == 0 ? Vector3{3, 5, 7} : Vector3{12, 15, 18};
-    system.particles.position.set(i, place);
-    system.particles.velocity.set(i, system.box.velocity_gradient() * place);
+    system.particles.position.set(i, places_at_start[i]);
+    system.particles.velocity.set(i, system.box.velocity_gradient() * places_at_start[i]);
     system.particles.angular_velocity.set(i, spin_of(system.box.velocity_gradient()));
   }
-  std::unique_ptr<Integrator> integrator;
-  if (implicit) {
-    integrator = implicit_steps(physics, system.particles, step, 1e-6, 1, 1);
-  } else {
-    integrator = std::make_unique<VelocityVerlet>(ForceField(physics, system.particles, step, 1, 1),
-                                                  system.particles, step);
-  }
-  integrator->start(system);
-  for (int n = 0; n < steps; ++n) integrator->advance(system);
+  start_and_advance(*steps_of_method(implicit, physics, system, step, 1e-6), system, steps);
   return system;
 }
 
-Vector3 unwrapped(const System& system, std::size_t i) {
-  return system.particles.position[i] + system.box.displacement(system.particles.image[i]);
+// Returns the distance of a sphere from the place to which the fluid has carried it.
+double distance_from_fluid(const System& system, std::size_t i, const Matrix3& made) {
+  const Vector3 unwrapped = system.particles.position[i] + system.box.displacement(system.particles.image[i]);
+  return norm(unwrapped - (places_at_start[i] + made * places_at_start[i]));
 }
 
 TEST(Deformation, OfAnyKindIsFollowedByBothMethods) {
@@ -70,11 +61,7 @@ TEST(Deformation, OfAnyKindIsFollowedByBothMethods) {
     EXPECT_NEAR(norm(system.box.velocity_gradient() - each.deformation->velocity_gradient(time)), 0, 1e-12);
     // The tolerance is far smaller than the displacement of up to 8: the methods are of second order.
     const double tolerance = each.implicit ? 2e-3 : 1e-6;
-    for (std::size_t i = 0; i < 2; ++i) {
-      const Vector3 start = i == 0 ? Vector3{3, 5, 7} : Vector3{12, 15, 18};
-      const Vector3 way = unwrapped(system, i) - (start + made * start);
-      EXPECT_LT(norm(way), tolerance) << i;
-    }
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_LT(distance_from_fluid(system, i, made), tolerance) << i;
   }
 }
 
@@ -91,8 +78,7 @@ TEST(Deformation, IsFollowedByHeavySpheresWhereverTheyAre) {
           carried(flow, implicit, static_cast<int>(std::lround(time / step)), step, /*density=*/1);
       const Matrix3 made = flow->displacement_gradient(time);
       for (std::size_t i = 0; i < 2; ++i) {
-        const Vector3 start = i == 0 ? Vector3{3, 5, 7} : Vector3{12, 15, 18};
-        EXPECT_LT(norm(unwrapped(system, i) - (start + made * start)), implicit ? 2e-3 : 1e-2) << implicit;
+        EXPECT_LT(distance_from_fluid(system, i, made), implicit ? 2e-3 : 1e-2) << implicit;
         const Vector3 peculiar =
             system.particles.velocity[i] - system.box.velocity_gradient() * system.particles.position[i];
         EXPECT_LT(norm(peculiar), 1e-3) << implicit;

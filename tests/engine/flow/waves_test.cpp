@@ -5,9 +5,8 @@
 #include <memory>
 #include <numbers>
 
-#include "engine/integrators/implicit.h"
-#include "engine/integrators/velocity_verlet.h"
 #include "tests/engine/draws.h"
+#include "tests/engine/few_spheres.h"
 
 namespace peclet::engine {
 namespace {
@@ -48,44 +47,29 @@ TEST(Waves, HaveThePeriodsOfTheCell) {
   }
 }
 
-struct Case {
-  double rate;
-  bool implicit, faxen;
-};
-
 // A force-free sphere moves with U = (1 - a^2 k^2 / 6) u, Faxen's correction, and turns with half the
 // vorticity at its centre. From rest it relaxes there exponentially, in implicit steps by
 // 1 / (1 + dt zeta / m) a step. Its height is constant.
 TEST(Waves, CarryAFreeSphereAsFaxenSays) {
+  struct Case {
+    double rate;
+    bool implicit, faxen;
+  };
   constexpr double density = 1, viscosity = 1, sine = 0.4, cosine = -0.3;
-  for (const Case& each : {Case{0, false, true},
-                           {0, true, true},
-                           {0.2, false, true},
-                           {0.2, true, true},
-                           {0.2, false, false},
-                           {0.2, true, false}}) {
+  constexpr Case cases[] = {{0, false, true},  {0, true, true},     {0.2, false, true},
+                            {0.2, true, true}, {0.2, false, false}, {0.2, true, false}};
+  for (const Case& each : cases) {
     Physics physics;
     physics.viscosity = viscosity;
     physics.flow = ImposedFlow(std::make_shared<SteadyShear>(each.rate),
                                std::make_shared<Waves>(std::vector<Wave>{{2, sine, cosine}}, each.faxen));
-    System system;
-    system.particles = make_particles({1, 3}, density);
-    system.box = PeriodicCell({edge, edge, edge}, physics.flow.deformation().velocity_gradient(0));
     physics.contact = ContactParameters{.normal_stiffness = 1};  // gives the list a range
-    system.list = NeighbourList(range_table(make_pair_kinds(physics, {1, 3}), 2), 0.1);
+    System system = spheres_in({edge, edge, edge}, physics, {1, 3}, density);
     const Vector3 places[] = {{4, 3, 5}, {12, 14.5, 15}};
     for (std::size_t i = 0; i < 2; ++i) system.particles.position.set(i, places[i]);
     constexpr int steps = 60;
     const double step = each.implicit ? 0.01 : 0.002;
-    std::unique_ptr<Integrator> integrator;
-    if (each.implicit) {
-      integrator = implicit_steps(physics, system.particles, step, 1e-8, 1, 1);
-    } else {
-      integrator = std::make_unique<VelocityVerlet>(ForceField(physics, system.particles, step, 1, 1),
-                                                    system.particles, step);
-    }
-    integrator->start(system);
-    for (int n = 0; n < steps; ++n) integrator->advance(system);
+    start_and_advance(*steps_of_method(each.implicit, physics, system, step, 1e-8), system, steps);
     const double k = 2 * pi * 2 / edge;
     for (std::size_t i = 0; i < 2; ++i) {
       const std::size_t p = system.particles.id[i];

@@ -8,7 +8,7 @@
 
 #include "engine/flow/shear.h"
 #include "engine/observables/scene_reading.h"
-#include "engine/scene/scene.h"
+#include "tests/contract/refusal.h"
 #include "tests/engine/small_scene.h"
 
 namespace peclet::engine {
@@ -25,11 +25,14 @@ Scene scene_of(double shear_rate, double thermal_energy) {
   return scene;
 }
 
-std::vector<std::string> warning_codes(const Scene& scene) {
-  std::vector<std::string> codes;
-  for (const Warning& warning : scene_warnings(scene)) codes.push_back(warning.code);
+using Codes = std::vector<std::string>;
+
+Codes codes_of(const std::vector<Warning>& warnings) {
+  Codes codes;
+  for (const Warning& warning : warnings) codes.push_back(warning.code);
   return codes;
 }
+Codes warning_codes(const Scene& scene) { return codes_of(scene_warnings(scene)); }
 
 TEST(DerivedGroups, ReproduceThePublishedTable) {
   const struct {
@@ -103,24 +106,18 @@ TEST(DerivedGroups, NearRestTheFlowIsComparedWithRest) {
 // rho a^2 w / eta = 0.3 for any amplitude.
 TEST(SceneWarnings, InertiaBesideAnOscillationGoesByItsFrequency) {
   const auto codes = [](double density) {
-    Json document = small_scene();
-    document["particles"]["density"] = density;
-    document["particles"]["species"] = Json::array({{{"radius", 1}}});
-    document["fluid"]["thermal_energy"] = 0;
+    Json document = small_scene({{"particles", {{"density", density}, {"species", {{{"radius", 1}}}}}},
+                                 {"fluid", {{"thermal_energy", 0}}}});
     document["flow"] = {{"oscillation", {{"amplitude", 1e-3}, {"frequency", 3}}}};
     document["integrator"] = {{"method", "implicit"}};
     document["duration"] = {{"equilibration", {{"cycles", 1}}}, {"production", {{"cycles", 1}}}};
-    std::vector<std::string> found;
-    for (const Warning& warning : scene_warnings(read_scene(document, "scene.json")))
-      found.push_back(warning.code);
-    return found;
+    return warning_codes(read_scene(document, "scene.json"));
   };
-  EXPECT_EQ(codes(0.01), std::vector<std::string>{"inertia-shear"});
-  EXPECT_EQ(codes(0.003), std::vector<std::string>{});
+  EXPECT_EQ(codes(0.01), Codes{"inertia-shear"});
+  EXPECT_EQ(codes(0.003), Codes{});
 }
 
 TEST(SceneWarnings, InertiaIsReportedFromTheBoundOn) {
-  using Codes = std::vector<std::string>;
   EXPECT_EQ(warning_codes(scene_of(0.009, 0.0169)), Codes{});
   EXPECT_EQ(warning_codes(scene_of(0.009, 0.017)), Codes{"inertia-thermal"});  // 0.17, as published
   EXPECT_EQ(warning_codes(scene_of(0.0999, 0)), Codes{});
@@ -138,27 +135,22 @@ TEST(WarningsBeforeRun, DenserThanARandomPackingIsSaid) {
     return found.empty() ? "" : found.front().code + ": " + found.front().message;
   };
   EXPECT_EQ(text(0.63), "");
-  EXPECT_NE(
-      text(0.66).find("packing: random packings of these spheres reach a volume fraction of about 0.647"),
-      std::string::npos)
-      << text(0.66);
+  EXPECT_TRUE(contains(text(0.66),
+                       "packing: random packings of these spheres reach a volume fraction of about 0.647"));
 }
 
 TEST(WarningsBeforeRun, SoftSpheresAreSaid) {
   const auto codes = [](double stiffness) {  // viscosity times radius times rate: 0.2
-    std::vector<std::string> found;
     const Json scene = small_scene({{"contact", {{"normal_stiffness", stiffness}}}});
-    for (const Warning& warning : warnings_before_run(read_scene(scene, "scene.json")))
-      found.push_back(warning.code);
-    return found;
+    return codes_of(warnings_before_run(read_scene(scene, "scene.json")));
   };
-  EXPECT_EQ(codes(40), std::vector<std::string>{"soft"});
-  EXPECT_EQ(codes(2e3), std::vector<std::string>{});
+  EXPECT_EQ(codes(40), Codes{"soft"});
+  EXPECT_EQ(codes(2e3), Codes{});
 }
 
 TEST(SceneWarnings, MessagesGiveTheNumbers) {
-  const std::string message = scene_warnings(scene_of(0.25, 0)).at(0).message;
-  EXPECT_NE(message.find("tau_I / tau_S = 0.25 (tau_I = 1, tau_S = 4)"), std::string::npos) << message;
+  EXPECT_TRUE(contains(scene_warnings(scene_of(0.25, 0)).at(0).message,
+                       "tau_I / tau_S = 0.25 (tau_I = 1, tau_S = 4)"));
 }
 
 }  // namespace

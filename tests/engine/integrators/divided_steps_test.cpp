@@ -1,15 +1,13 @@
 // Implicit steps that are divided where spheres would move too far.
 #include <gtest/gtest.h>
 
-#include <bit>
-#include <cmath>
 #include <limits>
 #include <numbers>
-#include <vector>
 
 #include "engine/integrators/midpoint.h"
 #include "engine/realisation/schedule.h"
 #include "tests/engine/dense_suspension.h"
+#include "tests/engine/few_spheres.h"
 #include "tests/engine/pair_evaluation.h"
 
 namespace peclet::engine {
@@ -24,9 +22,7 @@ struct Flight {
   explicit Flight(double stiffness) {
     physics.viscosity = 1e-9;
     physics.contact = ContactParameters{.normal_stiffness = stiffness};
-    system.particles = make_particles({1, 1}, 0.1);
-    system.box = PeriodicCell({20, 20, 20}, simple_shear(0));
-    system.list = NeighbourList(range_table(make_pair_kinds(physics, {1}), 1), 0.1);
+    system = spheres_in({20, 20, 20}, physics, {1, 1});
     system.particles.position.set(0, {5, 5, 5});
     system.particles.position.set(1, {12, 5, 5});
   }
@@ -181,10 +177,7 @@ TEST(DividedSteps, FollowThePathOfTheNoise) {
   physics.viscosity = 0.1;
   physics.thermal_energy = 0.01;
   const auto end = [&](double longest_way, StepReport& report) {
-    System system;
-    system.particles = make_particles({1}, 1e-9);
-    system.box = PeriodicCell({20, 20, 20}, simple_shear(0));
-    system.list = NeighbourList(range_table(make_pair_kinds(physics, {1}), 1), 0.1);
+    System system = spheres_in({20, 20, 20}, physics, {1}, 1e-9);
     const std::unique_ptr<Implicit> steps = implicit_steps(physics, system.particles, 0.5, solved_to, 1, 1);
     steps->start(system);
     if (longest_way > 0) steps->divide_steps(longest_way);

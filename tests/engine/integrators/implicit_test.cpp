@@ -6,11 +6,9 @@
 #include "engine/integrators/midpoint.h"
 #include "engine/integrators/noisy_midpoint.h"
 #include "engine/integrators/stability.h"
-#include "engine/integrators/velocity_verlet.h"
-#include "engine/observables/scene_reading.h"
-#include "engine/realisation/simulation.h"
 #include "tests/engine/dense_suspension.h"
-#include "tests/engine/small_scene.h"
+#include "tests/engine/few_spheres.h"
+#include "tests/engine/realisation/small_result.h"
 
 namespace peclet::engine {
 namespace {
@@ -18,15 +16,7 @@ namespace {
 using std::numbers::pi;
 
 constexpr double tight = 1e-5;
-
-System system_of(const Physics& physics, const std::vector<double>& radius, double density, double edge) {
-  System system;
-  system.particles = make_particles(radius, density);
-  system.box = PeriodicCell({edge, edge, edge}, simple_shear(physics.flow.rate()));
-  const std::vector<double> sizes = distinct_radii(radius);
-  system.list = NeighbourList(range_table(make_pair_kinds(physics, sizes), sizes.size()), 0.1);
-  return system;
-}
+constexpr Vector3 cube_of_20 = {20, 20, 20};
 
 // m (V - V_n) = dt zeta (U - V): velocities relax to the flow's by 1 / (1 + dt zeta / m) a step.
 TEST(Implicit, SpheresRelaxToTheStreamingFlow) {
@@ -34,7 +24,7 @@ TEST(Implicit, SpheresRelaxToTheStreamingFlow) {
   physics.viscosity = 0.1;
   physics.flow = steady_shear(0.01);
   for (const double decay : {0.01, 1.0, 10.0}) {
-    System system = system_of(physics, {1.4}, 0.1, 20);
+    System system = spheres_in(cube_of_20, physics, {1.4});
     system.particles.position.set(0, {5, 12, 5});
     system.particles.velocity.set(0, {0.12, 0, 0.01});
     system.particles.angular_velocity.set(0, {0.01, 0, -0.005});
@@ -42,9 +32,8 @@ TEST(Implicit, SpheresRelaxToTheStreamingFlow) {
     const double spin_rate = 8 * pi * 0.1 * std::pow(1.4, 3) / (0.4 * m * 1.4 * 1.4);
     const double step = decay / rate, first = system.particles.velocity[0].z;
     Midpoint integrator(physics, system.particles, step, tight, 1, 1);
-    integrator.start(system);
     constexpr int steps = 3;
-    for (int k = 0; k < steps; ++k) integrator.advance(system);
+    start_and_advance(integrator, system, steps);
     const ParticleState& p = system.particles;
     // Each step may leave a residual of `tight`.
     EXPECT_NEAR(p.velocity[0].z / first * std::pow(1 + decay, steps), 1, 10 * tight) << decay;
@@ -60,7 +49,7 @@ Vector3 end_of_pair(Physics physics, const Vector3& first_place, const Vector3& 
                     int steps, double tolerance) {
   physics.viscosity = 0.1;
   if (!physics.flow.varies()) physics.flow = steady_shear(1);
-  System system = system_of(physics, {1, 1.4}, 1e-6, 30);
+  System system = spheres_in({30, 30, 30}, physics, {1, 1.4}, 1e-6);
   system.particles.position.set(0, first_place);
   system.particles.position.set(1, second_place);
   for (const std::size_t i : {0U, 1U}) {
@@ -68,8 +57,7 @@ Vector3 end_of_pair(Physics physics, const Vector3& first_place, const Vector3& 
     system.particles.angular_velocity.set(i, {0, 0, -0.5});
   }
   Midpoint integrator(physics, system.particles, time / steps, tolerance, 1, 1);
-  integrator.start(system);
-  for (int k = 0; k < steps; ++k) integrator.advance(system);
+  start_and_advance(integrator, system, steps);
   const ParticleState& p = system.particles;
   const std::size_t first = p.id[0] == 0 ? 0 : 1;
   return p.position[1 - first] - p.position[first];
@@ -81,27 +69,30 @@ Vector3 end_of_encounter(const Physics& physics, int steps) {
   return end_of_pair(physics, {10, 3, 15}, {8.2, 4.9, 15.9}, 1.2, steps, 1e-6);
 }
 
-void expect_second_order(const Physics& physics) {
-  const Vector3 exact = end_of_encounter(physics, 960);
-  ASSERT_LT(norm(exact), 2.4 * 1.45);  // still within the range
-  double coarse = norm(end_of_encounter(physics, 15) - exact);
-  for (const int steps : {30, 60, 120}) {
-    const double fine = norm(end_of_encounter(physics, steps) - exact);
-    EXPECT_NEAR(std::log2(coarse / fine), 2, 0.1) << steps;
+// Expects errors of second order; end(steps) is compared with `exact`, which must be nearer than `range`.
+template <class End>
+void expect_second_order(const End& end, const Vector3& exact, double range, int steps, double tolerance) {
+  ASSERT_LT(norm(exact), range);
+  double coarse = norm(end(steps) - exact);
+  for (const int factor : {2, 4, 8}) {
+    const double fine = norm(end(factor * steps) - exact);
+    EXPECT_NEAR(std::log2(coarse / fine), 2, tolerance) << factor * steps;
     coarse = fine;
   }
 }
 
 // The second case has strain rates that vary in space.
 TEST(Implicit, IsOfSecondOrderForAnEncounter) {
-  Physics physics;
-  physics.lubrication = LubricationParameters{1e-3, 0.9};
-  expect_second_order(physics);
-  physics.lubrication = LubricationParameters{
+  Physics lubricated, strained;
+  lubricated.lubrication = LubricationParameters{1e-3, 0.9};
+  strained.lubrication = LubricationParameters{
       .inner_gap = 1e-3, .form = LubricationParameters::Form::mari, .outer_distance = 1.08};
-  physics.flow = ImposedFlow(std::make_shared<SteadyShear>(0.7),
-                             std::make_shared<Waves>(std::vector<Wave>{{2, 0.5, 0.3}}, true));
-  expect_second_order(physics);
+  strained.flow = ImposedFlow(std::make_shared<SteadyShear>(0.7),
+                              std::make_shared<Waves>(std::vector<Wave>{{2, 0.5, 0.3}}, true));
+  for (const Physics& physics : {lubricated, strained}) {
+    const auto end = [&](int steps) { return end_of_encounter(physics, steps); };
+    expect_second_order(end, end(960), 2.4 * 1.45, 15, 0.1);  // still within the range
+  }
 }
 
 // Returns the separation of two spheres that stick while the flow turns and presses them.
@@ -115,14 +106,7 @@ Vector3 end_of_contact(int steps) {
 
 // Springs act at 0.6 of their advance; the first-order error of that shows only at smaller steps.
 TEST(Implicit, IsNearlyOfSecondOrderForSpheresThatStick) {
-  const Vector3 exact = end_of_contact(5120);
-  ASSERT_LT(norm(exact), 2.4);  // still in contact
-  double coarse = norm(end_of_contact(10) - exact);
-  for (const int steps : {20, 40, 80}) {
-    const double fine = norm(end_of_contact(steps) - exact);
-    EXPECT_NEAR(std::log2(coarse / fine), 2, 0.15) << steps;
-    coarse = fine;
-  }
+  expect_second_order(end_of_contact, end_of_contact(5120), 2.4, 10, 0.15);  // still in contact
 }
 
 // A sheared packing with friction: implicit steps give the stress of explicit steps of a five hundredth.
@@ -160,9 +144,8 @@ TEST_P(AgainstExplicit, TheStressIsTheSame) {
   const auto stress = [&](const char* method) {
     document["integrator"]["method"] = method;
     const Scene scene = read_scene(document, "scene.json");
-    const Schedule schedule = make_schedule(scene, "scene.json");
-    Simulation simulation(scene, schedule, 4, 1, "scene.json");
-    simulation.start();
+    Simulation simulation = started(scene, 4);
+    const Schedule& schedule = simulation.schedule();
     EXPECT_EQ(simulation.advance(schedule.total())->cause, Ending::Cause::completed);
     double sum = 0, steps = 0;
     for (const BlockSums& block : simulation.production().blocks()) {
@@ -238,12 +221,11 @@ TEST(Implicit, StrainAfterNStepsIsNTimesRateAndStep) {
   physics.flow = steady_shear(0.7);
   for (const double thermal_energy : {0.0, 1e-6}) {
     physics.thermal_energy = thermal_energy;
-    System system = system_of(physics, {1}, 0.1, 20);
-    const std::unique_ptr<Implicit> method = implicit_steps(physics, system.particles, 0.01, tight, 1, 1);
-    Implicit& integrator = *method;
-    integrator.start(system);
+    System system = spheres_in(cube_of_20, physics, {1});
+    const auto integrator = implicit_steps(physics, system.particles, 0.01, tight, 1, 1);
+    integrator->start(system);
     for (int n = 1; n <= 5; ++n) {
-      integrator.advance(system);
+      integrator->advance(system);
       EXPECT_NEAR(system.box.strain(), n * 0.7 * 0.01, 1e-15) << n;
     }
   }
@@ -251,30 +233,23 @@ TEST(Implicit, StrainAfterNStepsIsNTimesRateAndStep) {
 
 // Iterations end below the tolerance; smooth packings never reach the limit of iterations.
 TEST(Implicit, LeavesNoLargerResidualThanItsTolerance) {
-  const Json document = small_scene(
-      {{"particles", {{"count", 100}}},
-       {"fluid", {{"thermal_energy", 0}}},
-       {"repulsion", nullptr},
-       {"lubrication", {{"inner_gap", 1e-3}, {"outer_gap", 0.5}}},
-       {"contact", {{"friction", nullptr}, {"rolling_stiffness", nullptr}, {"rolling_friction", nullptr}}},
-       {"integrator", {{"method", "implicit"}, {"timestep", "auto"}}}});
-  const Scene scene = read_scene(document, "scene.json");
+  const Scene scene = scene_from(together({without_friction, Json::parse(R"({
+      "particles": {"count": 100}, "fluid": {"thermal_energy": 0}, "repulsion": null,
+      "lubrication": {"inner_gap": 1e-3, "outer_gap": 0.5},
+      "integrator": {"method": "implicit", "timestep": "auto"}})")}));
   constexpr double tolerance = 1e-3;
-  Simulation simulation(scene, make_schedule(scene, "scene.json"), 3, 1, "scene.json");
-  simulation.start();
+  const Simulation simulation = started(scene, 3);
   System system = simulation.system();
   Midpoint integrator(scene.physics, system.particles, automatic_timestep(scene), tolerance, 1, 1);
   integrator.start(system);
-  for (int step = 0; step < 200; ++step) {
+  for (int step = 0; step < 200; ++step)
     EXPECT_LE(integrator.advance(system).solver_residual, tolerance) << step;
-  }
 }
 
 // Steps on copies of the system: the steps that it will take, and steps of half the size.
 TEST(Implicit, ComparesStepsWithHalfSteps) {
-  Json document = small_scene(
+  const Scene scene = scene_from(
       {{"fluid", {{"thermal_energy", 0}}}, {"integrator", {{"method", "implicit"}, {"timestep", "auto"}}}});
-  const Scene scene = read_scene(document, "scene.json");
   const double step = 4 * automatic_timestep(scene);
   Simulation simulation(scene, {step, 200, 200}, 1, 1, "scene.json");
   simulation.start();
@@ -302,15 +277,14 @@ TEST(Implicit, ReportsTheLargestDisplacementRelativeToTheFlow) {
   physics.flow = steady_shear(100);
   for (const double thermal_energy : {0.0, 1e-30}) {
     physics.thermal_energy = thermal_energy;
-    System system = system_of(physics, {1, 1}, 0.1, 20);
+    System system = spheres_in(cube_of_20, physics, {1, 1});
     system.particles.position.set(0, {5, 15, 5});
     system.particles.velocity.set(0, {1500, 0, 0});  // at rest in the flow
     system.particles.position.set(1, {5, 5, 5});
     system.particles.velocity.set(1, {503, 4, 12});
-    const std::unique_ptr<Implicit> method = implicit_steps(physics, system.particles, 1e-3, tight, 1, 1);
-    Implicit& integrator = *method;
-    integrator.start(system);
-    EXPECT_NEAR(integrator.advance(system).largest_displacement, 0.013, 1e-6) << thermal_energy;
+    const auto integrator = implicit_steps(physics, system.particles, 1e-3, tight, 1, 1);
+    integrator->start(system);
+    EXPECT_NEAR(integrator->advance(system).largest_displacement, 0.013, 1e-6) << thermal_energy;
   }
 }
 
@@ -326,16 +300,15 @@ TEST(Implicit, StretchesSpringsOnceAStep) {
   constexpr int steps = 4;
   for (const double thermal_energy : {0.0, 1e-30}) {
     physics.thermal_energy = thermal_energy;
-    System system = system_of(physics, {1, 1.4}, 1e6, 20);
+    System system = spheres_in(cube_of_20, physics, {1, 1.4}, 1e6);
     system.particles.position.set(0, {10, 10, 10});
     system.particles.position.set(1, {12.39, 10, 10});
     system.particles.velocity.set(1, {0, 0, slip});
-    const std::unique_ptr<Implicit> method = implicit_steps(physics, system.particles, step, 1e-3, 1, 1);
-    Implicit& integrator = *method;
-    integrator.start(system);
+    const auto integrator = implicit_steps(physics, system.particles, step, 1e-3, 1, 1);
+    integrator->start(system);
     for (int k = 0; k < steps; ++k) {
       const double push = 300 * step * slip * (k + (thermal_energy > 0 ? 1 : 0.6));
-      const StepReport report = integrator.advance(system);
+      const StepReport report = integrator->advance(system);
       EXPECT_NEAR(report.sums.of(StressTerm::friction).xz / (0.5 * 2.39 * push), 1, 1e-3) << thermal_energy;
     }
     const std::vector<HeldContact> held = held_contacts(system.list, system.particles, system.springs);

@@ -11,11 +11,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/integrators/implicit.h"
-#include "engine/integrators/velocity_verlet.h"
 #include "engine/kernels/pair_pass.h"
 #include "tests/engine/available_sets.h"
+#include "tests/engine/components.h"
 #include "tests/engine/draws.h"
+#include "tests/engine/few_spheres.h"
 
 namespace peclet::engine {
 namespace {
@@ -36,11 +36,9 @@ Physics cluster_physics() {
 
 // Returns spheres on a slightly disturbed grid, with contacts and gaps.
 System cluster(const Physics& physics, double density) {
-  System system;
   std::vector<double> radius(sphere_count);
   for (std::size_t i = 0; i < sphere_count; ++i) radius[i] = i % 2 == 0 ? 1 : 1.4;
-  system.particles = make_particles(radius, density);
-  system.box = PeriodicCell({40, 40, 40}, simple_shear(0));
+  System system = spheres_in({40, 40, 40}, physics, radius, density);
   Draws draws(3);
   for (std::size_t i = 0; i < sphere_count; ++i) {
     const std::size_t column = i % 3, row = i / 3 % 3, layer = i / 9;
@@ -49,8 +47,6 @@ System cluster(const Physics& physics, double density) {
     system.particles.velocity.set(i, draws.vector(0.1));
     system.particles.angular_velocity.set(i, draws.vector(0.1));
   }
-  const std::vector<double> sizes = distinct_radii(radius);
-  system.list = NeighbourList(range_table(make_pair_kinds(physics, sizes), sizes.size()), 0.1);
   return system;
 }
 
@@ -95,9 +91,8 @@ SymmetricTensor gained(const Motion& before, const Motion& after, std::uint64_t 
 }
 
 double largest_difference(const SymmetricTensor& a, const SymmetricTensor& b) {
-  const SymmetricTensor d = a + -1.0 * b;
   double largest = 0;
-  for (const double part : {d.xx, d.yy, d.zz, d.xy, d.xz, d.yz}) largest = std::max(largest, std::abs(part));
+  for (const auto part : every_component) largest = std::max(largest, std::abs(a.*part - b.*part));
   return largest;
 }
 
@@ -176,7 +171,7 @@ TEST(MomentumFlux, OfVelocityVerletIsTheStressAndTheMotion) {
   const Physics physics = cluster_physics();
   System system = cluster(physics, usual_density);
   constexpr double dt = 1e-4;
-  VelocityVerlet integrator(ForceField(physics, system.particles, dt, noise_seed, 1), system.particles, dt);
+  VelocityVerlet integrator = explicit_steps(physics, system, dt, noise_seed);
   integrator.start(system);
   for (int step = 0; step < 5; ++step) {
     const Motion before = motion_of(system);
@@ -197,7 +192,7 @@ TEST(MomentumFlux, HasConservativeAndDissipativeParts) {
   const Physics physics = cluster_physics();
   System system = cluster(physics, usual_density);
   constexpr double dt = 1e-4;
-  VelocityVerlet integrator(ForceField(physics, system.particles, dt, noise_seed, 1), system.particles, dt);
+  VelocityVerlet integrator = explicit_steps(physics, system, dt, noise_seed);
   integrator.start(system);
   const StepReport report = integrator.advance(system);
   const MomentumFlux flux = flux_of(report.sums, report.motion);

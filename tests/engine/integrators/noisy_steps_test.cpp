@@ -6,7 +6,8 @@
 #include <numbers>
 
 #include "engine/integrators/noisy_midpoint.h"
-#include "engine/integrators/velocity_verlet.h"
+#include "tests/engine/components.h"
+#include "tests/engine/few_spheres.h"
 
 namespace peclet::engine {
 namespace {
@@ -17,15 +18,7 @@ using std::numbers::pi;
 constexpr double cold = 1e-30;
 constexpr double very_tight = 1e-6;
 constexpr double viscosity = 0.1;
-
-System system_of(const Physics& physics, const std::vector<double>& radius, double density) {
-  System system;
-  system.particles = make_particles(radius, density);
-  system.box = PeriodicCell({30, 30, 30}, simple_shear(physics.flow.rate()));
-  const std::vector<double> sizes = distinct_radii(radius);
-  system.list = NeighbourList(range_table(make_pair_kinds(physics, sizes), sizes.size()), 0.1);
-  return system;
-}
+constexpr Vector3 wide = {30, 30, 30};
 
 // Two spheres of radii 1 and 1.4 on a line, the smaller one on the left.
 struct OnALine {
@@ -172,7 +165,7 @@ OnALine line_of(const NamedPair& given, const ParticleState& particles) {
 
 TEST(NoisyStep, OfTwoSpheresOnALineIsThatOfItsEquations) {
   for (const NamedPair& given : pairs_on_a_line()) {
-    System system = system_of(given.physics, {1, 1.4}, given.density);
+    System system = spheres_in(wide, given.physics, {1, 1.4}, given.density);
     system.particles.position.set(0, {10, 15, 15});
     system.particles.position.set(1, {10 + OnALine::sum + given.h, 15, 15});
     system.particles.velocity.set(1, {given.closing, 0, 0});
@@ -209,7 +202,7 @@ TEST(NoisyStep, HasTheStressOfItsNoiseWhereItWasDrawn) {
   physics.viscosity = viscosity;
   physics.thermal_energy = 0.02;
   physics.lubrication = LubricationParameters{1e-3, 0.9};
-  System system = system_of(physics, {1, 1.4}, 10);
+  System system = spheres_in(wide, physics, {1, 1.4}, 10);
   const Vector3 r = {1.5, -1.6, 1.4};  // |r| = 2.6
   system.particles.position.set(0, {10, 15, 15});
   system.particles.position.set(1, Vector3{10, 15, 15} + r);
@@ -233,13 +226,7 @@ TEST(NoisyStep, HasTheStressOfItsNoiseWhereItWasDrawn) {
   const Vector3 force = c * (std::sqrt(squeeze) * along * n + std::sqrt(shear) * (theta - along * n));
   const SymmetricTensor expected = symmetric_dyad(r, force);
   const SymmetricTensor found = integrator.advance(system).sums.of(StressTerm::brownian_lubrication);
-  const double scale = norm(r) * norm(force);
-  EXPECT_NEAR(found.xx, expected.xx, 1e-9 * scale);
-  EXPECT_NEAR(found.yy, expected.yy, 1e-9 * scale);
-  EXPECT_NEAR(found.zz, expected.zz, 1e-9 * scale);
-  EXPECT_NEAR(found.xy, expected.xy, 1e-9 * scale);
-  EXPECT_NEAR(found.xz, expected.xz, 1e-9 * scale);
-  EXPECT_NEAR(found.yz, expected.yz, 1e-9 * scale);
+  expect_near(found, expected, 1e-9 * norm(r) * norm(force));
 }
 
 Vector3 difference(const VectorField& rows, const ParticleState& particles) {
@@ -283,14 +270,13 @@ std::vector<Encounter> encounters() {
 double followed(const Physics& physics, System& system, double time) {
   // The step is a hundredth of the drag's decay time of the smaller sphere, and a small part of m / X_A.
   const int steps = static_cast<int>(std::lround(time * viscosity * 240 / system.particles.mass[0]));
-  VelocityVerlet integrator(ForceField(physics, system.particles, time / steps, 1, 1), system.particles,
-                            time / steps);
+  VelocityVerlet integrator = explicit_steps(physics, system, time / steps);
   return mean_stress(integrator, system, steps);
 }
 
 // Returns the pair with the velocities of its forces; other initial velocities are a first-order error.
 System placed(const Encounter& encounter) {
-  System system = system_of(encounter.physics, {1, 1.4}, encounter.density);
+  System system = spheres_in(wide, encounter.physics, {1, 1.4}, encounter.density);
   system.particles.position.set(0, encounter.first);
   system.particles.position.set(1, encounter.second);
   followed(encounter.physics, system, 0.01);

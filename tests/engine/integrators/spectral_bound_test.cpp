@@ -8,9 +8,9 @@
 #include <numbers>
 
 #include "engine/kernels/force_field.h"
-#include "engine/realisation/packing.h"
 #include "tests/engine/dense_suspension.h"
 #include "tests/engine/every_image.h"
+#include "tests/engine/few_spheres.h"
 #include "tests/engine/linear_algebra.h"
 
 namespace peclet::engine {
@@ -109,9 +109,7 @@ class StiffnessByExtensions {
 Dense stiffness_by_extensions(const System& system, const Physics& physics) {
   const ParticleState& particles = system.particles;
   StiffnessByExtensions sum(particles);
-  const auto range = [&](std::uint32_t i, std::uint32_t j) {
-    return 1.1 * (particles.radius[i] + particles.radius[j]);
-  };
+  const auto range = [&](auto i, auto j) { return 1.1 * (particles.radius[i] + particles.radius[j]); };
   for (const SeenPair& pair :
        every_image(particles.position, system.box.lengths(), system.box.tilt(), range)) {
     const double first = particles.radius[pair.first], second = particles.radius[pair.second];
@@ -161,18 +159,14 @@ TEST(PackingMatrix, ResistanceIsWhatForcesLoseToUnitMotions) {
 }
 
 TEST(PackingMatrix, StiffnessIsThatOfTheSpringsExtensions) {
-  const Physics physics = physics_with(every_term);
-  const System system = dense_suspension(physics, count, 3);
-  const PackingMatrix matrix(system, kinds_of(system, physics), physics, {0, 1});
-  expect_equal(dense(matrix), stiffness_by_extensions(system, physics));
-}
-
-TEST(PackingMatrix, StiffnessOfAttractionIsThatOfTurningPairs) {
-  Physics physics = physics_with(every_term);
-  physics.attraction = AttractionParameters{.hamaker = 3, .regularisation = 0.01, .cutoff = 0.1};
-  const System system = dense_suspension(physics, count, 3);
-  const PackingMatrix matrix(system, kinds_of(system, physics), physics, {0, 1});
-  expect_equal(dense(matrix), stiffness_by_extensions(system, physics));
+  const Physics repelling = physics_with(every_term);
+  Physics attracting = repelling;  // pairs that turn
+  attracting.attraction = AttractionParameters{.hamaker = 3, .regularisation = 0.01, .cutoff = 0.1};
+  for (const Physics& physics : {repelling, attracting}) {
+    const System system = dense_suspension(physics, count, 3);
+    const PackingMatrix matrix(system, kinds_of(system, physics), physics, {0, 1});
+    expect_equal(dense(matrix), stiffness_by_extensions(system, physics));
+  }
 }
 
 // Iterations may converge to an eigenvalue just below the largest: an upper estimate up to 1 % too low.
@@ -196,15 +190,13 @@ TEST(SpectralBound, IsTheLargestOfAllEigenvalues) {
 // With stiff tangential springs at levers l and inertia 2/5 m a^2: (2 + 5 l^2 / a^2) k_t / m.
 TEST(SpectralBound, OfOnePairIsItsAnalyticRate) {
   constexpr double overlap = 1e-3;
-  System system;
-  system.particles = make_particles({1, 1}, 0.1);
-  system.box = PeriodicCell({20, 20, 20}, Matrix3{});
-  system.particles.position.set(0, {9, 9, 9});
-  system.particles.position.set(1, {9 + (2 - overlap) * 0.6, 9, 9 + (2 - overlap) * 0.8});
   Physics physics;
   physics.viscosity = 0.1;
   physics.contact = ContactParameters{.normal_stiffness = 1e4};
   physics.lubrication = LubricationParameters{.inner_gap = 1e-3, .outer_gap = 0.05};
+  System system = spheres_in({20, 20, 20}, physics, {1, 1});
+  system.particles.position.set(0, {9, 9, 9});
+  system.particles.position.set(1, {9 + (2 - overlap) * 0.6, 9, 9 + (2 - overlap) * 0.8});
   const auto largest = [&](const MatrixWeights& weights) {
     const std::vector<PairKind> kinds = kinds_of(system, physics);
     system.list = NeighbourList(range_table(kinds, 1), 0.1);
@@ -266,12 +258,10 @@ TEST(SpectralBound, OfAMatrixThatIsNotFiniteIsNotANumber) {
 }
 
 TEST(SpectralBound, OfSpheresWithoutNeighboursIsTheirDrag) {
-  System system;
-  system.particles = make_particles({1, 1.4}, 0.1);
-  system.box = PeriodicCell({20, 20, 20}, Matrix3{});
-  system.particles.position.set(1, {9, 9, 9});
   Physics physics;
   physics.viscosity = 0.1;
+  System system = spheres_in({20, 20, 20}, physics, {1, 1.4});
+  system.particles.position.set(1, {9, 9, 9});
   const double spin = 8 * pi * 0.1 / (0.4 * 4 * pi / 3 * 0.1);  // of the smaller sphere
   EXPECT_NEAR(largest_eigenvalue(PackingMatrix(system, {}, physics, {1, 0})).value, spin, 1e-12 * spin);
   EXPECT_EQ(largest_eigenvalue(PackingMatrix(system, {}, physics, {0, 1})).upper(), 0);

@@ -6,11 +6,11 @@
 #include <numbers>
 
 #include "contract/errors.h"
-#include "engine/integrators/velocity_verlet.h"
 #include "engine/observables/scene_reading.h"
 #include "engine/observables/structure.h"
 #include "engine/realisation/packing.h"
 #include "tests/engine/draws.h"
+#include "tests/engine/few_spheres.h"
 
 namespace peclet::engine {
 namespace {
@@ -47,16 +47,23 @@ double root(double w2, double l) {
   return low;
 }
 
+// Returns the damping rate and the largest stable step of a pair of these spheres, whose X_A is `resistance`
+// in units of the drag. The factor for the densest packings is 2.8.
+double damping_of_pair(double radius, double resistance) {
+  return 6 * pi * 0.1 * radius * (2 * resistance + 1) / (4 * pi / 3 * 0.1 * std::pow(radius, 3));
+}
+double largest_of_pair(double radius, double resistance) {
+  const double frequency_squared = 2 * 1e4 / (4 * pi / 3 * 0.1 * std::pow(radius, 3));
+  return root(2.8 * frequency_squared, 2.8 * damping_of_pair(radius, resistance));
+}
+
 // Two of the smallest spheres set the step: X_A = 251.55 * 6 pi eta a at the inner gap (published), both
-// masses 0.4189. The factor for the densest packings is 2.8.
+// masses 0.4189.
 TEST(Stability, StepOfThePublishedSceneIsTheRootOfItsStiffestPair) {
   const Scene scene = scene_with(Json::object());
-  const double mass = 4 * pi / 3 * 0.1, drag = 6 * pi * 0.1;
-  const double damping = 2 * 251.55 * drag / mass + drag / mass, frequency_squared = 2 * 1e4 / mass;
-  EXPECT_NEAR(damping, 2264 + 4.5, 1);
-  const double largest = root(2.8 * frequency_squared, 2.8 * damping);
-  EXPECT_NEAR(largest_timestep(scene) / largest, 1, 1e-4);
-  EXPECT_NEAR(automatic_timestep(scene) / largest, 0.5, 1e-4);
+  EXPECT_NEAR(damping_of_pair(1, 251.55), 2264 + 4.5, 1);
+  EXPECT_NEAR(largest_timestep(scene) / largest_of_pair(1, 251.55), 1, 1e-4);
+  EXPECT_NEAR(automatic_timestep(scene) / largest_of_pair(1, 251.55), 0.5, 1e-4);
   EXPECT_NEAR(automatic_timestep(scene), 1.57e-4, 0.005e-4);
   EXPECT_EQ(resolved_timestep(scene, "scene.json"), automatic_timestep(scene));
 }
@@ -66,9 +73,7 @@ TEST(Stability, StepOfThePublishedSceneIsTheRootOfItsStiffestPair) {
 TEST(Stability, StepIsOfTheLightestPairForItsResistance) {
   const Scene scene = scene_with(Json::parse(R"({"particles": {"species": [
       {"radius": 1, "volume_share": 1, "density": 0.4}, {"radius": 1.4, "volume_share": 1}]}})"));
-  const double mass = 4 * pi / 3 * 0.1 * 2.744, drag = 6 * pi * 0.1 * 1.4;
-  const double damping = 2 * 251.55 * drag / mass + drag / mass, frequency_squared = 2 * 1e4 / mass;
-  EXPECT_NEAR(largest_timestep(scene) / root(2.8 * frequency_squared, 2.8 * damping), 1, 1e-4);
+  EXPECT_NEAR(largest_timestep(scene) / largest_of_pair(1.4, 251.55), 1, 1e-4);
 }
 
 // A strain of 0.01 over 1 + 2 St, St = rho_i a_i^2 rate / eta of the densest species here, not the largest.
@@ -90,9 +95,7 @@ TEST(Stability, ImplicitStepKnowsTheInertiaOfEachSpecies) {
 TEST(Stability, StepOfLubricationRelativeToTheFlowIsThatOfItsRegularisation) {
   const Scene scene =
       scene_with({{"lubrication", {{"form", "mari"}, {"regularisation", 2e-3}, {"outer_distance", 0.2}}}});
-  const double mass = 4 * pi / 3 * 0.1, drag = 6 * pi * 0.1;
-  const double damping = 2 * 125 * drag / mass + drag / mass, frequency_squared = 2 * 1e4 / mass;
-  EXPECT_NEAR(automatic_timestep(scene) / (0.5 * root(2.8 * frequency_squared, 2.8 * damping)), 1, 1e-10);
+  EXPECT_NEAR(automatic_timestep(scene) / (0.5 * largest_of_pair(1, 125)), 1, 1e-10);
 }
 
 TEST(Stability, AGivenStepUpToTheBoundIsTakenAsItIs) {
@@ -144,11 +147,8 @@ class PressedPacking {
  public:
   explicit PressedPacking(const Scene& scene) : scene_(scene) {
     const std::vector<double> radius = species_radii(scene.particles);
-    const std::vector<double> sizes = distinct_radii(radius);
     const double edge = cube_edge(radius, scene.volume_fraction);
-    system_.particles = make_particles(radius, scene.particles.density);
-    system_.box = PeriodicCell({edge, edge, edge}, Matrix3{});
-    system_.list = NeighbourList(range_table(make_pair_kinds(scene.physics, sizes), sizes.size()), 0.1);
+    system_ = spheres_in({edge, edge, edge}, scene.physics, radius, scene.particles.density);
     place_randomly(system_.particles, system_.box, 1);
     constexpr double pressed = 0.995;
     for (std::size_t i = 0; i < radius.size(); ++i) {
@@ -174,8 +174,7 @@ class PressedPacking {
 
  private:
   bool run(System& system, double timestep, int steps) const {
-    VelocityVerlet integrator(ForceField(scene_.physics, system.particles, timestep, 1, 1), system.particles,
-                              timestep);
+    VelocityVerlet integrator = explicit_steps(scene_.physics, system, timestep);
     integrator.start(system);
     for (int step = 0; step < steps; ++step) {
       if (!(integrator.advance(system).largest_displacement < 0.05)) return false;

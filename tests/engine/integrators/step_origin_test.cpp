@@ -1,10 +1,8 @@
 // Restoring the beginning of a step, across steps that rebuild the neighbour list.
 #include <gtest/gtest.h>
 
-#include "engine/integrators/implicit.h"
-#include "engine/integrators/integrator.h"
-#include "engine/integrators/velocity_verlet.h"
 #include "tests/engine/dense_suspension.h"
+#include "tests/engine/few_spheres.h"
 
 namespace peclet::engine {
 namespace {
@@ -38,13 +36,7 @@ TEST_P(Marked, StateIsTheSameAfterTheWayBackAndSoAreStepsFromThere) {
   physics.thermal_energy = thermal_energy;
   System system = dense_suspension(physics, 200, 7);
   const double timestep = is_implicit ? 0.01 : 1e-4;
-  std::unique_ptr<Integrator> integrator;
-  if (is_implicit) {
-    integrator = implicit_steps(physics, system.particles, timestep, 1e-3, 5, 1);
-  } else {
-    integrator = std::make_unique<VelocityVerlet>(ForceField(physics, system.particles, timestep, 5, 1),
-                                                  system.particles, timestep);
-  }
+  const auto integrator = steps_of_method(is_implicit, physics, system, timestep, 1e-3, /*of_seed=*/5);
   integrator->start(system);
   bool was_rebuilt = false;
   for (int round = 0; round < 4; ++round) {

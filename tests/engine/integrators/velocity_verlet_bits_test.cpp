@@ -30,14 +30,18 @@ System after_steps(InstructionSet set, int threads, Look&& look) {
   return system;
 }
 
+void expect_same_motion(const System& one, const System& other) {
+  EXPECT_EQ(one.particles.position, other.particles.position);
+  EXPECT_EQ(one.particles.velocity, other.particles.velocity);
+  EXPECT_EQ(one.particles.angular_velocity, other.particles.angular_velocity);
+}
+
 TEST(VelocityVerlet, StepsThatAreLeftOpenHaveTheSameBits) {
   const InstructionSet set = chosen_instruction_set();
   const System looked_at = after_steps(set, 1, [](int) { return true; });
   for (const int threads : {1, 2}) {
     const System open = after_steps(set, threads, [](int step) { return step == 5; });
-    EXPECT_EQ(looked_at.particles.position, open.particles.position);
-    EXPECT_EQ(looked_at.particles.velocity, open.particles.velocity);
-    EXPECT_EQ(looked_at.particles.angular_velocity, open.particles.angular_velocity);
+    expect_same_motion(looked_at, open);
   }
 }
 
@@ -58,9 +62,7 @@ void expect_the_same_bits_of_one_walk_or_two(const Physics& physics) {
   EXPECT_GT(one.list.builds(), 2u);
   EXPECT_EQ(one.list.builds(), two.list.builds());
   EXPECT_EQ(one.particles.id, two.particles.id);
-  EXPECT_EQ(one.particles.position, two.particles.position);
-  EXPECT_EQ(one.particles.velocity, two.particles.velocity);
-  EXPECT_EQ(one.particles.angular_velocity, two.particles.angular_velocity);
+  expect_same_motion(one, two);
 }
 
 TEST(VelocityVerlet, OneWalkOrTwoHaveTheSameBits) {

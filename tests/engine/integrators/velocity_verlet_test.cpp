@@ -1,4 +1,3 @@
-#include "engine/integrators/velocity_verlet.h"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +7,7 @@
 #include "engine/terms/drag.h"
 #include "tests/engine/dense_suspension.h"
 #include "tests/engine/every_image.h"
+#include "tests/engine/few_spheres.h"
 #include "tests/engine/pair_evaluation.h"
 
 namespace peclet::engine {
@@ -15,18 +15,9 @@ namespace {
 
 using std::numbers::pi;
 
-// Returns spheres at rest in their box; start() builds the list.
-System system_of(const Physics& physics, const std::vector<double>& radius, const Vector3& lengths) {
-  System system;
-  system.particles = make_particles(radius, 0.1);
-  system.box = PeriodicCell(lengths, simple_shear(physics.flow.rate()));
-  const std::vector<double> sizes = distinct_radii(radius);
-  system.list = NeighbourList(range_table(make_pair_kinds(physics, sizes), sizes.size()), 0.1);
-  return system;
-}
-
-VelocityVerlet integrator_of(const Physics& physics, const System& system, double timestep) {
-  return {ForceField(physics, system.particles, timestep, 1, 1), system.particles, timestep};
+// Returns spheres at rest in a cube.
+System in_cube(const Physics& physics, const std::vector<double>& radius) {
+  return spheres_in({20, 20, 20}, physics, radius);
 }
 
 // Two unequal spheres released at an overlap of 0.01: overlap 0.01 cos(w t), w^2 = k_n (1/m_i + 1/m_j).
@@ -38,13 +29,12 @@ Release error_of_release(int steps) {
   Physics physics;
   physics.viscosity = 1e-15;
   physics.contact = ContactParameters{.normal_stiffness = 1e4};
-  System system = system_of(physics, {1, 1.4}, {20, 20, 20});
+  System system = in_cube(physics, {1, 1.4});
   system.particles.position.set(0, {10, 10, 10});
   system.particles.position.set(1, {12.39, 10, 10});
   const double w = std::sqrt(1e4 * (1 / system.particles.mass[0] + 1 / system.particles.mass[1]));
-  VelocityVerlet integrator = integrator_of(physics, system, 0.7 / w / steps);
-  integrator.start(system);
-  for (int step = 0; step < steps; ++step) integrator.advance(system);
+  VelocityVerlet integrator = explicit_steps(physics, system, 0.7 / w / steps);
+  start_and_advance(integrator, system, steps);
   const ParticleState& p = system.particles;
   const double overlap = 2.4 - (p.position[1].x - p.position[0].x);
   return {std::abs(overlap - 0.01 * std::cos(0.7)),
@@ -67,16 +57,15 @@ TEST(VelocityVerlet, SpheresRelaxToTheStreamingFlow) {
   Physics physics;
   physics.viscosity = 0.1;
   physics.flow = steady_shear(0.7);
-  System system = system_of(physics, {1.4}, {20, 20, 20});
+  System system = in_cube(physics, {1.4});
   system.particles.position.set(0, {5, 12, 5});
   system.particles.velocity.set(0, {8.4, 0, 3});
   system.particles.angular_velocity.set(0, {2, 0, -0.35});
   const double m = 0.1 * 4 * pi / 3 * std::pow(1.4, 3), rate = 6 * pi * 0.1 * 1.4 / m;
   const double spin_rate = 8 * pi * 0.1 * std::pow(1.4, 3) / (0.4 * m * 1.4 * 1.4);
   constexpr int steps = 4000;
-  VelocityVerlet integrator = integrator_of(physics, system, 1 / rate / steps);
-  integrator.start(system);
-  for (int step = 0; step < steps; ++step) integrator.advance(system);
+  VelocityVerlet integrator = explicit_steps(physics, system, 1 / rate / steps);
+  start_and_advance(integrator, system, steps);
   const ParticleState& p = system.particles;
   EXPECT_NEAR(p.velocity[0].z, 3 * std::exp(-1.0), 1e-3);
   EXPECT_NEAR(p.velocity[0].x - 0.7 * p.position[0].y, 0, 1e-12);
@@ -91,7 +80,7 @@ double error_of_slowing(bool lubrication, int steps) {
   Physics physics;
   physics.viscosity = 0.1;
   if (lubrication) physics.lubrication = LubricationParameters{};
-  System system = system_of(physics, {1, 1}, {20, 20, 20});
+  System system = in_cube(physics, {1, 1});
   constexpr double speed = 1e-9, gap = 0.01;
   system.particles.position.set(0, {10, 10, 10});
   system.particles.position.set(1, {12 + gap, 10, 10});
@@ -99,9 +88,8 @@ double error_of_slowing(bool lubrication, int steps) {
   system.particles.velocity.set(1, {speed, 0, 0});
   const double drag = 6 * pi * 0.1, squeeze = drag * (0.25 / gap - 9.0 / 40 * std::log(gap));
   const double rate = (drag + (lubrication ? 2 * squeeze : 0)) / system.particles.mass[0];
-  VelocityVerlet integrator = integrator_of(physics, system, 1 / rate / steps);
-  integrator.start(system);
-  for (int step = 0; step < steps; ++step) integrator.advance(system);
+  VelocityVerlet integrator = explicit_steps(physics, system, 1 / rate / steps);
+  start_and_advance(integrator, system, steps);
   return std::abs(system.particles.velocity[1].x / speed * std::exp(1.0) - 1);
 }
 
@@ -124,11 +112,11 @@ double amplitude_after(double stiffness, double viscosity, double timestep) {
   Physics physics;
   physics.viscosity = viscosity;
   physics.contact = ContactParameters{.normal_stiffness = stiffness};
-  System system = system_of(physics, {1, 1}, {3.9, 10, 10});
+  System system = spheres_in({3.9, 10, 10}, physics, {1, 1});
   constexpr double first = 1e-9;
   system.particles.position.set(0, {1, 5, 5});
   system.particles.position.set(1, {1 + 1.95 + first, 5, 5});
-  VelocityVerlet integrator = integrator_of(physics, system, timestep);
+  VelocityVerlet integrator = explicit_steps(physics, system, timestep);
   integrator.start(system);
   double amplitude = 0;
   for (int step = 0; step < 2000; ++step) {
@@ -163,11 +151,11 @@ TEST(VelocityVerlet, SharesOfStabilityWeighTheStiffnessOfAContact) {
   const double m = 0.1 * 4 * pi / 3, w2 = 1e4 * 2 / m, l = 6 * pi * 0.1 / m;
   const double limit = 4 / (l + std::sqrt(l * l + 4 * w2));
   ASSERT_GT(w2 * limit * limit, 40 * 2 * l * limit);  // the stiffness dominates
-  System system = system_of(physics, {1, 1}, {20, 20, 20});
+  System system = in_cube(physics, {1, 1});
   system.particles.position.set(0, {10, 10, 10});
   system.particles.position.set(1, {11.99, 10, 10});
   for (const double part : {0.5, 1.0}) {
-    VelocityVerlet integrator = integrator_of(physics, system, part * limit);
+    VelocityVerlet integrator = explicit_steps(physics, system, part * limit);
     integrator.start(system);
     const double step = part * limit, share = (w2 * step * step + 2 * l * step) / 4;
     EXPECT_NEAR(integrator.stability_share(system) / share, 1, 0.02) << part;
@@ -178,8 +166,8 @@ TEST(VelocityVerlet, StrainAfterNStepsIsNTimesRateAndStep) {
   Physics physics;
   physics.viscosity = 0.1;
   physics.flow = steady_shear(0.7);
-  System system = system_of(physics, {1}, {20, 20, 20});
-  VelocityVerlet integrator = integrator_of(physics, system, 0.01);
+  System system = in_cube(physics, {1});
+  VelocityVerlet integrator = explicit_steps(physics, system, 0.01);
   integrator.start(system);
   EXPECT_EQ(system.box.strain(), 0);
   for (int n = 1; n <= 5; ++n) {
@@ -193,12 +181,12 @@ TEST(VelocityVerlet, ReportsTheLargestDisplacementRelativeToTheFlow) {
   Physics physics;
   physics.viscosity = 1e-15;
   physics.flow = steady_shear(100);
-  System system = system_of(physics, {1, 1}, {20, 20, 20});
+  System system = in_cube(physics, {1, 1});
   system.particles.position.set(0, {5, 15, 5});
   system.particles.velocity.set(0, {1500, 0, 0});  // at rest in the flow
   system.particles.position.set(1, {5, 5, 5});
   system.particles.velocity.set(1, {503, 4, 12});
-  VelocityVerlet integrator = integrator_of(physics, system, 1e-3);
+  VelocityVerlet integrator = explicit_steps(physics, system, 1e-3);
   integrator.start(system);
   EXPECT_NEAR(integrator.advance(system).largest_displacement, 0.013, 1e-9);
 }
@@ -206,11 +194,11 @@ TEST(VelocityVerlet, ReportsTheLargestDisplacementRelativeToTheFlow) {
 // Spheres in contact fly apart beyond the list in one step, which reports this and drops the contact.
 TEST(VelocityVerlet, AContactThatIsTornOpenInOneStepIsForgotten) {
   const Physics physics = physics_with({.contact = true, .friction = true});
-  System system = system_of(physics, {1, 1}, {20, 20, 20});
+  System system = in_cube(physics, {1, 1});
   system.particles.position.set(0, {5, 5, 5});
   system.particles.position.set(1, {6.99, 5, 5});
   system.particles.angular_velocity.set(0, {0, 0, 1});  // slip, so there is a spring
-  VelocityVerlet integrator = integrator_of(physics, system, 1e-3);
+  VelocityVerlet integrator = explicit_steps(physics, system, 1e-3);
   integrator.start(system);
   ASSERT_EQ(held_contacts(system.list, system.particles, system.springs).size(), 1u);
   system.particles.velocity.set(1, {300, 0, 0});
@@ -230,7 +218,7 @@ class FlowingSuspension : public testing::Test {
 
   Physics physics_ = physics_with({.lubrication = true, .noise = true, .contact = true, .friction = true});
   System system_ = dense_suspension(physics_, 100, 5);
-  VelocityVerlet integrator_ = integrator_of(physics_, system_, 2e-4);
+  VelocityVerlet integrator_ = explicit_steps(physics_, system_, 2e-4);
 };
 
 TEST_F(FlowingSuspension, EveryInteractingPairIsInTheListThroughRebuildsAndFlips) {

@@ -4,10 +4,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "engine/kernels/pair_pass.h"
 #include "engine/terms/lubrication.h"
 #include "engine/terms/spring_laws.h"
-#include "tests/engine/two_spheres.h"
+#include "tests/engine/pair_loads.h"
 
 namespace peclet::engine {
 namespace {
@@ -145,10 +144,13 @@ class ContactOfTwo : public testing::Test {
   static constexpr Terms terms = {.contact = true, .friction = true, .rolling = true};
 
   TermLoadsOf<double> after_step(double gap, const PairMotion& motion) {
-    const auto no_noise = [] { return PairNormalsOf<double>{}; };
-    const auto no_law = [](StressTerm /*part*/, const Vector3& /*force*/) {};
-    return pair_terms<terms>(pair_parameters(physics_, 1e-3), kind_, pair_at(1, 1, gap, n), motion, springs_,
-                             no_noise, no_law);
+    return loads_of_terms<terms>(pair_parameters(physics_, 1e-3), kind_, pair_at(1, 1, gap, n), motion,
+                                 springs_);
+  }
+  TermLoadsOf<double> after_steps(int steps, double gap, const PairMotion& motion) {
+    TermLoadsOf<double> loads;
+    for (int step = 0; step < steps; ++step) loads = after_step(gap, motion);
+    return loads;
   }
 
   Physics physics_ = [] {
@@ -177,10 +179,7 @@ TEST_F(ContactOfTwo, SlidesAtTheCoulombForce) {
 // F_n = 100 and 20, F_CL = 30: the load of friction is 70, then zero.
 TEST_F(ContactOfTwo, HasNoFrictionBelowTheCriticalLoad) {
   physics_.contact->critical_load = 30;
-  TermLoadsOf<double> loads;
-  for (int step = 0; step < 1000; ++step) {
-    loads = after_step(-0.01, {{1, 0, 0}, {3, 0, 0}, {-3, 0, 0}});
-  }
+  TermLoadsOf<double> loads = after_steps(1000, -0.01, {{1, 0, 0}, {3, 0, 0}, {-3, 0, 0}});
   EXPECT_NEAR(norm(loads.springs.tangential.force), 0.5 * 70, 1e-12);
   EXPECT_NEAR(norm(loads.springs.rolling.torque_first), 0.2 * 70, 1e-12);
   loads = after_step(-0.002, {{1, 0, 0}, {3, 0, 0}, {-3, 0, 0}});
@@ -194,19 +193,13 @@ TEST_F(ContactOfTwo, HasNoMoreFrictionThanOfTheLargestLoad) {
   physics_.contact->critical_load = 30;
   for (const double largest : {40.0, 80.0}) {
     physics_.contact->largest_load = largest;
-    TermLoadsOf<double> loads;
-    for (int step = 0; step < 1000; ++step) {
-      loads = after_step(-0.01, {{1, 0, 0}, {}, {}});
-    }
+    const TermLoadsOf<double> loads = after_steps(1000, -0.01, {{1, 0, 0}, {}, {}});
     EXPECT_NEAR(norm(loads.springs.tangential.force), 0.5 * std::min(largest, 70.0), 1e-12);
   }
 }
 
 TEST_F(ContactOfTwo, RollsAtTheLargestCouple) {
-  TermLoadsOf<double> loads;
-  for (int step = 0; step < 1000; ++step) {
-    loads = after_step(-0.01, {{}, {3, 0, 0}, {-3, 0, 0}});
-  }
+  const TermLoadsOf<double> loads = after_steps(1000, -0.01, {{}, {3, 0, 0}, {-3, 0, 0}});
   EXPECT_NEAR(norm(loads.springs.rolling.torque_first), 0.2 * norm(loads.contact_normal), 1e-12);  // a = 1
 }
 

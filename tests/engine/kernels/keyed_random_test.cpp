@@ -7,13 +7,11 @@
 #include <algorithm>
 #include <array>
 #include <functional>
-#include <iostream>
-#include <iterator>
 #include <map>
 #include <numbers>
 
-#include "engine/kernels/instruction_set.h"
 #include "engine/terms/fill_normals.h"
+#include "tests/engine/available_sets.h"
 #include "tests/engine/bits.h"
 
 namespace peclet::engine {
@@ -73,20 +71,17 @@ TEST(KeyedRandom, NeighbouringKeysAreIndependent) {
   const auto particle = [](const KeyedRandom& random, std::uint64_t step, std::uint32_t i) {
     return components(random.normals(step, i));
   };
+  const auto image = [&](std::uint64_t step, std::uint32_t i, std::int32_t x) {
+    return components(here.normals(step, i, i + 1, {x, 0, 0}));
+  };
   const std::array<std::function<std::array<double, 6>(std::uint64_t, std::uint32_t)>, 7> neighbours = {
       [&](auto step, auto i) { return particle(here, step + 1, i); },
       [&](auto step, auto i) { return particle(here, step, i + 1); },
       [&](auto step, auto i) { return particle(next_seed, step, i); },
       [&](auto step, auto i) { return particle(other_purpose, step, i); },
-      [&](auto step, auto i) {
-        return components(here.normals(step, i, i + 1, {0, 0, 0}));
-      },
-      [&](auto step, auto i) {
-        return components(here.normals(step, i, i + 1, {1, 0, 0}));
-      },
-      [&](auto step, auto i) {
-        return components(here.normals(step, i, i + 1, {-1, 0, 0}));
-      }};
+      [&](auto step, auto i) { return image(step, i, 0); },
+      [&](auto step, auto i) { return image(step, i, 1); },
+      [&](auto step, auto i) { return image(step, i, -1); }};
   std::array<std::array<double, 6>, 7> products{};
   std::array<std::array<double, 6>, 6> within{};
   constexpr double keys = 200.0 * 200.0;
@@ -129,25 +124,27 @@ TEST(KeyedRandom, EveryImageOfAPairHasItsOwnNoise) {
 }
 
 TEST(KeyedRandom, EveryPartOfTheKeyCounts) {
-  const KeyedRandom random(3, Purpose::pair_noise);
-  const auto x = [](const NormalPair& pair) { return pair.first.x; };
-  const double reference = x(random.normals(7, 1, 2, {0, 1, 0}));
-  EXPECT_EQ(reference, x(random.normals(7, 1, 2, {0, 1, 0})));
-  const double others[] = {
-      x(KeyedRandom(4, Purpose::pair_noise).normals(7, 1, 2, {0, 1, 0})),
-      x(KeyedRandom(3, Purpose::one_body_noise).normals(7, 1, 2, {0, 1, 0})),
-      x(KeyedRandom(3, Purpose::initial_velocity).normals(7, 1, 2, {0, 1, 0})),
-      x(KeyedRandom(3, Purpose::packing).normals(7, 1, 2, {0, 1, 0})),
-      x(random.normals(8, 1, 2, {0, 1, 0})),
-      x(random.normals(7, 0, 2, {0, 1, 0})),
-      x(random.normals(7, 1, 3, {0, 1, 0})),
-      x(random.normals(7, 2, 1, {0, 1, 0})),
-      x(random.normals(7, 1, 2, {0, -1, 0})),
-      x(random.normals(7, 1, 2, {1, 0, 0})),
-      x(random.normals(7, 1, 2, {0, 0, 1})),
-      x(random.normals(7, 1, 2, {0, 0, 0})),
-      x(random.normals(1ull << 40, 1, 2, {0, 1, 0})),
-      x(KeyedRandom(3ull + (1ull << 40), Purpose::pair_noise).normals(7, 1, 2, {0, 1, 0}))};
+  const auto x = [](std::uint64_t of_seed, Purpose purpose, std::uint64_t step, std::uint32_t i,
+                    std::uint32_t j, const LatticeShift& image) {
+    return KeyedRandom(of_seed, purpose).normals(step, i, j, image).first.x;
+  };
+  constexpr auto pair = Purpose::pair_noise;
+  const double reference = x(3, pair, 7, 1, 2, {0, 1, 0});
+  EXPECT_EQ(reference, x(3, pair, 7, 1, 2, {0, 1, 0}));
+  const double others[] = {x(4, pair, 7, 1, 2, {0, 1, 0}),
+                           x(3, Purpose::one_body_noise, 7, 1, 2, {0, 1, 0}),
+                           x(3, Purpose::initial_velocity, 7, 1, 2, {0, 1, 0}),
+                           x(3, Purpose::packing, 7, 1, 2, {0, 1, 0}),
+                           x(3, pair, 8, 1, 2, {0, 1, 0}),
+                           x(3, pair, 7, 0, 2, {0, 1, 0}),
+                           x(3, pair, 7, 1, 3, {0, 1, 0}),
+                           x(3, pair, 7, 2, 1, {0, 1, 0}),
+                           x(3, pair, 7, 1, 2, {0, -1, 0}),
+                           x(3, pair, 7, 1, 2, {1, 0, 0}),
+                           x(3, pair, 7, 1, 2, {0, 0, 1}),
+                           x(3, pair, 7, 1, 2, {0, 0, 0}),
+                           x(3, pair, 1ull << 40, 1, 2, {0, 1, 0}),
+                           x(3ull + (1ull << 40), pair, 7, 1, 2, {0, 1, 0})};
   for (const double other : others) EXPECT_NE(reference, other);
 }
 
@@ -262,11 +259,7 @@ TEST(NormalBlock, HalvesOfAPartRefineItsPath) {
 }
 
 TEST(NormalBlock, HasTheSameBitsOnEveryInstructionSet) {
-  for (const InstructionSet set : {InstructionSet::avx2, InstructionSet::avx512}) {
-    if (!is_available(set)) {
-      std::cout << "this processor has no " << name_of(set) << '\n';
-      continue;
-    }
+  for (const InstructionSet set : newer_sets()) {
     for (std::uint64_t step = 0; step < 20000; ++step) {
       std::uint64_t identity[identities_per_block], image[identities_per_block];
       for (std::uint64_t k = 0; k < identities_per_block; ++k) {

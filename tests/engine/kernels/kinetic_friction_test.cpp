@@ -1,8 +1,7 @@
 // Kinetic friction below static friction: breaking away, sticking again and forgetting.
 #include <gtest/gtest.h>
 
-#include "engine/kernels/pair_pass.h"
-#include "tests/engine/two_spheres.h"
+#include "tests/engine/pair_loads.h"
 
 namespace peclet::engine {
 namespace {
@@ -17,12 +16,10 @@ class KineticFrictionOfTwo : public testing::Test {
 
   // Returns the force along x on the first sphere after a step.
   double after_step(double slip, double gap = -0.01) {
-    const auto no_noise = [] { return PairNormalsOf<double>{}; };
-    const auto no_law = [](StressTerm /*part*/, const Vector3& /*force*/) {};
     parameters_.contact = contact_;
     parameters_.spring_timestep = 1e-3;
-    return pair_terms<terms>(parameters_, kind_, pair_at(1, 1, gap, {0, 0, 1}), {{slip, 0, 0}, {}, {}},
-                             springs_, no_noise, no_law)
+    const PairGeometry pair = pair_at(1, 1, gap, {0, 0, 1});
+    return loads_of_terms<terms>(parameters_, kind_, pair, {{slip, 0, 0}, {}, {}}, springs_)
         .springs.tangential.force.x;
   }
   double after_steps(int steps, double slip, double gap = -0.01) {

@@ -3,7 +3,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <span>
 
 #include "tests/engine/kernels/linked_suspension.h"
 
@@ -60,10 +59,15 @@ Eigen::VectorXd vector_of(const std::vector<MotionRow>& rows) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
+// Returns a suspension of lubricated contacts with friction.
+Links rough_links(std::size_t count, InstructionSet set) {
+  const Physics physics = physics_with({.lubrication = true, .contact = true, .friction = true});
+  return {physics, dense_suspension(physics, count, 7), set};
+}
+
 // The links of a row lead to rows of other levels.
 TEST_P(LinkSolverOf, CoupleNoTwoRowsOfALevel) {
-  const Physics physics = physics_with({.lubrication = true, .contact = true, .friction = true});
-  const Links links(physics, dense_suspension(physics, 203, 7), GetParam());
+  const Links links = rough_links(203, GetParam());
   const Matrix matrix = matrix_of(links);
   EXPECT_EQ(links.order().levels().front().rows_begin, 0);
   EXPECT_EQ(links.order().levels().back().rows_end, 203);
@@ -79,8 +83,7 @@ TEST_P(LinkSolverOf, CoupleNoTwoRowsOfALevel) {
 }
 
 TEST_P(LinkSolverOf, InvertThePivots) {
-  const Physics physics = physics_with({.lubrication = true, .contact = true, .friction = true});
-  const Links links(physics, dense_suspension(physics, 61, 7), GetParam());
+  const Links links = rough_links(61, GetParam());
   const Matrix pivots = pivots_of(links, matrix_of(links));
   for (std::size_t i = 0; i < 61; ++i) {
     const auto at = static_cast<Eigen::Index>(6 * i);
@@ -93,8 +96,7 @@ TEST_P(LinkSolverOf, InvertThePivots) {
 }
 
 TEST_P(LinkSolverOf, SolveTheSystem) {
-  const Physics physics = physics_with({.lubrication = true, .contact = true, .friction = true});
-  const Links links(physics, dense_suspension(physics, 203, 7), GetParam());
+  const Links links = rough_links(203, GetParam());
   const std::size_t count = links.system().particles.count();
   const auto right = random_rows(count, 12);
   SolverStorage storage(count);
@@ -131,8 +133,7 @@ TEST_P(LinkSolverOf, SolveTheSystem) {
 }
 
 TEST_P(LinkSolverOf, SquareTheMotionRelativeToTheFlow) {
-  const Physics physics = physics_with({.lubrication = true, .contact = true, .friction = true});
-  const Links links(physics, dense_suspension(physics, 203, 7), GetParam());
+  const Links links = rough_links(203, GetParam());
   const ParticleState& particles = links.system().particles;
   const Matrix3 gradient = simple_shear(0.3);
   std::vector<OneBodyFactors> inertia(distinct_radii(particles.radius).size());
@@ -143,8 +144,7 @@ TEST_P(LinkSolverOf, SquareTheMotionRelativeToTheFlow) {
     inertia[particles.size_class[i]] = {particles.mass[i], particles.inertia[i]};
     const Vector3 u = particles.velocity[i] - gradient * particles.position[i];
     const Vector3 w = particles.angular_velocity[i] - Vector3{0, 0, -0.15};
-    relative[row].v = Floats{static_cast<float>(u.x), static_cast<float>(u.y), static_cast<float>(u.z), 0,
-                             static_cast<float>(w.x), static_cast<float>(w.y), static_cast<float>(w.z), 0};
+    relative[row] = motion_row(u, w);
     inertial += particles.mass[i] * dot(u, u) + particles.inertia[i] * dot(w, w);
   }
   const StepRows step_rows = {.velocity_before = nullptr,

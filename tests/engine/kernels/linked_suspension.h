@@ -112,13 +112,17 @@ class Links {
   std::vector<LinkGroup> groups_;
 };
 
+inline MotionRow motion_row(const Vector3& u, const Vector3& w) {
+  const auto f = [](double x) { return static_cast<float>(x); };
+  return {Floats{f(u.x), f(u.y), f(u.z), 0, f(w.x), f(w.y), f(w.z), 0}};
+}
+
 inline std::vector<MotionRow> random_rows(std::size_t count, std::uint64_t from) {
   Draws draws(from);
   std::vector<MotionRow> rows(count);
   for (MotionRow& row : rows) {
     const Vector3 u = draws.vector(), w = draws.vector();
-    row.v = Floats{static_cast<float>(u.x), static_cast<float>(u.y), static_cast<float>(u.z), 0,
-                   static_cast<float>(w.x), static_cast<float>(w.y), static_cast<float>(w.z), 0};
+    row = motion_row(u, w);
   }
   return rows;
 }

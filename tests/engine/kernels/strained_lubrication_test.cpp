@@ -4,12 +4,11 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "engine/flow/background_flow.h"
 #include "engine/kernels/pair_pass.h"
-#include "tests/engine/two_spheres.h"
+#include "tests/engine/pair_loads.h"
 
 namespace peclet::engine {
 namespace {
@@ -38,15 +37,6 @@ FlowFrame frame_of(const Matrix3& gradient) {
 }
 
 const PairVariationOf<double> nothing;
-
-double size_of_load(const PairLoad& load) {
-  return norm(load.force) + norm(load.torque_first) + norm(load.torque_second);
-}
-
-double difference(const PairLoad& a, const PairLoad& b) {
-  return norm(a.force - b.force) + norm(a.torque_first - b.torque_first) +
-         norm(a.torque_second - b.torque_second);
-}
 
 template <class Claim>
 void for_every_near_pair(Claim&& claim) {
@@ -106,13 +96,8 @@ TEST(StrainedLubrication, LengthsAreThePublishedRatios) {
 
 TEST(StrainedLubrication, ResistanceIsSymmetricPositiveSemidefiniteAndOfRankFive) {
   for_every_near_pair([](const PairGeometry& pair, double ratio, const PairResistance& resistance, Draws&) {
-    const Matrix12 R = grand_resistance(resistance, pair);
-    const double scale = largest_entry(R);
-    EXPECT_LE(largest_entry(R - R.transpose()), 1e-14 * scale);
-    const Vector12 eigenvalues = Eigen::SelfAdjointEigenSolver<Matrix12>(R).eigenvalues();
-    EXPECT_GT(eigenvalues[0], -1e-14 * scale) << ratio;
-    EXPECT_LT(eigenvalues[6], 1e-14 * scale) << ratio;
-    EXPECT_GT(eigenvalues[7], 1e-6 * scale) << ratio;
+    SCOPED_TRACE(ratio);
+    expect_rank_five(grand_resistance(resistance, pair));
   });
 }
 
@@ -181,14 +166,11 @@ TEST(StrainedLubrication, ForcesAreEqualAndOppositeWhereStrainsDiffer) {
     const PairLoad first = strained_lubrication_load(mari_resistance(1, ratio, here), flow,
                                                      strain_lengths(1, ratio), here, motion, varying);
     const PairLoad second = strained_lubrication_load(
-        mari_resistance(ratio, 1, there), flow, strain_lengths(ratio, 1), there,
-        {-motion.velocity, motion.spin_second, motion.spin_first},
+        mari_resistance(ratio, 1, there), flow, strain_lengths(ratio, 1), there, from_the_other(motion),
         PairVariationOf<double>{-varying.velocity, varying.spin_second, varying.spin_first,
                                 varying.strain_second, varying.strain_first});
-    const double tolerance = 1e-12 * size_of_load(first);
-    EXPECT_LT(norm(first.force + second.force), tolerance) << ratio;
-    EXPECT_LT(norm(first.torque_first - second.torque_second), tolerance) << ratio;
-    EXPECT_LT(norm(first.torque_second - second.torque_first), tolerance) << ratio;
+    SCOPED_TRACE(ratio);
+    expect_opposite(first, second, 1e-12);
   }
 }
 
@@ -217,9 +199,8 @@ TEST(StrainedLubrication, EndsAtTheOuterDistanceOfAllSizes) {
     const auto force_at = [&](double h) {
       const PairGeometry pair = pair_at(first, second, 2 * h / (first + second), {1, 0, 0});
       PairSpringsOf<double> springs;
-      return pair_terms<Terms{.lubrication = true, .strained = true}>(
-                 pair_parameters(physics, 0), kind, pair, {{1, 0, 0}, {}, {}}, springs,
-                 [] { return PairNormalsOf<double>{}; }, [](StressTerm /*part*/, const Vector3& /*force*/) {})
+      return loads_of_terms<Terms{.lubrication = true, .strained = true}>(pair_parameters(physics, 0), kind,
+                                                                          pair, {{1, 0, 0}, {}, {}}, springs)
           .lubrication.force.x;
     };
     const double b = second / first, d = 0.4 / (first + second) + regularisation;

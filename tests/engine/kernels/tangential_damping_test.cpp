@@ -1,8 +1,7 @@
 // A dashpot beside the tangential spring of a contact: its force, and Coulomb's limit on the sum of both.
 #include <gtest/gtest.h>
 
-#include "engine/kernels/pair_pass.h"
-#include "tests/engine/two_spheres.h"
+#include "tests/engine/pair_loads.h"
 
 namespace peclet::engine {
 namespace {
@@ -37,12 +36,9 @@ class TangentialDampingOfTwo : public testing::Test {
     Physics physics;
     physics.viscosity = 0.1;
     physics.contact = contact_;
-    const auto no_noise = [] { return PairNormalsOf<double>{}; };
-    const auto no_law = [](StressTerm /*part*/, const Vector3& /*force*/) {};
     PairParameters parameters = pair_parameters(physics, step_);
     parameters.felt_share = felt_share_;
-    return pair_terms<terms>(parameters, make_pair_kind(physics, 1, ratio), pair, motion, springs_, no_noise,
-                             no_law)
+    return loads_of_terms<terms>(parameters, make_pair_kind(physics, 1, ratio), pair, motion, springs_)
         .springs.tangential;
   }
 };

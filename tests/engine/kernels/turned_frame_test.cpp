@@ -4,9 +4,8 @@
 #include <cmath>
 #include <memory>
 
-#include "engine/integrators/implicit.h"
-#include "engine/integrators/velocity_verlet.h"
 #include "tests/engine/dense_suspension.h"
+#include "tests/engine/few_spheres.h"
 #include "tests/engine/pair_evaluation.h"
 
 namespace peclet::engine {
@@ -115,13 +114,7 @@ TEST(TurnedFrame, TurnsTheWaysOfBothMethods) {
       physics_with({.lubrication = true, .contact = true, .friction = true, .conservative = true});
   const System system = dense_suspension(physics, 200, 12);
   const auto stepped = [&](const Physics& of, System copy, bool implicit) {
-    std::unique_ptr<Integrator> integrator;
-    if (implicit) {
-      integrator = implicit_steps(of, copy.particles, 10 * timestep, 1e-7, 1, 1);
-    } else {
-      integrator = std::make_unique<VelocityVerlet>(ForceField(of, copy.particles, 0.1 * timestep, 1, 1),
-                                                    copy.particles, 0.1 * timestep);
-    }
+    const auto integrator = steps_of_method(implicit, of, copy, (implicit ? 10 : 0.1) * timestep, 1e-7);
     integrator->start(copy);
     StepReport report;
     for (int n = 0; n < 20; ++n) report = integrator->advance(copy);

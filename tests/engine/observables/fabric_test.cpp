@@ -59,9 +59,7 @@ TEST(Fabric, HasPairsUpToTheGivenGap) {
 
 // Each sphere of a cubic lattice has neighbours along three axes.
 TEST(Fabric, OfAnIsotropicNetworkIsAThirdOfTheUnitTensor) {
-  System system;
-  system.particles = make_particles(std::vector<double>(125, 1.01), 1);
-  system.box = PeriodicCell({edge, edge, edge}, simple_shear(0));
+  System system = equal_spheres(125, 1.01);
   for (std::size_t i = 0; i < 125; ++i) {
     const auto along = [&](std::size_t stride) { return 2 * static_cast<double>(i / stride % 5); };
     system.particles.position.set(i, {along(1), along(5), along(25)});
@@ -79,8 +77,7 @@ TEST(Fabric, HasTheQuartersOfTheWindow) {
   observable->sample(along_x, 7);
   observable->sample(along_y, 8);
   observable->sample(dumbbell({0, 0, 1}, 0.01), 24);
-  Json blocks;
-  observable->add_blocks_to(blocks);
+  const Json blocks = blocks_of(*observable);
   const Json& contacts = blocks["fabric"]["contacts"];
   ASSERT_EQ(contacts.size(), 4u);
   expect_components(contacts[0], {1, 0, 0, 0, 0, 0});
@@ -124,10 +121,7 @@ TEST(Fabric, IsNoPartOfATransientWithoutAGap) {
 }
 
 Json result_on(int threads, const Json& patch) {
-  JobSpecification job;
-  job.header = {"point", seed};
-  job.scene = small_scene(patch);
-  job.scene_name = "scene.json";
+  JobSpecification job = job_of(small_scene(patch));
   job.threads = threads;
   return run_job(job, {}).value();
 }

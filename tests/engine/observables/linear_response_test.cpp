@@ -17,6 +17,7 @@
 
 #include "engine/observables/scene_reading.h"
 #include "tests/engine/observables/loose_spheres.h"
+#include "tests/physics/estimates.h"
 
 namespace peclet::engine {
 namespace {
@@ -99,29 +100,18 @@ Json response_of_dumbbells(const Scene& scene, std::uint64_t seed, double sign_o
 
 constexpr double expected = length * length * drag / (4 * volume);
 
-struct Found {
-  double mean, error;
-};
-Found over_seeds(const std::vector<double>& values) {
-  double sum = 0, squares = 0;
-  for (const double v : values) sum += v;
-  const auto n = static_cast<double>(values.size());
-  for (const double v : values) squares += (v - sum / n) * (v - sum / n);
-  return {sum / n, std::sqrt(squares / (n * (n - 1)))};
-}
-
 class LinearResponseOfADumbbell : public testing::TestWithParam<const char*> {
  protected:
   static constexpr std::uint64_t seeds = 96;
 
   // Returns the mean over seeds of value(means of a seed).
   template <class Value>
-  Found over_seeds(Value&& value, double sign_of_dissipation = 1) const {
+  Estimate over_seeds(Value&& value, double sign_of_dissipation = 1) const {
     std::vector<double> values;
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
       values.push_back(value(response_of_dumbbells(scene_, seed, sign_of_dissipation)));
     }
-    return engine::over_seeds(values);
+    return estimate(values);
   }
   // Returns the viscosity without the background, in units of the scene.
   double viscosity_of(const Json& relative) const {
@@ -133,7 +123,7 @@ class LinearResponseOfADumbbell : public testing::TestWithParam<const char*> {
 };
 
 TEST_P(LinearResponseOfADumbbell, IsItsDragWhateverHoldsItTogether) {
-  const Found found =
+  const Estimate found =
       over_seeds([&](const Json& mean) { return viscosity_of(mean.at("zero_shear_viscosity")); });
   EXPECT_LT(found.error, 0.04 * expected);
   EXPECT_NEAR(found.mean, expected, 3 * found.error);
@@ -148,10 +138,10 @@ TEST_P(LinearResponseOfADumbbell, IsThatOfTheCorrelationToo) {
     while (curves.at("lag")[k].get<double>() < 8) ++k;
     return viscosity_of(curves.at("correlation")[k]);
   };
-  const Found found = over_seeds(by_correlation);
+  const Estimate found = over_seeds(by_correlation);
   EXPECT_LT(found.error, 0.03 * expected);
   EXPECT_NEAR(found.mean, expected, 3 * found.error);
-  const Found wrong = over_seeds(by_correlation, -1);
+  const Estimate wrong = over_seeds(by_correlation, -1);
   EXPECT_GT(std::abs(wrong.mean - expected), 10 * wrong.error);
 }
 
@@ -176,7 +166,7 @@ TEST_P(LinearResponseOfADumbbell, HasItsModuli) {
     const std::complex<double> i(0, 1), held = stiffness + i * w * friction,
                                         lost = i * w * drag - w * w * mass;
     const std::complex<double> modulus = length * length / (4 * volume) * held * lost / (held + lost);
-    const Found in_phase = engine::over_seeds(storage[k]), ahead = engine::over_seeds(loss[k]);
+    const Estimate in_phase = estimate(storage[k]), ahead = estimate(loss[k]);
     EXPECT_LT(in_phase.error + ahead.error, 0.1 * std::abs(modulus)) << w;
     EXPECT_NEAR(in_phase.mean, modulus.real(), 3.5 * in_phase.error) << w;
     EXPECT_NEAR(ahead.mean, modulus.imag(), 3.5 * ahead.error) << w;

@@ -4,9 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <memory>
-#include <utility>
-#include <vector>
 
+#include "engine/kernels/pair_kinds.h"
 #include "engine/observables/observable.h"
 #include "engine/observables/scene_reading.h"
 #include "engine/scene/scene.h"
@@ -24,6 +23,19 @@ inline System loose_spheres(std::size_t count, double shear_rate = 0) {
   for (std::size_t i = 0; i < count; ++i) radius[i] = i % 2 == 0 ? 1 : 2;
   system.particles = make_particles(radius, 1);
   system.box = PeriodicCell({edge, edge, edge}, simple_shear(shear_rate));
+  return system;
+}
+
+// Builds the list of pairs within the range of the forces.
+inline void build_list(System& system, const Physics& physics) {
+  system.list = NeighbourList(range_table(make_pair_kinds(physics, {1, 2}), 2), 0.1);
+  system.list.build(system.particles, system.box);
+}
+
+// Returns spheres of radius 1 in the same box.
+inline System equal_spheres(std::size_t count, double radius = 1) {
+  System system = loose_spheres(0);
+  system.particles = make_particles(std::vector<double>(count, radius), 1);
   return system;
 }
 
@@ -56,10 +68,21 @@ inline Vector3 place_in_box(Draws& draws) {
   return {draws.uniform(0, edge), draws.uniform(0, edge), draws.uniform(0, edge)};
 }
 
+inline void place_anywhere(System& system, Draws& draws) {
+  for (std::size_t i = 0; i < system.particles.count(); ++i)
+    system.particles.position.set(i, place_in_box(draws));
+}
+
 inline Json mean_of(const Observable& observable) {
   Json mean = Json::object();
   observable.add_to(mean);
   return mean;
+}
+
+inline Json blocks_of(const Observable& observable) {
+  Json blocks = Json::object();
+  observable.add_blocks_to(blocks);
+  return blocks;
 }
 
 }  // namespace peclet::engine

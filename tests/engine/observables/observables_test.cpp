@@ -2,10 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <string>
-#include <vector>
 
-#include "contract/errors.h"
+#include "tests/contract/refusal.h"
 #include "tests/engine/observables/loose_spheres.h"
 
 namespace peclet::engine {

@@ -4,10 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/observables/scene_reading.h"
-#include "engine/realisation/simulation.h"
 #include "engine/realisation/stress_means.h"
 #include "tests/engine/observables/loose_spheres.h"
+#include "tests/engine/realisation/small_result.h"
 
 namespace peclet::engine {
 namespace {
@@ -23,27 +22,34 @@ Scene oscillating(const char* method, std::uint64_t cycles) {
   return read_scene(document, "scene.json");
 }
 
+// Returns the observable of spheres whose pairs have the stress sigma_xy(k, w t) in step k, at the middle of
+// implicit steps and at the end of explicit ones. The flux is sigma times the volume.
+template <class Stress>
+std::unique_ptr<Observable> after_stress(const Scene& scene, std::uint64_t steps_per_cycle,
+                                         std::uint64_t cycles, const Stress& stress) {
+  const double timestep = 2 * std::numbers::pi / frequency / static_cast<double>(steps_per_cycle);
+  const double volume = edge * edge * edge, ahead = scene.method == Method::implicit_steps ? 0.5 : 1;
+  auto made = observable_of(scene, loose_spheres(4), steps_per_cycle * cycles, timestep);
+  for (std::uint64_t k = 0; k < steps_per_cycle * cycles; ++k) {
+    MomentumFlux flux;
+    flux.by_pairs.xy = volume * stress(k, frequency * timestep * (static_cast<double>(k) + ahead));
+    made->take_flux(flux);
+  }
+  return made;
+}
+
 class Moduli : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(EitherMethod, Moduli, testing::Values("explicit", "implicit"),
                          [](const auto& method) { return std::string(method.param); });
 
-// sigma = g [(1 + cycle) sin + 5 cos + 2 sin 3 + 3 cos 3] in each of four cycles, at the middle of implicit
-// steps and at the end of explicit ones. The flux is sigma times the volume.
+// sigma = g [(1 + cycle) sin + 5 cos + 2 sin 3 + 3 cos 3] in each of four cycles.
 TEST_P(Moduli, AreThoseOfAStressThatIsASumOfHarmonics) {
   constexpr std::uint64_t steps = 200, cycles = 4;
-  const Scene scene = oscillating(GetParam(), cycles);
-  const System system = loose_spheres(4);
-  const double timestep = 2 * std::numbers::pi / frequency / steps, volume = edge * edge * edge;
-  const auto made = observable_of(scene, system, steps * cycles, timestep);
-  const double ahead = scene.method == Method::implicit_steps ? 0.5 : 1;
-  for (std::uint64_t k = 0; k < steps * cycles; ++k) {
-    const double phase = frequency * timestep * (static_cast<double>(k) + ahead);
-    MomentumFlux flux;
-    flux.by_pairs.xy = volume * amplitude *
-                       ((1 + static_cast<double>(k / steps)) * std::sin(phase) + 5 * std::cos(phase) +
-                        2 * std::sin(3 * phase) + 3 * std::cos(3 * phase));
-    made->take_flux(flux);
-  }
+  const auto made =
+      after_stress(oscillating(GetParam(), cycles), steps, cycles, [](std::uint64_t k, double phase) {
+        return amplitude * ((1 + static_cast<double>(k / steps)) * std::sin(phase) + 5 * std::cos(phase) +
+                            2 * std::sin(3 * phase) + 3 * std::cos(3 * phase));
+      });
   const Json mean = mean_of(*made);
   // eta = 0.1, phi = 0.45.
   const double background = 0.1 * frequency * (1 + 2.5 * 0.45);
@@ -52,8 +58,7 @@ TEST_P(Moduli, AreThoseOfAStressThatIsASumOfHarmonics) {
   EXPECT_NEAR(mean["dynamic_viscosity"].get<double>(), (5 + background) / (0.1 * frequency), 1e-11);
   EXPECT_NEAR(mean["third_storage_modulus"].get<double>(), 2, 1e-12);
   EXPECT_NEAR(mean["third_loss_modulus"].get<double>(), 3, 1e-12);
-  Json blocks;
-  made->add_blocks_to(blocks);
+  const Json blocks = blocks_of(*made);
   ASSERT_EQ(blocks["storage_modulus"].size(), cycles);
   for (std::size_t block = 0; block < cycles; ++block) {
     EXPECT_NEAR(blocks["storage_modulus"][block].get<double>(), 1 + static_cast<double>(block), 1e-4);
@@ -63,19 +68,12 @@ TEST_P(Moduli, AreThoseOfAStressThatIsASumOfHarmonics) {
 // The storage modulus is 1 + cycle. Every block has a cycle, so that the first ones show the transient.
 TEST(Moduli, HaveAsManyBlocksAsTheirCyclesFill) {
   constexpr std::uint64_t steps = 64;
-  const System system = loose_spheres(4);
   for (const std::uint64_t cycles : {3U, 4U, 7U, 12U, 31U, 32U, 50U, 100U}) {
-    const Scene scene = oscillating("implicit", cycles);
-    const double timestep = 2 * std::numbers::pi / frequency / steps, volume = edge * edge * edge;
-    const auto made = observable_of(scene, system, steps * cycles, timestep);
-    for (std::uint64_t k = 0; k < steps * cycles; ++k) {
-      MomentumFlux flux;
-      flux.by_pairs.xy = volume * amplitude * (1 + static_cast<double>(k / steps)) *
-                         std::sin(frequency * timestep * (static_cast<double>(k) + 0.5));
-      made->take_flux(flux);
-    }
-    Json blocks = Json::object();
-    made->add_blocks_to(blocks);
+    const auto made =
+        after_stress(oscillating("implicit", cycles), steps, cycles, [](std::uint64_t k, double phase) {
+          return amplitude * (1 + static_cast<double>(k / steps)) * std::sin(phase);
+        });
+    const Json blocks = blocks_of(*made);
     if (cycles < 4) {
       EXPECT_TRUE(blocks.empty());
       continue;
@@ -97,34 +95,27 @@ TEST(Moduli, HaveAsManyBlocksAsTheirCyclesFill) {
 // At small amplitude inertialess spheres respond with the viscosity of steady shear from the same packing.
 // The in-phase part is inertia alone, and there is no third harmonic.
 TEST(Moduli, OfASmallOscillationAreTheViscosityOfThePacking) {
-  const auto document = [](const Json& flow, const Json& equilibration, const Json& production,
-                           const Json& observables) {
-    return Json{{"particles",
-                 {{"count", 60}, {"density", 0.001}, {"species", {{{"radius", 1}, {"volume_share", 1}}}}}},
-                {"volume_fraction", 0.4},
-                {"fluid", {{"viscosity", 0.1}}},
-                {"lubrication", {{"form", "kim-karrila"}, {"inner_gap", 1e-3}, {"outer_gap", 0.05}}},
-                {"integrator", {{"method", "implicit"}, {"tolerance", 1e-6}}},
-                {"flow", flow},
-                {"duration", {{"equilibration", equilibration}, {"production", production}}},
-                {"observables", observables}};
-  };
-  const auto run = [](const Json& json) {
-    const Scene scene = read_scene(json, "scene.json");
-    auto simulation =
-        std::make_unique<Simulation>(scene, make_schedule(scene, "scene.json"), 5, 1, "scene.json");
-    simulation->start();
+  const auto run = [](const Json& patch) {
+    Json document = Json::parse(
+        R"({"particles": {"count": 60, "density": 0.001, "species": [{"radius": 1, "volume_share": 1}]},
+        "volume_fraction": 0.4, "fluid": {"viscosity": 0.1},
+        "lubrication": {"form": "kim-karrila", "inner_gap": 1e-3, "outer_gap": 0.05},
+        "integrator": {"method": "implicit", "tolerance": 1e-6}})");
+    document.update(patch);
+    const Scene scene = read_scene(document, "scene.json");
+    auto simulation = std::make_unique<Simulation>(started(scene, 5));
     EXPECT_TRUE(simulation->advance(1000000).has_value());
     return std::pair(scene, std::move(simulation));
   };
-  const auto [steady, sheared] =
-      run(document({{"shear_rate", 1e-6}}, {{"strain", 0}}, {{"strain", 1e-6}}, {"stress"}));
+  const auto [steady, sheared] = run(Json::parse(R"({"flow": {"shear_rate": 1e-6}, "observables": ["stress"],
+      "duration": {"equilibration": {"strain": 0}, "production": {"strain": 1e-6}}})"));
   const double viscosity = StressMeans(steady)
                                .means(sheared->system(), sum_of(sheared->production().blocks()))
                                .at("relative_viscosity")
                                .get<double>();
-  const auto [scene, oscillated] = run(document({{"oscillation", {{"amplitude", 1e-6}, {"frequency", 1}}}},
-                                                {{"cycles", 0}}, {{"cycles", 2}}, {"stress", "oscillation"}));
+  const auto [scene, oscillated] = run(Json::parse(R"({
+      "flow": {"oscillation": {"amplitude": 1e-6, "frequency": 1}}, "observables": ["stress", "oscillation"],
+      "duration": {"equilibration": {"cycles": 0}, "production": {"cycles": 2}}})"));
   const Json means =
       StressMeans(scene).means(oscillated->system(), sum_of(oscillated->production().blocks()));
   EXPECT_TRUE(means.at("relative_viscosity").is_null());  // oscillating stress

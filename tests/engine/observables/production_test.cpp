@@ -68,12 +68,10 @@ TEST(BlockedMean, OfOneNumberHas32BlocksOfAListFourAndOfALongOneNone) {
     const auto value = static_cast<double>(block);
     scalar.add(block, 0, 2 * value);
     scalar.weigh(block, 2);
-    list.add(block, 63, value);
-    list.weigh(block, 1);
-    large.add(block, 64, value);
-    large.weigh(block, 1);
-    single.add(block, 0, value);
-    single.weigh(block, 1);
+    for (const auto& [mean, entry] : {std::pair(&list, 63U), {&large, 64U}, {&single, 0U}}) {
+      mean->add(block, entry, value);
+      mean->weigh(block, 1);
+    }
   }
   EXPECT_EQ(scalar.value(), 15.5);
   EXPECT_EQ(list.value()[63], 15.5);

@@ -1,8 +1,10 @@
-// Volume fraction and velocity by y, for spheres with known slabs.
+// Volume fraction, velocity and its variance by y, for spheres with known slabs and velocities.
 #include <gtest/gtest.h>
 
 #include <numbers>
 
+#include "engine/observables/velocity_variance.h"
+#include "tests/engine/draws.h"
 #include "tests/engine/observables/loose_spheres.h"
 
 namespace peclet::engine {
@@ -26,9 +28,7 @@ TEST(Profiles, GiveEachBinItsSlabOfASphere) {
   const Json phi = profiles_of(system)["volume_fraction"];
   const double middle = std::numbers::pi * (8 - 2.0 / 3), cap = (sphere(2) - middle) / 2;
   const double expected[] = {sphere(1), cap, middle, cap, 0};
-  for (std::size_t k = 0; k < 5; ++k) {
-    EXPECT_NEAR(phi[k].get<double>(), expected[k] / 200, 1e-14) << k;
-  }
+  for (std::size_t k = 0; k < 5; ++k) EXPECT_NEAR(phi[k].get<double>(), expected[k] / 200, 1e-14) << k;
 }
 
 TEST(Profiles, GoOnAtTheOtherSideOfTheBox) {
@@ -43,7 +43,7 @@ TEST(Profiles, GoOnAtTheOtherSideOfTheBox) {
 TEST(Profiles, OfSpheresAnywhereAddUpToTheirVolume) {
   System system = loose_spheres(40);
   Draws draws(6);
-  for (std::size_t i = 0; i < 40; ++i) system.particles.position.set(i, place_in_box(draws));
+  place_anywhere(system, draws);
   for (const int bins : {1, 5, 7, 100}) {
     double sum = 0;
     const Json phi = profiles_of(system, bins)["volume_fraction"];
@@ -55,9 +55,7 @@ TEST(Profiles, OfSpheresAnywhereAddUpToTheirVolume) {
 // Layers of equal spheres two apart, at any height in the bins: every bin has the volume of one layer.
 TEST(Profiles, OfAUniformLatticeAreUniform) {
   for (const double offset : {0.0, 0.3, 1.7}) {
-    System system;
-    system.particles = make_particles(std::vector<double>(25, 1), 1);
-    system.box = PeriodicCell({edge, edge, edge}, simple_shear(0));
+    System system = equal_spheres(25);
     for (std::size_t i = 0; i < 25; ++i) {
       const std::size_t column = i % 5, layer = i / 5;
       system.particles.position.set(
@@ -87,7 +85,7 @@ double discs_between(double low, double high, double height, double radius) {
 TEST(Profiles, HaveTheSpheresOfEachRadiusApart) {
   System system = loose_spheres(40);
   Draws draws(7);
-  for (std::size_t i = 0; i < 40; ++i) system.particles.position.set(i, place_in_box(draws));
+  place_anywhere(system, draws);
   const Json found = profiles_of(system);
   const Json& by_radius = found["volume_fraction_by_radius"];
   ASSERT_EQ(by_radius.size(), 2u);
@@ -116,8 +114,7 @@ TEST(Profiles, OfEachRadiusHaveTheQuartersOfTheWindow) {
     system.particles.position.set(0, {3, height, 3});
     observable->sample(system, static_cast<std::size_t>(block));
   }
-  Json blocks;
-  observable->add_blocks_to(blocks);
+  const Json blocks = blocks_of(*observable);
   const Json& quarters = blocks["profiles"]["volume_fraction_by_radius"];
   ASSERT_EQ(quarters.size(), 4u);
   EXPECT_NEAR(quarters[0][0][0].get<double>(), small, 1e-5 * small);
@@ -142,6 +139,44 @@ TEST(Profiles, HaveTheVelocityRelativeToTheFlowByVolume) {
   const Json velocity = profiles_of(system, 1, rate)["velocity"];
   EXPECT_NEAR(velocity["flux"][0].get<double>() / velocity["volume_fraction"][0].get<double>(),
               (3 * 1 - 1 * 8) / 9.0, 1e-13);
+}
+
+// Slabs are a fifth wide: shear shifts their means and hardly changes the variance.
+TEST(VelocityVariance, IsThatOfEachBinWithoutTheMeanFlow) {
+  constexpr std::size_t bins = 3;
+  VelocityVariance variance(12, 1, bins);  // bins 4 wide
+  Draws draws(1);
+  const double wanted[] = {1.0, 4.0, 0.25};
+  for (int k = 0; k < 60000; ++k) {
+    const double y = draws.uniform(0, 12), spread = std::sqrt(12 * wanted[static_cast<std::size_t>(y / 4)]);
+    const auto scatter = [&] { return spread * draws.uniform(-0.5, 0.5); };
+    variance.add({0, y - 12, 0}, {10 * std::sin(y) + scatter(), 3 + scatter(), 0});
+  }
+  const Json found = variance.value();
+  for (std::size_t bin = 0; bin < bins; ++bin) {
+    // Within a slab the flow 10 sin y varies by at most 2, a variance of at most 1/3.
+    EXPECT_NEAR(found[1][bin].get<double>(), wanted[bin], 0.05 * wanted[bin]) << bin;
+    EXPECT_GE(found[0][bin].get<double>(), 0.95 * wanted[bin]) << bin;
+    EXPECT_LE(found[0][bin].get<double>(), 1.05 * wanted[bin] + 1.0 / 3) << bin;
+    EXPECT_EQ(found[2][bin], 0) << bin;
+  }
+}
+
+// Two samples of each slab, 1 and 3: the variance is 2, not the mean squared deviation from their mean, 1.
+TEST(VelocityVariance, HasNoBiasOfFewSamples) {
+  VelocityVariance variance(2, 1, 1);
+  for (int slab = 0; slab < 10; ++slab) {
+    for (const double u : {1.0, 3.0}) variance.add({0, 0.2 * slab + 0.1, 0}, {u + 100 * slab, 0, 0});
+  }
+  EXPECT_NEAR(variance.value()[0][0].get<double>(), 2, 1e-9);
+}
+
+TEST(VelocityVariance, OfABinThatNoSlabKnowsIsNull) {
+  VelocityVariance variance(4, 1, 2);
+  variance.add({0, 0.1, 0}, {1, 0, 0});
+  variance.add({0, 0.1, 0}, {1, 0, 0});
+  variance.add({0, 2.1, 0}, {1, 0, 0});
+  EXPECT_EQ(variance.value()[0], (Json{0.0, nullptr}));
 }
 
 }  // namespace

@@ -1,25 +1,30 @@
 // The correlation of the structural stress, for pairs that are fixed or alternate between near and far.
 #include <gtest/gtest.h>
 
-#include "engine/kernels/pair_kinds.h"
 #include "tests/engine/observables/loose_spheres.h"
 
 namespace peclet::engine {
 namespace {
 
+constexpr double pair_energy = 2, pair_volume = edge * edge * edge;
 // A pair within both shells has the stress -A n n, A = 2 * 20 kT / V, for any n. Its traceless part squared
 // is 2/3 A^2, and G = (V / kT) / 10 of that at all lags while nothing moves.
+constexpr double pair_stress = 2 * 20 * pair_energy / pair_volume;
+constexpr double modulus = pair_volume / pair_energy / 10 * 2 / 3 * pair_stress * pair_stress;
+
+// Returns a pair of spheres at this separation.
+System pair_apart(const Scene& scene, const Vector3& separation) {
+  System system = loose_spheres(2);
+  system.particles.position.set(0, {5, 5, 5});
+  system.particles.position.set(1, Vector3{5, 5, 5} + separation);
+  build_list(system, scene.physics);
+  return system;
+}
+
 TEST(StressCorrelation, OfAFrozenPairIsTheSquareOfItsTracelessStress) {
   const Scene scene = scene_with("stress_correlation");
-  constexpr double thermal_energy = 2, volume = edge * edge * edge;
-  constexpr double stress = 2 * 20 * thermal_energy / volume;
-  constexpr double modulus = volume / thermal_energy / 10 * 2 / 3 * stress * stress;
   for (const Vector3& along : {Vector3{1, 0, 0}, Vector3{1, -1, 0}, Vector3{1, 2, 3}}) {
-    System system = loose_spheres(2);
-    system.particles.position.set(0, {5, 5, 5});
-    system.particles.position.set(1, Vector3{5, 5, 5} + (3.01 / norm(along)) * along);
-    system.list = NeighbourList(range_table(make_pair_kinds(scene.physics, {1, 2}), 2), 0.1);
-    system.list.build(system.particles, system.box);
+    const System system = pair_apart(scene, (3.01 / norm(along)) * along);
     const auto observable = observable_of(scene, system, 256);
     for (int k = 0; k < 256; ++k) observable->sample(system, 0);
     const Json mean = mean_of(*observable);
@@ -39,18 +44,7 @@ TEST(StressCorrelation, OfAFrozenPairIsTheSquareOfItsTracelessStress) {
 // height A^2 / 4; the one from lag 15 to 16 is half as high.
 TEST(StressCorrelation, IsIntegratedByTrapezia) {
   const Scene scene = scene_with("stress_correlation");
-  constexpr double thermal_energy = 2, volume = edge * edge * edge;
-  constexpr double stress = 2 * 20 * thermal_energy / volume;
-  constexpr double modulus = volume / thermal_energy / 10 * 2 / 3 * stress * stress;
-  const auto with_gap = [&](double gap) {
-    System system = loose_spheres(2);
-    system.particles.position.set(0, {5, 5, 5});
-    system.particles.position.set(1, {8 + gap, 5, 5});
-    system.list = NeighbourList(range_table(make_pair_kinds(scene.physics, {1, 2}), 2), 0.1);
-    system.list.build(system.particles, system.box);
-    return system;
-  };
-  const System near = with_gap(0.01), far = with_gap(0.5);
+  const System near = pair_apart(scene, {3.01, 0, 0}), far = pair_apart(scene, {3.5, 0, 0});
   const auto observable = observable_of(scene, near, 256);
   for (int k = 0; k < 128; ++k) {
     observable->sample(near, 0);

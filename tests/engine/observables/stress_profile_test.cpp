@@ -36,14 +36,13 @@ Json of_pair(const System& system, const Vector3& force, const SymmetricTensor& 
 }
 
 // Returns two spheres and a list of their pair.
+// Returns two spheres and a list of their pair.
 System two_spheres_at(const Vector3& first, const Vector3& second) {
   System system = loose_spheres(2);
   system.particles.position.set(0, first);
   system.particles.position.set(1, second);
   RangeTable ranges(2);
-  for (const std::size_t one : {0U, 1U}) {
-    for (const std::size_t other : {0U, 1U}) ranges.at(one, other) = 4;
-  }
+  for (const std::size_t k : {0U, 1U, 2U, 3U}) ranges.at(k / 2, k % 2) = 4;
   system.list = NeighbourList(ranges, 0.1);
   rebuild_neighbours(system, 1);
   return system;

@@ -6,18 +6,14 @@
 #include <optional>
 #include <set>
 
-#include "contract/errors.h"
 #include "engine/observables/observable.h"
-#include "engine/observables/scene_reading.h"
-#include "engine/realisation/simulation.h"
-#include "engine/terms/drag.h"
-#include "tests/engine/small_scene.h"
+#include "tests/engine/realisation/small_result.h"
 #include "tests/engine/snapshots/gsd_reader.h"
 
 namespace peclet::engine {
 namespace {
 
-constexpr std::uint64_t seed = 3, equilibration = 100, production = 320;
+constexpr std::uint64_t equilibration = 100, production = 320;
 constexpr double rounding = 0x1p-24;  // to the nearest float, relative
 
 Json scene_with_trajectory(const Json& patch = Json::object(), const Json& interval = {{"time", 0.002}}) {
@@ -28,10 +24,7 @@ Json scene_with_trajectory(const Json& patch = Json::object(), const Json& inter
 }
 
 Simulation started(const Json& document, int threads = 1) {
-  const Scene scene = read_scene(document, "scene.json");
-  Simulation simulation(scene, make_schedule(scene, "scene.json"), seed, threads, "scene.json");
-  simulation.start();
-  return simulation;
+  return engine::started(read_scene(document, "scene.json"), 3, threads);
 }
 
 GsdReader file_of(Simulation& simulation) {
@@ -43,27 +36,16 @@ struct Way {
   const char* name;
   Json patch;
 };
-const Json implicit = {{"integrator", {{"method", "implicit"}}}, {"particles", {{"density", 0.01}}}};
-Json implicit_and(const Json& patch) {
-  Json all = implicit;
-  all.update(patch);  // including nulls, which remove keys
-  return all;
-}
+Json dividing_at(double displacement) { return {{"guard", {{"largest_displacement", displacement}}}}; }
+const Json waves = Json::parse(R"({"flow": {"waves": [{"periods": 1, "sine": 0.4}], "faxen": true}})");
 const Way ways[] = {
     {"explicit", Json::object()},
-    {"implicit", implicit},
-    {"implicit_without_noise", implicit_and({{"fluid", {{"thermal_energy", nullptr}}}})},
-    {"implicit_with_divided_steps", implicit_and({{"guard", {{"largest_displacement", 0.01}}}})},
+    {"implicit", implicit_and_light},
+    {"implicit_without_noise", together({implicit_and_light, without_noise})},
+    {"implicit_with_divided_steps", together({implicit_and_light, dividing_at(0.01)})},
     {"implicit_without_noise_with_divided_steps",
-     implicit_and({{"fluid", {{"thermal_energy", nullptr}}}, {"guard", {{"largest_displacement", 0.04}}}})},
-    {"explicit_in_waves",
-     {{"flow", {{"waves", {{{"periods", 1}, {"sine", 0.4}}}}, {"faxen", true}}},
-      {"lubrication",
-       {{"form", "mari"},
-        {"inner_gap", nullptr},
-        {"outer_gap", nullptr},
-        {"regularisation", 0.03},
-        {"outer_distance", 0.1}}}}},
+     together({implicit_and_light, without_noise, dividing_at(0.04)})},
+    {"explicit_in_waves", together({waves, strained_lubrication})},
 };
 
 class TrajectoryStress : public testing::TestWithParam<Way> {};
@@ -325,7 +307,7 @@ TEST(Trajectory, ListsContactsWithTheirForces) {
 TEST(Trajectory, HasTheSameBytesOnAnyNumberOfThreads) {
   Json document = scene_with_trajectory({{"particles", {{"count", 5000}}}}, {{"time", 0.02}});
   document["duration"] = {{"equilibration", {{"time", 0.02}}}, {"production", {{"time", 0.08}}}};
-  for (const Json& patch : {Json::object(), implicit}) {
+  for (const Json& patch : {Json::object(), implicit_and_light}) {
     document.merge_patch(patch);
     Simulation one = started(document, 1), two = started(document, 2);
     ASSERT_TRUE(one.advance(1000) && two.advance(1000));

@@ -1,9 +1,8 @@
 // Transients of known stresses.
 #include <gtest/gtest.h>
 
-#include "engine/observables/scene_reading.h"
-#include "engine/realisation/simulation.h"
 #include "tests/engine/observables/loose_spheres.h"
+#include "tests/engine/realisation/small_result.h"
 
 namespace peclet::engine {
 namespace {
@@ -99,9 +98,7 @@ TEST_P(TransientOfEither, OfADiluteRampIsThatOfTheMiddleOfEachPart) {
        {"duration", {{"equilibration", {{"time", 0}}}, {"production", {{"time", 1}}}}}});
   document["flow"] = {
       {"segments", {{{"shear_rate", 0}, {"final_rate", last_rate}, {"time", 1}}, {{"shear_rate", 0}}}}};
-  const Scene scene = read_scene(document, "scene.json");
-  Simulation simulation(scene, make_schedule(scene, "scene.json"), 3, 1, "scene.json");
-  simulation.start();
+  Simulation simulation = started(read_scene(document, "scene.json"), 3);
   ASSERT_EQ(simulation.advance(2000)->cause, Ending::Cause::completed);
   const std::vector<double> stresses =
       mean_of(*simulation.observables().front()).at("transient").at("shear_stress");

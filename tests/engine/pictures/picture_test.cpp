@@ -3,12 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <chrono>
-
-#include "contract/errors.h"
 #include "engine/pictures/colouring.h"
 #include "engine/terms/keyed_random.h"
+#include "tests/contract/refusal.h"
 
 namespace peclet::engine {
 namespace {
@@ -25,12 +22,7 @@ Snapshot small_frame() {
 }
 
 std::string refusal(const Snapshot& snapshot, const PictureOptions& options) {
-  try {
-    picture_of(snapshot, options);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return refusal_by([&] { picture_of(snapshot, options); });
 }
 
 TEST(Picture, HasTheSizeThatIsAskedForAndAWhiteGround) {
@@ -145,7 +137,7 @@ TEST(Picture, OfWhatTheFrameDoesNotHaveIsRefused) {
   PictureOptions options;
   options.file = "t.gsd";
   const auto expect = [&](const PictureOptions& asked, const std::string& reason) {
-    EXPECT_NE(refusal(small_frame(), asked).find(reason), std::string::npos) << refusal(small_frame(), asked);
+    EXPECT_TRUE(contains(refusal(small_frame(), asked), reason));
   };
   for (const auto& [colour, reason] :
        std::vector<std::pair<std::string, std::string>>{{"speed", "t.gsd: has no velocities"},

@@ -5,15 +5,11 @@
 #include <sstream>
 
 #include "contract/durable_file.h"
-#include "contract/errors.h"
 #include "contract/sha256.h"
-#include "engine/observables/scene_reading.h"
 #include "engine/pictures/picture.h"
 #include "engine/realisation/growing_file.h"
-#include "engine/realisation/job.h"
-#include "engine/realisation/simulation.h"
 #include "engine/snapshots/snapshot.h"
-#include "tests/engine/small_scene.h"
+#include "tests/engine/realisation/small_result.h"
 #include "tests/engine/temporary_folder.h"
 
 namespace peclet::engine {
@@ -42,9 +38,7 @@ Text read_extended_xyz(const std::string& bytes) {
   std::getline(lines, line);
   const std::size_t count = std::stoul(line);
   std::getline(lines, line);
-  EXPECT_NE(line.find(" Properties=id:I:1:pos:R:3:radius:R:1:velo:R:3:angular_velocity:R:3 "),
-            std::string::npos)
-      << line;
+  EXPECT_TRUE(contains(line, " Properties=id:I:1:pos:R:3:radius:R:1:velo:R:3:angular_velocity:R:3 "));
   std::istringstream lattice(line.substr(line.find("Lattice=\"") + 9));
   for (double& component : text.lattice) lattice >> component;
   text.time = number_after(line, "Time=");
@@ -89,37 +83,23 @@ TEST(FinalConfiguration, IsReadBackAsItWas) {
     const Sphere& sphere = text.spheres[i];
     EXPECT_EQ(sphere.id, i);
     EXPECT_EQ(sphere.radius, system.particles.radius[place[i]]);
-    const Vector3 position = system.particles.position[place[i]],
-                  velocity = system.particles.velocity[place[i]];
-    EXPECT_TRUE(sphere.position.x == position.x && sphere.position.y == position.y &&
-                sphere.position.z == position.z);
-    EXPECT_TRUE(sphere.velocity.x == velocity.x && sphere.velocity.y == velocity.y &&
-                sphere.velocity.z == velocity.z);
+    EXPECT_TRUE(sphere.position == system.particles.position[place[i]]);
+    EXPECT_TRUE(sphere.velocity == system.particles.velocity[place[i]]);
     EXPECT_TRUE(sphere.spin == system.particles.angular_velocity[place[i]]);
   }
 }
 
-JobSpecification job_of(const Json& scene, const std::string& files) {
-  JobSpecification job;
-  job.header = {"point", 2};
-  job.scene = scene;
-  job.scene_name = "scene.json";
-  job.files = files;
-  return job;
-}
+const Json with_final_configuration = {{"files", {{"final_configuration", true}}}};
 
 TEST(FinalConfiguration, OfARealisationIsThatOfTheSameTimeLoop) {
-  const Json scene = small_scene({{"files", {{"final_configuration", true}}}});
+  const Json scene = small_scene(with_final_configuration);
   const TemporaryFolder folder;
   const Json result = run_job(job_of(scene, (folder / "job@").string()), {}).value();
   const std::string bytes = read_file(folder / "job@final.xyz");
   const Json listed = {{{"name", "final.xyz"}, {"bytes", bytes.size()}, {"sha256", sha256(bytes)}}};
   EXPECT_EQ(result.at("files"), listed);
 
-  const Scene read = read_scene(small_scene(), "scene.json");
-  const Schedule schedule = make_schedule(read, "scene.json");
-  Simulation simulation(read, schedule, 2, 1, "scene.json");
-  simulation.start();
+  Simulation simulation = started(scene_from(), 2);
   while (!simulation.advance(1000)) {
   }
   const ParticleState& particles = simulation.system().particles;
@@ -139,8 +119,8 @@ TEST(FinalConfiguration, OfARealisationIsThatOfTheSameTimeLoop) {
 
 // A turned cell and its strain: L = e (x, -y, 0), and the Hencky strain e t.
 TEST(FinalConfiguration, OfAnExtensionIsReadBack) {
-  const Json scene = small_scene({{"files", {{"final_configuration", true}}},
-                                  {"flow", {{"shear_rate", nullptr}, {"extension_rate", 1}}}});
+  const Json scene = small_scene(
+      together({with_final_configuration, {{"flow", {{"shear_rate", nullptr}, {"extension_rate", 1}}}}}));
   const TemporaryFolder folder;
   run_job(job_of(scene, (folder / "job@").string()), {}).value();
   const SnapshotFile file(folder / "job@final.xyz");
@@ -164,8 +144,7 @@ TEST(FinalConfiguration, IsLeftOnlyWhereItIsAskedFor) {
 }
 
 TEST(FinalConfiguration, IsRefusedWhereNobodyTakesIt) {
-  const Json scene = small_scene({{"files", {{"final_configuration", true}}}});
-  EXPECT_THROW(run_job(job_of(scene, ""), {}), InputError);
+  EXPECT_THROW(run_job(job_of(small_scene(with_final_configuration)), {}), InputError);
 }
 
 }  // namespace

@@ -4,23 +4,18 @@
 
 #include <numbers>
 
-#include "engine/observables/scene_reading.h"
-#include "engine/realisation/simulation.h"
-#include "tests/engine/small_scene.h"
+#include "tests/engine/realisation/small_result.h"
 
 namespace peclet::engine {
 namespace {
 
 constexpr double rate = 2, thermal_energy = 0.02, count = 3000;
 
-System started(const Json& patch = Json::object()) {
+System system_at_start(const Json& patch = Json::object()) {
   Json document = small_scene({{"particles", {{"count", count}}}, {"volume_fraction", 0.1}});
   document.merge_patch(patch);
   document.erase("repulsion");  // no forces that move spheres before the start
-  const Scene scene = read_scene(document, "scene.json");
-  Simulation simulation(scene, make_schedule(scene, "scene.json"), 5, 1, "scene.json");
-  simulation.start();
-  return simulation.system();
+  return started(read_scene(document, "scene.json"), 5).system();
 }
 
 double product(const Vector3& a, const Vector3& b) { return dot(a, b) / 3; }
@@ -28,7 +23,7 @@ double product(const Vector3& a, const Vector3& b) { return dot(a, b) / 3; }
 // In units of the standard deviations sqrt(kT / m) and sqrt(kT / I), I = 2/5 m a^2: the mean is 0, and the
 // mean square is 1 with variance 2 / 3 N. Velocity and spin are uncorrelated.
 TEST(InitialVelocities, AreThoseOfEquilibriumAboutTheFlow) {
-  const System system = started();
+  const System system = system_at_start();
   const ParticleState& p = system.particles;
   Vector3 mean_velocity, mean_spin;
   double velocity_squared = 0, spin_squared = 0, both = 0;
@@ -54,7 +49,7 @@ TEST(InitialVelocities, AreThoseOfEquilibriumAboutTheFlow) {
 
 // With one tau_I for all sizes m = 4 pi / 3 rho a_i, a = 1: kT / m for each size.
 TEST(InitialVelocities, AreOfTheMassOfEachSize) {
-  const System system = started({{"particles", {{"density_rule", "equal-inertia"}}}});
+  const System system = system_at_start({{"particles", {{"density_rule", "equal-inertia"}}}});
   const ParticleState& p = system.particles;
   double squares[2] = {0, 0}, number[2] = {0, 0};
   for (std::size_t i = 0; i < p.count(); ++i) {

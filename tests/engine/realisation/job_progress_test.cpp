@@ -1,24 +1,16 @@
 // Progress messages of a job.
 #include <gtest/gtest.h>
 
-#include <string>
-#include <vector>
-
-#include "engine/realisation/job.h"
-#include "tests/engine/small_scene.h"
+#include "tests/engine/realisation/small_result.h"
 
 namespace peclet::engine {
 namespace {
 
 std::vector<Progress> told_of(const Json& scene) {
   std::vector<Progress> told;
-  JobSpecification job;
-  job.header = {"point", 2};
-  job.scene = scene;
-  job.scene_name = "scene.json";
   JobEvents events;
   events.progress = [&](const Progress& progress) { told.push_back(progress); };
-  run_job(job, events);
+  run_job(job_of(scene), events);
   return told;
 }
 

@@ -63,9 +63,7 @@ TEST(Packing, SixtyPercentIsReachedFromEverySeed) {
 TEST(Packing, VolumeFractionIsThatOfTheSpheres) {
   const Packing packing = packed(equal_volumes(100), 0.45, 1);
   double volume = 0;
-  for (const double a : packing.particles.radius) {
-    volume += 4 * std::numbers::pi / 3 * a * a * a;
-  }
+  for (const double a : packing.particles.radius) volume += 4 * std::numbers::pi / 3 * a * a * a;
   EXPECT_NEAR(volume / packing.box.volume(), 0.45, 1e-12);
 }
 
@@ -133,28 +131,28 @@ TEST(Packing, DoesNotDependOnTheUnitOfLength) {
   constexpr double unit = 0x1p-30;  // nanometres in metres
   const Scaled large = packed_in_units(1, 0.5), small = packed_in_units(unit, 0.5);
   ASSERT_EQ(large.position.size(), 8u);
-  for (std::size_t i = 0; i < 8; ++i) {
-    EXPECT_EQ(unit * large.position[i].x, small.position[i].x);
-    EXPECT_EQ(unit * large.position[i].y, small.position[i].y);
-    EXPECT_EQ(unit * large.position[i].z, small.position[i].z);
-  }
+  for (std::size_t i = 0; i < 8; ++i) EXPECT_TRUE(unit * large.position[i] == small.position[i]) << i;
   EXPECT_GT(packed_in_units(1, 0.72).reached, 0.5);
   EXPECT_EQ(packed_in_units(1, 0.72).reached, packed_in_units(unit, 0.72).reached);
 }
 
+// Expects these numbers of spheres of each radius.
+void expect_numbers(const Particles& particles,
+                    const std::vector<std::pair<double, std::ptrdiff_t>>& expected) {
+  const std::vector<double> radius = species_radii(particles);
+  for (const auto& [a, number] : expected)
+    EXPECT_EQ(std::count(radius.begin(), radius.end(), a), number) << a;
+}
+
 TEST(SpeciesRadii, EqualVolumesOfAThousandAreThePublishedNumbers) {
-  const std::vector<double> radius = species_radii(equal_volumes(1000));
-  EXPECT_EQ(std::count(radius.begin(), radius.end(), 1.0), 733);
-  EXPECT_EQ(std::count(radius.begin(), radius.end(), 1.4), 267);
+  expect_numbers(equal_volumes(1000), {{1.0, 733}, {1.4, 267}});
 }
 
 // 65536 of radii 1 and 3 in volumes 1 : 0.25 (Monti et al. 2021): 64935 + 601.
 TEST(SpeciesRadii, LargeMixtureIsThePublishedOne) {
   Particles particles = equal_volumes(65536);
   particles.species = {{1.0, 0.8}, {3.0, 0.2}};
-  const std::vector<double> radius = species_radii(particles);
-  EXPECT_EQ(std::count(radius.begin(), radius.end(), 1.0), 64935);
-  EXPECT_EQ(std::count(radius.begin(), radius.end(), 3.0), 601);
+  expect_numbers(particles, {{1.0, 64935}, {3.0, 601}});
 }
 
 TEST(SpeciesRadii, AreRoundedByLargestRemainders) {
@@ -162,10 +160,7 @@ TEST(SpeciesRadii, AreRoundedByLargestRemainders) {
   particles.shares = Particles::Shares::number;
   // Exactly 4.4, 3.35 and 2.25; the remaining sphere goes to the first.
   particles.species = {{1.0, 0.44}, {2.0, 0.335}, {3.0, 0.225}};
-  const std::vector<double> radius = species_radii(particles);
-  EXPECT_EQ(std::count(radius.begin(), radius.end(), 1.0), 5);
-  EXPECT_EQ(std::count(radius.begin(), radius.end(), 2.0), 3);
-  EXPECT_EQ(std::count(radius.begin(), radius.end(), 3.0), 2);
+  expect_numbers(particles, {{1.0, 5}, {2.0, 3}, {3.0, 2}});
 }
 
 }  // namespace

@@ -4,10 +4,9 @@
 
 #include "engine/integrators/stability.h"
 #include "engine/kernels/pair_recipes.h"
-#include "engine/observables/scene_reading.h"
 #include "engine/realisation/packing.h"
-#include "engine/realisation/simulation.h"
-#include "tests/engine/small_scene.h"
+#include "tests/engine/few_spheres.h"
+#include "tests/engine/realisation/small_result.h"
 
 namespace peclet::engine {
 namespace {
@@ -29,13 +28,9 @@ Scene repulsive_scene() {
 }
 
 System packed(const Scene& scene) {
-  System system;
   const std::vector<double> radius = species_radii(scene.particles);
-  system.particles = make_particles(radius, scene.particles.density);
   const double edge = cube_edge(radius, scene.volume_fraction);
-  system.box = PeriodicCell({edge, edge, edge}, simple_shear(scene.physics.flow.rate()));
-  const std::vector<double> sizes = distinct_radii(radius);
-  system.list = NeighbourList(range_table(make_pair_kinds(scene.physics, sizes), sizes.size()), 0.1);
+  System system = spheres_in({edge, edge, edge}, scene.physics, radius, scene.particles.density);
   system.springs = SpringField(spring_kinds(required_terms(scene.physics)), 0);
   place_randomly(system.particles, system.box, 1);
   return system;
@@ -52,9 +47,7 @@ TEST(Relaxation, MovesSpheresAndNothingElse) {
   EXPECT_EQ(system.box.velocity_gradient(), simple_shear(scene.physics.flow.rate()));
   std::vector<std::uint32_t> id = system.particles.id;
   std::sort(id.begin(), id.end());
-  for (std::uint32_t i = 0; i < id.size(); ++i) {
-    EXPECT_EQ(id[i], i);
-  }
+  for (std::uint32_t i = 0; i < id.size(); ++i) EXPECT_EQ(id[i], i);
 }
 
 // Flow and noise exert no force here.

@@ -1,4 +1,4 @@
-// The numbers of a completed realisation, compared with independent sums.
+// The numbers of a completed realisation, compared with independent sums, and their list of quantities.
 #include "engine/realisation/result.h"
 
 #include <fmt/format.h>
@@ -8,10 +8,8 @@
 #include <numeric>
 
 #include "engine/forces/configuration.h"
-#include "engine/observables/scene_reading.h"
 #include "tests/engine/every_image.h"
 #include "tests/engine/realisation/small_result.h"
-#include "tests/engine/small_scene.h"
 
 namespace peclet::engine {
 namespace {
@@ -36,12 +34,7 @@ TEST(Result, TotalIsTheSumOfItsParts) {
 }
 
 TEST(Result, AbsentTermsAreAbsent) {
-  const Json result = result_of({{"contact",
-                                  {{"friction", nullptr},
-                                   {"rolling_stiffness", nullptr},
-                                   {"rolling_friction", nullptr},
-                                   {"normal_damping", nullptr}}},
-                                 {"repulsion", nullptr}});
+  const Json result = result_of(together({elastic_contacts, {{"repulsion", nullptr}}}));
   std::vector<std::string> names;
   for (const auto& [name, tensor] : result.at("mean").at("stress").items()) names.push_back(name);
   EXPECT_EQ(names, (std::vector<std::string>{"brownian_lubrication", "contact_normal", "lubrication",
@@ -196,7 +189,7 @@ TEST(Result, StatesWhatWasSimulated) {
   const Json& result = usual_result();
   EXPECT_EQ(result.at("schema_version"), 1);
   EXPECT_EQ(result.at("point"), "point");
-  EXPECT_EQ(result.at("seed"), seed);
+  EXPECT_EQ(result.at("seed"), usual_seed);
   EXPECT_EQ(result.at("method"), "explicit");
   EXPECT_EQ(result.at("timestep"), 0.002);
   EXPECT_EQ(result.at("steps"), (Json{{"equilibration", 100}, {"production", 320}}));
@@ -209,7 +202,7 @@ TEST(Result, StatesWhatWasSimulated) {
 }
 
 TEST(Result, AtRestStressesAreInTheScenesUnitsAndThereIsNoViscosity) {
-  const Json result = result_of({{"flow", {{"shear_rate", 0}}}});
+  const Json result = result_of(at_rest);
   EXPECT_EQ(result.at("units"), "scene");
   const Json& mean = result.at("mean");
   EXPECT_TRUE(mean.at("relative_viscosity").is_null());
@@ -228,12 +221,10 @@ double variance(const std::vector<double>& series) {
 // Lubrication opposes the noise, so the stress varies less with the stress of the noise than without it.
 TEST(Result, AtRestTheStressScattersLessWithThatOfTheNoise) {
   const Json result = result_of(
-      {{"flow", {{"shear_rate", 0}}},
-       {"repulsion", nullptr},
-       {"contact", {{"friction", nullptr}, {"rolling_stiffness", nullptr}, {"rolling_friction", nullptr}}},
-       {"lubrication", {{"inner_gap", 1e-3}, {"outer_gap", 0.05}}},
-       {"integrator", {{"method", "implicit"}, {"timestep", 0.008}}},
-       {"duration", {{"production", {{"time", 1280 * 0.008}}}}}});
+      together({at_rest, without_friction,
+                Json::parse(R"({"repulsion": null, "lubrication": {"inner_gap": 1e-3, "outer_gap": 0.05},
+                      "integrator": {"method": "implicit", "timestep": 0.008},
+                      "duration": {"production": {"time": 10.24}}})")}));
   const Json& terms = result.at("blocks").at("shear_stress");
   std::vector<double> whole(32), without(32);
   for (std::size_t k = 0; k < 32; ++k) {
@@ -245,10 +236,23 @@ TEST(Result, AtRestTheStressScattersLessWithThatOfTheNoise) {
 }
 
 TEST(Result, SameSeedSameBytesButForTheCost) {
-  Json again = result_of(Json::object()), first = usual_result();
-  again.erase("cost");
-  first.erase("cost");
-  EXPECT_EQ(again.dump(), first.dump());
+  EXPECT_EQ(without_cost(result_of(Json::object())).dump(), without_cost(usual_result()).dump());
+}
+
+// Calls look(step, configuration) for every step of the production window.
+template <class Look>
+void at_every_step(const Json& patch, const Look& look) {
+  const Scene scene = scene_from(patch);
+  Simulation simulation = started(scene, usual_seed);
+  simulation.advance(100);
+  for (int step = 0; step < 320; ++step) {
+    simulation.advance(1);
+    Configuration configuration;
+    configuration.physics = scene.physics;
+    configuration.particles = simulation.system().particles;
+    configuration.box = simulation.system().box;
+    look(step, configuration);
+  }
 }
 
 // Stresslets of spheres in waves depend on positions: the mean over samples, one every ten steps of this
@@ -257,20 +261,11 @@ TEST(Result, HasTheStressletsOfSpheresWhereTheWavesAre) {
   const Json waves =
       Json::parse(R"([{"periods": 1, "sine": 0.5}, {"periods": 2, "sine": 0.3, "cosine": -0.4}])");
   const Json patch = {{"flow", {{"waves", waves}, {"faxen", true}}}, {"fluid", {{"thermal_energy", 0}}}};
-  const Scene scene = read_scene(small_scene(patch), "scene.json");
-  Simulation simulation(scene, make_schedule(scene, ""), seed, 1, "");
-  simulation.start();
-  simulation.advance(100);
   double sum = 0;
-  for (int step = 0; step < 320; ++step) {
-    simulation.advance(1);
-    if (step % 10 != 0) continue;
-    Configuration configuration;
-    configuration.physics = scene.physics;
-    configuration.particles = simulation.system().particles;
-    configuration.box = simulation.system().box;
+  at_every_step(patch, [&](int step, const Configuration& configuration) {
+    if (step % 10 != 0) return;
     sum += evaluate_configuration(configuration).at("stress").at("stresslet")[0][1].get<double>();
-  }
+  });
   const Json result = result_of(patch);
   const double found = result.at("mean").at("stress").at("stresslet")[3];
   constexpr double unit = 0.1 * 2;  // viscosity times rate
@@ -284,19 +279,10 @@ TEST(Result, HasTheStressletsOfSpheresWhereTheWavesAre) {
 // Contact and repulsion depend on positions alone; every step of the window is evaluated again, one
 // configuration at a time.
 TEST(Result, MeansAreTakenOverEveryStepOfTheProductionWindow) {
-  const Scene scene = read_scene(small_scene(), "scene.json");
-  Simulation simulation(scene, make_schedule(scene, ""), seed, 1, "");
-  simulation.start();
-  simulation.advance(100);
   std::map<std::string, double> sums;
   double contacts = 0, overlaps = 0, largest_overlap = 0;
-  for (int step = 0; step < 320; ++step) {
-    simulation.advance(1);
-    const ParticleState& p = simulation.system().particles;
-    Configuration configuration;
-    configuration.physics = scene.physics;
-    configuration.particles = p;
-    configuration.box = simulation.system().box;
+  at_every_step(Json::object(), [&](int, const Configuration& configuration) {
+    const ParticleState& p = configuration.particles;
     const Json stress = evaluate_configuration(configuration).at("stress");
     for (const char* term : {"contact_normal", "repulsion"}) {
       sums[term] += stress.at(term)[0][1].get<double>();
@@ -311,7 +297,7 @@ TEST(Result, MeansAreTakenOverEveryStepOfTheProductionWindow) {
       overlaps += overlap;
       largest_overlap = std::max(largest_overlap, overlap);
     }
-  }
+  });
   const Json& mean = usual_result().at("mean");
   constexpr double unit = 0.1 * 2 * 320;  // viscosity times rate times steps
   for (const char* term : {"contact_normal", "repulsion"}) {
@@ -323,6 +309,68 @@ TEST(Result, MeansAreTakenOverEveryStepOfTheProductionWindow) {
   EXPECT_NEAR(mean.at("contacts_per_particle"), 2 * contacts / 320 / 60, 1e-12);
   EXPECT_NEAR(mean.at("mean_overlap"), overlaps / contacts, 1e-12);
   EXPECT_NEAR(usual_result().at("largest_overlap"), largest_overlap, 1e-12);
+}
+
+// Returns the number of entries along each axis of a value.
+std::vector<std::size_t> shape_of(const Json& value) {
+  std::vector<std::size_t> shape;
+  for (const Json* list = &value; list->is_array(); list = &list->front()) shape.push_back(list->size());
+  return shape;
+}
+
+const Json& at_path(const Json& document, const std::string& name) {
+  return document.at(Json::json_pointer('/' + name));
+}
+
+TEST(Result, DescribesItsQuantitiesAsTheyAre) {
+  const Json sheared = result_of(
+      {{"observables",
+        {"stress", "mean_squared_displacement", "pair_distribution", "contact_network", "profiles"}},
+       {"pair_distribution", {{"range", 3}}}});
+  EXPECT_TRUE(sheared.at("quantities").contains("profiles/velocity"));
+  const Json resting =
+      together({at_rest, {{"observables", {"mean_squared_displacement", "stress_correlation"}}}});
+  const Json result_at_rest = result_of(resting);
+  const Json responding = result_of(
+      together({at_rest,
+                elastic_contacts,
+                {{"duration", {{"production", {{"time", 1.2}}}}}, {"observables", {"linear_response"}}}}));
+  EXPECT_TRUE(responding.at("quantities").contains("zero_shear_viscosity"));
+  for (const Json& result : {sheared, result_at_rest, responding}) {
+    for (const auto& [name, quantity] : result.at("quantities").items()) {
+      const Json& value = at_path(result.at("mean"), name);
+      const bool is_ratio = quantity.at("estimator") == "ratio";
+      std::vector<std::size_t> shape;
+      for (const Json& axis : quantity.value("axes", Json::array()))
+        shape.push_back(axis.at("values").size());
+      EXPECT_EQ(shape_of(is_ratio ? value.at(quantity.at("numerator")) : value), shape) << name;
+      EXPECT_FALSE(quantity.at("symbol").get<std::string>().empty()) << name;
+      EXPECT_FALSE(quantity.at("unit").get<std::string>().empty()) << name;
+      if (shape.empty() && result.at("blocks").contains(Json::json_pointer('/' + name))) {
+        EXPECT_GE(result.at("inefficiencies").at(name).get<double>(), 1) << name;
+      }
+    }
+  }
+  EXPECT_EQ(sheared.at("quantities").at("relative_viscosity"),
+            (Json{{"symbol", "η_r"}, {"unit", "1"}, {"estimator", "mean"}}));
+  EXPECT_EQ(sheared.at("quantities").at("pressure").at("unit"), "η γ̇");
+  EXPECT_EQ(result_at_rest.at("quantities").at("pressure").at("unit"), "stress");
+  EXPECT_FALSE(result_at_rest.at("quantities").contains("relative_viscosity"));
+  // The axes are those of the lags.
+  for (const char* name : {"mean_squared_displacement", "stress_correlation"}) {
+    const std::string vector = std::string(name) + (name[0] == 'm' ? "/all/y" : "/modulus");
+    EXPECT_EQ(result_at_rest.at("quantities").at(vector).at("axes")[0].at("values"),
+              result_at_rest.at("mean").at(name).at("time"))
+        << name;
+  }
+}
+
+TEST(Result, AxesOfProfilesByRadiusAreRadiiAndHeights) {
+  const Json result = result_of({{"observables", {"profiles"}}, {"profiles", {{"bins", 4}}}});
+  const Json axes = result.at("quantities").at("profiles/volume_fraction_by_radius").at("axes");
+  EXPECT_EQ(axes[0], (Json{{"name", "radius"}, {"unit", "length"}, {"values", {1.0, 1.4}}}));
+  EXPECT_EQ(axes[1], result.at("quantities").at("profiles/volume_fraction").at("axes")[0]);
+  EXPECT_EQ(result.at("mean").at("profiles").at("volume_fraction_by_radius").size(), 2u);
 }
 
 }  // namespace

@@ -4,93 +4,58 @@
 #include <map>
 #include <memory>
 
-#include "engine/observables/scene_reading.h"
 #include "engine/realisation/checkpoint.h"
-#include "engine/realisation/job.h"
-#include "tests/engine/small_scene.h"
+#include "tests/engine/realisation/small_result.h"
 #include "tests/engine/temporary_folder.h"
 
 namespace peclet::engine {
 namespace {
 
-constexpr std::uint64_t seed = 3;
-constexpr std::uint64_t total_steps = 420;
+constexpr std::uint64_t run_seed = 3, total_steps = 420;
 
 // A way to step, with its patch of the scene.
 struct Way {
   const char* name;
   Json patch;
 };
-const Json strained_lubrication = {{"form", "mari"},
-                                   {"inner_gap", nullptr},
-                                   {"outer_gap", nullptr},
-                                   {"regularisation", 0.03},
-                                   {"outer_distance", 0.1}};
-const Json waves = {{"waves", {{{"periods", 1}, {"sine", 0.4}}}}, {"faxen", true}};
+Json dividing_at(double displacement) { return {{"guard", {{"largest_displacement", displacement}}}}; }
+const Json waves = Json::parse(R"({"flow": {"waves": [{"periods": 1, "sine": 0.4}], "faxen": true}})");
+const Json kinetic = Json::parse(R"({"contact": {"kinetic_friction": 0.3}})");
+const Json without_rolling =
+    Json::parse(R"({"contact": {"rolling_stiffness": null, "rolling_friction": null}})");
 const Way ways[] = {
     {"explicit", Json::object()},
-    // Less inertia, so that large steps resolve part of its range.
-    {"implicit", {{"integrator", {{"method", "implicit"}}}, {"particles", {{"density", 0.01}}}}},
-    {"implicit_without_noise",
-     {{"integrator", {{"method", "implicit"}}},
-      {"particles", {{"density", 0.01}}},
-      {"fluid", {{"thermal_energy", nullptr}}}}},
-    {"implicit_with_divided_steps",
-     {{"integrator", {{"method", "implicit"}}},
-      {"particles", {{"density", 0.01}}},
-      {"guard", {{"largest_displacement", 0.01}}}}},
+    {"implicit", implicit_and_light},
+    {"implicit_without_noise", together({implicit_and_light, without_noise})},
+    {"implicit_with_divided_steps", together({implicit_and_light, dividing_at(0.01)})},
     {"implicit_without_noise_with_divided_steps",
-     {{"integrator", {{"method", "implicit"}}},
-      {"particles", {{"density", 0.01}}},
-      {"fluid", {{"thermal_energy", nullptr}}},
-      {"guard", {{"largest_displacement", 0.04}}}}},
-    {"with_strained_lubrication_in_waves", {{"lubrication", strained_lubrication}, {"flow", waves}}},
+     together({implicit_and_light, without_noise, dividing_at(0.04)})},
+    {"with_strained_lubrication_in_waves", together({strained_lubrication, waves})},
     {"implicit_with_strained_lubrication_in_waves",
-     {{"lubrication", strained_lubrication},
-      {"flow", waves},
-      {"integrator", {{"method", "implicit"}}},
-      {"particles", {{"density", 0.01}}},
-      {"fluid", {{"thermal_energy", nullptr}}}}},
-    {"with_kinetic_friction", {{"contact", {{"kinetic_friction", 0.3}}}}},
+     together({strained_lubrication, waves, implicit_and_light, without_noise})},
+    {"with_kinetic_friction", kinetic},
     {"implicit_with_kinetic_friction",
-     {{"integrator", {{"method", "implicit"}}},
-      {"contact", {{"kinetic_friction", 0.3}, {"rolling_stiffness", nullptr}, {"rolling_friction", nullptr}}},
-      {"particles", {{"density", 0.01}}},
-      {"fluid", {{"thermal_energy", nullptr}}}}},
-    {"with_every_observable_of_a_flow",
-     {{"observables",
-       {"mean_squared_displacement", "pair_distribution", "contact_network", "fabric", "profiles",
-        "trajectory"}},
-      {"pair_distribution", {{"range", 3}}}}},
+     together({kinetic, without_rolling, implicit_and_light, without_noise})},
+    {"with_every_observable_of_a_flow", Json::parse(R"({
+         "pair_distribution": {"range": 3}, "observables": [
+         "mean_squared_displacement", "pair_distribution", "contact_network",
+         "fabric", "profiles", "trajectory"]})")},
 };
 const auto name_of_way = [](const auto& way) { return std::string(way.param.name); };
 
 class ResumedRun : public testing::TestWithParam<Way> {
  protected:
-  std::unique_ptr<Simulation> simulation(int threads = 1) const {
-    return std::make_unique<Simulation>(scene_, make_schedule(scene_, "scene.json"), seed, threads,
-                                        "scene.json");
-  }
-  std::unique_ptr<Simulation> started(int threads = 1) const {
-    auto fresh = simulation(threads);
-    fresh->start();
-    return fresh;
-  }
-
-  static std::string bytes_of(const Simulation& simulation) {
-    ArchiveWriter archive;
-    simulation.save(archive);
-    return archive.bytes();
-  }
+  Simulation simulation(int threads = 1) const { return simulation_of(scene_, run_seed, threads); }
+  Simulation started(int threads = 1) const { return engine::started(scene_, run_seed, threads); }
 
   // Returns the final state of the uninterrupted run.
   const std::string& uncut() const {
     static std::map<std::string, std::string> bytes;
     std::string& of_method = bytes[GetParam().name];
     if (of_method.empty()) {
-      const auto whole = started();
-      EXPECT_TRUE(whole->advance(total_steps).has_value());
-      of_method = bytes_of(*whole);
+      Simulation whole = started();
+      EXPECT_TRUE(whole.advance(total_steps).has_value());
+      of_method = bytes_of(whole);
     }
     return of_method;
   }
@@ -99,49 +64,37 @@ class ResumedRun : public testing::TestWithParam<Way> {
     return held_contacts(system.list, system.particles, system.springs).size();
   }
 
-  Scene scene_ = read_scene(small_scene(GetParam().patch), "scene.json");
+  Scene scene_ = scene_from(GetParam().patch);
 };
 
 // The claims below are weak unless this holds.
 TEST_P(ResumedRun, PassesThroughContactsRebuildsAndFlips) {
-  const auto run = started();
+  Simulation run = started();
   std::size_t steps_with_springs = 0;
-  while (!run->advance(1)) steps_with_springs += stretched_springs(run->system()) > 0 ? 1 : 0;
-  EXPECT_EQ(run->system().step, total_steps);
+  while (!run.advance(1)) steps_with_springs += stretched_springs(run.system()) > 0 ? 1 : 0;
+  EXPECT_EQ(run.system().step, total_steps);
   EXPECT_GT(steps_with_springs, 350u);
-  EXPECT_GT(run->system().list.builds(), 20u);
-  EXPECT_EQ(run->system().box.basis(), flips(2));
+  EXPECT_GT(run.system().list.builds(), 20u);
+  EXPECT_EQ(run.system().box.basis(), flips(2));
   const bool divides = std::string(GetParam().name).ends_with("divided_steps");
-  EXPECT_EQ(run->step_errors().divided_steps > 50, divides);
+  EXPECT_EQ(run.step_errors().divided_steps > 50, divides);
 }
 
 TEST_P(ResumedRun, EndsAsTheUncutOneWhereverItWasCut) {
-  for (const std::uint64_t cut : {0U, 1U, 57U, 100U, 101U, 200U, 333U, 419U}) {
-    const auto before = started();
-    before->advance(cut);
-    ArchiveWriter archive;
-    before->save(archive);
-    const auto after = simulation();
-    ArchiveReader reader(archive.bytes());
-    after->load(reader);
-    EXPECT_TRUE(reader.at_end());
-    EXPECT_EQ(bytes_of(*after), archive.bytes()) << "cut at " << cut;  // saving loses nothing
-    const std::optional<Ending> ending = after->advance(total_steps);
-    ASSERT_TRUE(ending.has_value());
-    EXPECT_EQ(ending->cause, Ending::Cause::completed);
-    EXPECT_TRUE(bytes_of(*after) == uncut()) << "cut at " << cut;
-  }
+  ASSERT_EQ(simulation().schedule().total(), total_steps);
+  expect_the_end_of_the_uncut(scene_, run_seed,
+                              {{0, 1}, {1, 1}, {57, 1}, {100, 1}, {101, 1}, {200, 1}, {333, 1}, {419, 1}});
 }
 
 TEST_P(ResumedRun, EndsAsTheUncutOneAfterThreeCheckpointsOnDisk) {
   const TemporaryFolder folder;
-  const CheckpointIdentity identity = {"scene", seed, "binary"};
-  auto run = started();
+  const CheckpointIdentity identity = {"scene", run_seed, "binary"};
+  auto run = std::make_unique<Simulation>(started());
   for (const std::uint64_t steps : {90U, 111U, 150U}) {  // in equilibration, then twice in production
     EXPECT_FALSE(run->advance(steps).has_value());
     EXPECT_GT(stretched_springs(run->system()), 0u);  // amid frictional contacts
     write_checkpoint(folder / "checkpoint", identity, {1.5, 2.5}, *run);
-    run = simulation();
+    run = std::make_unique<Simulation>(simulation());
     const Spent spent = read_checkpoint(folder / "checkpoint", identity, *run);
     EXPECT_EQ(spent.processor_seconds, 1.5);
     EXPECT_EQ(spent.wall_seconds, 2.5);
@@ -151,19 +104,14 @@ TEST_P(ResumedRun, EndsAsTheUncutOneAfterThreeCheckpointsOnDisk) {
 }
 
 TEST_P(ResumedRun, HasTheSameBitsOnAnyNumberOfThreads) {
-  const auto one = started(1), two = started(2);
-  one->advance(150);
-  two->advance(150);
-  EXPECT_TRUE(bytes_of(*two) == bytes_of(*one));
-
-  const auto three = simulation(3);  // the number of threads may change
-  ArchiveWriter archive;
-  two->save(archive);
-  ArchiveReader reader(archive.bytes());
-  three->load(reader);
-  three->advance(50);
-  one->advance(50);
-  EXPECT_TRUE(bytes_of(*three) == bytes_of(*one));
+  Simulation one = started(1), two = started(2), three = simulation(3);
+  one.advance(150);
+  two.advance(150);
+  EXPECT_TRUE(bytes_of(two) == bytes_of(one));
+  load(three, bytes_of(two));  // the number of threads may change
+  three.advance(50);
+  one.advance(50);
+  EXPECT_TRUE(bytes_of(three) == bytes_of(one));
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryWay, ResumedRun, testing::ValuesIn(ways), name_of_way);
@@ -175,39 +123,26 @@ TEST_P(ResumedLargeRun, EndsAsTheUncutOne) {
   Json document = small_scene(GetParam().patch);
   document["particles"]["count"] = 5000;
   const Scene scene = read_scene(document, "scene.json");
-  const auto made = [&](int threads) {
-    return Simulation(scene, make_schedule(scene, "scene.json"), seed, threads, "scene.json");
-  };
-  const auto bytes_of = [](const Simulation& simulation) {
-    ArchiveWriter archive;
-    simulation.save(archive);
-    return archive.bytes();
-  };
-  Simulation uncut = made(1);
-  uncut.start();
+  Simulation uncut = started(scene, run_seed), resumed = simulation_of(scene, run_seed, 2);
   uncut.advance(97);
   EXPECT_GT(uncut.system().list.crossings(), 500u);
-  const std::string checkpoint = bytes_of(uncut);
+  load(resumed, bytes_of(uncut));
   const std::uint64_t builds = uncut.system().list.builds();
   uncut.advance(60);
   EXPECT_GT(uncut.system().list.builds(), builds);
-  Simulation resumed = made(2);
-  ArchiveReader reader(checkpoint);
-  resumed.load(reader);
   resumed.advance(60);
   EXPECT_TRUE(bytes_of(resumed) == bytes_of(uncut));
 }
 
 TEST_P(ResumedRun, DoesNotDependOnHowManyStepsAreAskedForAtOnce) {
-  const auto run = started();
-  while (!run->advance(7)) {
+  Simulation run = started();
+  while (!run.advance(7)) {
   }
-  EXPECT_TRUE(bytes_of(*run) == uncut());
+  EXPECT_TRUE(bytes_of(run) == uncut());
 }
 
 TEST_P(ResumedRun, OtherSeedsEndElsewhere) {
-  Simulation other(scene_, make_schedule(scene_, "scene.json"), seed + 1, 1, "scene.json");
-  other.start();
+  Simulation other = engine::started(scene_, run_seed + 1);
   other.advance(total_steps);
   EXPECT_FALSE(bytes_of(other) == uncut());
 }
@@ -217,25 +152,14 @@ class ResumedRunAtRest : public testing::TestWithParam<std::tuple<const char*, c
 
 TEST_P(ResumedRunAtRest, KeepsItsObservables) {
   const auto& [method, scalar] = GetParam();
-  Json patch = {{"flow", {{"shear_rate", 0}}},
-                {"observables", {"stress_correlation", "linear_response"}},
-                {"integrator", {{"method", method}}},
-                {"duration", {{"production", {{"time", 1.2}}}}}};
-  for (const char* key : {"friction", "normal_damping", "rolling_stiffness", "rolling_friction"}) {
-    patch["contact"][key] = nullptr;
-  }
-  const Scene scene = read_scene(small_scene(patch), "scene.json");
-  const auto made = [&] {
-    return Simulation(scene, make_schedule(scene, "scene.json"), seed, 1, "scene.json");
-  };
-  Simulation uncut = made();
-  uncut.start();
+  const Scene scene = scene_from(together({at_rest,
+                                           elastic_contacts,
+                                           {{"observables", {"stress_correlation", "linear_response"}},
+                                            {"integrator", {{"method", method}}},
+                                            {"duration", {{"production", {{"time", 1.2}}}}}}}));
+  Simulation uncut = started(scene, run_seed), resumed = simulation_of(scene, run_seed);
   uncut.advance(271);
-  ArchiveWriter checkpoint;
-  uncut.save(checkpoint);
-  Simulation resumed = made();
-  ArchiveReader reader(checkpoint.bytes());
-  resumed.load(reader);
+  load(resumed, bytes_of(uncut));
   uncut.advance(10 * total_steps);
   resumed.advance(10 * total_steps);
   Json expected = Json::object(), mean = Json::object();
@@ -252,12 +176,9 @@ INSTANTIATE_TEST_SUITE_P(EitherMethod, ResumedRunAtRest,
 // Compares a job that is drained at every opportunity with an undisturbed one.
 TEST(ResumedJob, ResultEqualsTheUncutOneButForItsCost) {
   const TemporaryFolder folder;
-  JobSpecification job;
-  job.header = {"point", seed};
   // A job polls its events after 65536 particle-steps, 1092 steps here.
-  job.scene = small_scene({{"duration", {{"production", {{"time", 9}}}}}});
-  job.scene_name = "scene.json";
-  Json uncut = run_job(job, {}).value();
+  JobSpecification job = job_of(small_scene({{"duration", {{"production", {{"time", 9}}}}}}), "", run_seed);
+  const Json uncut = run_job(job, {}).value();
   EXPECT_EQ(uncut.at("ending").at("cause"), "completed");
 
   job.checkpoint = folder / "checkpoint";
@@ -272,9 +193,7 @@ TEST(ResumedJob, ResultEqualsTheUncutOneButForItsCost) {
   }
   EXPECT_GE(drains, 3);
   EXPECT_GT(result->at("cost").at("cpu_seconds"), 0);
-  uncut.erase("cost");
-  result->erase("cost");
-  EXPECT_EQ(result->dump(), uncut.dump());
+  EXPECT_EQ(without_cost(*result).dump(), without_cost(uncut).dump());
 }
 
 }  // namespace

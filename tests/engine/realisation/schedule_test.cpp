@@ -3,38 +3,32 @@
 
 #include <numbers>
 
-#include "engine/observables/scene_reading.h"
-#include "engine/realisation/simulation.h"
-#include "tests/engine/small_scene.h"
+#include "tests/engine/realisation/small_result.h"
 
 namespace peclet::engine {
 namespace {
 
-Schedule schedule_of(const Json& equilibration, const Json& production) {
-  Json document = small_scene();  // dt = 0.002, rate 2, eta = 0.1, kT = 0.02
+// Expects these steps of phases of a scene with dt = 0.002, rate 2, eta = 0.1 and kT = 0.02.
+void expect_steps(const Json& equilibration, const Json& production,
+                  const std::array<std::uint64_t, 2>& steps) {
+  Json document = small_scene();
   document["particles"]["reference_radius"] = 1.4;
   document["duration"] = {{"equilibration", equilibration}, {"production", production}};
-  return make_schedule(read_scene(document, "scene.json"), "scene.json");
+  const Schedule schedule = make_schedule(read_scene(document, "scene.json"), "scene.json");
+  EXPECT_EQ(schedule.equilibration, steps[0]);
+  EXPECT_EQ(schedule.production, steps[1]);
 }
 
 // eta a^3 / kT = 0.1 * 2.744 / 0.02 = 13.72 with the reference radius of 1.4, without the factor 6 pi.
 TEST(Schedule, ABrownianTimeIsEtaACubedOverTheThermalEnergy) {
-  const Schedule schedule = schedule_of({{"brownian_times", 0.05}}, {{"brownian_times", 0.5}});
-  EXPECT_EQ(schedule.equilibration, 343u);
-  EXPECT_EQ(schedule.production, 3430u);
+  expect_steps({{"brownian_times", 0.05}}, {{"brownian_times", 0.5}}, {343, 3430});
 }
 
-TEST(Schedule, AStrainIsRateTimesTime) {
-  const Schedule schedule = schedule_of({{"strain", 0.4}}, {{"strain", 4}});
-  EXPECT_EQ(schedule.equilibration, 100u);
-  EXPECT_EQ(schedule.production, 1000u);
-}
+TEST(Schedule, AStrainIsRateTimesTime) { expect_steps({{"strain", 0.4}}, {{"strain", 4}}, {100, 1000}); }
 
 TEST(Schedule, TheFirstLimitThatIsReachedEndsAPhase) {
-  const Schedule schedule =
-      schedule_of({{"strain", 0.4}, {"brownian_times", 0.05}}, {{"strain", 40}, {"brownian_times", 0.5}});
-  EXPECT_EQ(schedule.equilibration, 100u);
-  EXPECT_EQ(schedule.production, 3430u);
+  expect_steps({{"strain", 0.4}, {"brownian_times", 0.05}}, {{"strain", 40}, {"brownian_times", 0.5}},
+               {100, 3430});
 }
 
 // A cycle of 2 has 1000 steps of 0.002, rounded up for other steps; a step is at most a 128th of a cycle.

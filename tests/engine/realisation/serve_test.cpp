@@ -4,14 +4,11 @@
 #include <unistd.h>
 
 #include <array>
-#include <filesystem>
-#include <stdexcept>
 #include <thread>
 
 #include "contract/durable_file.h"
 #include "contract/frames.h"
-#include "engine/realisation/job.h"
-#include "tests/engine/small_scene.h"
+#include "tests/engine/realisation/small_result.h"
 #include "tests/engine/temporary_folder.h"
 
 namespace peclet::engine {
@@ -68,6 +65,13 @@ class Serving : public testing::Test {
     ASSERT_EQ(message.at("type"), "progress");
   }
   void drain() { runner_.send({{"type", "drain"}}); }
+  // Leaves; the job that ran has a checkpoint, the one that waited has none.
+  void expect_to_leave_one_checkpoint() {
+    leave();
+    EXPECT_EQ(status_, 0);
+    EXPECT_TRUE(std::filesystem::exists(checkpoint(1)));
+    EXPECT_FALSE(std::filesystem::exists(checkpoint(2)));
+  }
 
   std::filesystem::path checkpoint(int job) const { return folder_ / ("checkpoint-" + std::to_string(job)); }
   std::filesystem::path spool(int job) const { return folder_ / ("spool-" + std::to_string(job)); }
@@ -105,20 +109,14 @@ TEST_F(Serving, ADrainGivesUpTheJobThatWaitsWithoutAWord) {
   expect_answer("drained", 1);
   drain();
   EXPECT_TRUE(answer().is_null());
-  leave();
-  EXPECT_EQ(status_, 0);
-  EXPECT_TRUE(std::filesystem::exists(checkpoint(1)));
-  EXPECT_FALSE(std::filesystem::exists(checkpoint(2)));
+  expect_to_leave_one_checkpoint();
 }
 
 TEST_F(Serving, ARunnerThatIsGoneWantsNoJobThatWaits) {
   give(1, endless);
   wait_for_progress();
   give(2, endless);
-  leave();
-  EXPECT_EQ(status_, 0);
-  EXPECT_TRUE(std::filesystem::exists(checkpoint(1)));
-  EXPECT_FALSE(std::filesystem::exists(checkpoint(2)));
+  expect_to_leave_one_checkpoint();
 }
 
 TEST_F(Serving, AThirdJobIsOneTooMany) {
@@ -129,7 +127,7 @@ TEST_F(Serving, AThirdJobIsOneTooMany) {
   const Json message = answer();
   EXPECT_EQ(message.at("type"), "failed");
   EXPECT_EQ(message.at("job"), 1);
-  EXPECT_NE(message.at("message").get<std::string>().find("another one waits"), std::string::npos) << message;
+  EXPECT_TRUE(contains(message.at("message"), "another one waits"));
   wait_for_progress();  // of the second job
   drain();
   expect_answer("drained", 2);

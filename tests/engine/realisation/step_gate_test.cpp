@@ -3,9 +3,7 @@
 
 #include "engine/integrators/stability.h"
 #include "engine/integrators/velocity_verlet.h"
-#include "engine/observables/scene_reading.h"
-#include "engine/realisation/job.h"
-#include "tests/engine/small_scene.h"
+#include "tests/engine/realisation/small_result.h"
 
 namespace peclet::engine {
 namespace {
@@ -28,7 +26,7 @@ Json published(double volume_fraction) {
 Scene published_scene(double volume_fraction) { return read_scene(published(volume_fraction), "scene.json"); }
 
 // Starts with a given step, which make_schedule() might refuse.
-Simulation started(const Scene& scene, const Schedule& schedule) {
+Simulation started_with(const Scene& scene, const Schedule& schedule) {
   Simulation simulation(scene, schedule, /*seed=*/1, /*threads=*/1, "scene.json");
   simulation.start();
   return simulation;
@@ -45,7 +43,7 @@ double named_bound(const Ending& ending) {
 TEST(StepGate, EndsARealisationThatIsTooStiffAtItsStart) {
   const Scene scene = published_scene(0.6);
   const double step = 2 * largest_timestep(scene);
-  Simulation simulation = started(scene, {step, 0, 1000});
+  Simulation simulation = started_with(scene, {step, 0, 1000});
   const std::optional<Ending> ending = simulation.advance(1000);
   ASSERT_TRUE(ending.has_value());
   EXPECT_EQ(ending->cause, Ending::Cause::timestep);
@@ -54,7 +52,7 @@ TEST(StepGate, EndsARealisationThatIsTooStiffAtItsStart) {
   EXPECT_GE(simulation.step_errors().largest_stability_share, 1);
   EXPECT_LT(named_bound(*ending), step);
   // The bound in the message is sufficient.
-  Simulation slower = started(scene, {0.999 * named_bound(*ending), 0, 1000});
+  Simulation slower = started_with(scene, {0.999 * named_bound(*ending), 0, 1000});
   EXPECT_FALSE(slower.advance(10).has_value());
 }
 
@@ -62,39 +60,23 @@ TEST(StepGate, EndsARealisationThatIsTooStiffAtItsStart) {
 TEST(StepGate, EndsARealisationWhosePackingGetsTooStiffOnItsWay) {
   const Scene scene = published_scene(0.5);
   const Schedule schedule = {4.2e-4, 0, 40000};
-  Simulation simulation = started(scene, schedule);
+  Simulation simulation = started_with(scene, schedule);
   ASSERT_FALSE(simulation.advance(6000).has_value());
   EXPECT_LT(simulation.step_errors().largest_stability_share, 1);
-  ArchiveWriter checkpoint;
-  simulation.save(checkpoint);
+  const std::string checkpoint = bytes_of(simulation);
   const std::optional<Ending> ending = simulation.advance(40000);
   ASSERT_TRUE(ending.has_value());
   EXPECT_EQ(ending->cause, Ending::Cause::timestep);
   EXPECT_GT(ending->step, 6000u);
-  EXPECT_NE(ending->message.find("strain"), std::string::npos);
+  EXPECT_TRUE(contains(ending->message, "strain"));
 
   Simulation resumed(scene, schedule, 1, 1, "scene.json");
-  ArchiveReader reader(checkpoint.bytes());
-  resumed.load(reader);
+  load(resumed, checkpoint);
   const std::optional<Ending> again = resumed.advance(40000);
   ASSERT_TRUE(again.has_value());
   EXPECT_EQ(again->step, ending->step);
   EXPECT_EQ(again->message, ending->message);
   EXPECT_EQ(resumed.step_errors().spurious_energy, simulation.step_errors().spurious_energy);
-}
-
-Json result_of(const Json& patch) {
-  JobSpecification job;
-  job.header = {"point", 2};
-  job.scene = small_scene(patch);
-  job.scene_name = "scene.json";
-  return run_job(job, {}).value();
-}
-
-Json without_noise(const Json& patch) {
-  Json scene = {{"fluid", {{"thermal_energy", 0}}}};
-  scene.merge_patch(patch);
-  return scene;
 }
 
 bool has_warning(const Json& result, const std::string& code) {
@@ -107,13 +89,10 @@ bool has_warning(const Json& result, const std::string& code) {
 // The error is of first order in the step, as from velocities half a step old in velocity Verlet.
 TEST(StepGate, EnergyThatTheStepMakesIsInProportionToIt) {
   const auto imbalance = [](double step) {
-    JobSpecification job;
-    job.header = {"point", 2};
-    job.scene = published(0.55);
-    job.scene["integrator"]["timestep"] = step;
-    job.scene["duration"] = {{"equilibration", {{"strain", 0.1}}}, {"production", {{"strain", 0.3}}}};
-    job.scene_name = "scene.json";
-    return run_job(job, {}).value().at("gate").at("energy_imbalance").get<double>();
+    Json scene = published(0.55);
+    scene["integrator"]["timestep"] = step;
+    scene["duration"] = {{"equilibration", {{"strain", 0.1}}}, {"production", {{"strain", 0.3}}}};
+    return result_of_scene(scene).at("gate").at("energy_imbalance").get<double>();
   };
   const double whole = imbalance(2e-4), half = imbalance(1e-4);
   EXPECT_GT(whole, 0);
@@ -121,8 +100,8 @@ TEST(StepGate, EnergyThatTheStepMakesIsInProportionToIt) {
 }
 
 TEST(StepGate, FlagsAResultWhoseStepMakesTooMuchEnergy) {
-  EXPECT_FALSE(has_warning(result_of(without_noise(Json::object())), "timestep"));
-  const Json flagged = result_of(without_noise({{"guard", {{"energy_imbalance", 1e-6}}}}));
+  EXPECT_FALSE(has_warning(result_of(without_noise), "timestep"));
+  const Json flagged = result_of(together({without_noise, {{"guard", {{"energy_imbalance", 1e-6}}}}}));
   EXPECT_TRUE(has_warning(flagged, "timestep"));
   EXPECT_EQ(flagged.at("ending").at("cause"), "completed");
   EXPECT_TRUE(flagged.at("mean").is_object());
@@ -135,7 +114,7 @@ TEST(StepGate, StepsAreComparedWithHalfStepsOfTheSameMotion) {
   Json document = published(0.55);
   document["contact"]["friction"] = 1;
   const Scene scene = read_scene(document, "scene.json");
-  Simulation simulation = started(scene, {1e-4, 40000, 40000});
+  Simulation simulation = started_with(scene, {1e-4, 40000, 40000});
   simulation.advance(20000);
   const auto compared = [&](int factor) {
     const double timestep = factor * 1e-4;
@@ -159,13 +138,10 @@ TEST(StepGate, StepsAreComparedWithHalfStepsOfTheSameMotion) {
 
 TEST(StepGate, FlagsAResultThatHalfStepsWouldChange) {
   const auto result = [](const Json& guard) {
-    JobSpecification job;
-    job.header = {"point", 2};
-    job.scene = published(0.5);
-    job.scene["guard"] = guard;
-    job.scene["duration"] = {{"equilibration", {{"strain", 0.1}}}, {"production", {{"strain", 0.2}}}};
-    job.scene_name = "scene.json";
-    return run_job(job, {}).value();
+    Json scene = published(0.5);
+    scene["guard"] = guard;
+    scene["duration"] = {{"equilibration", {{"strain", 0.1}}}, {"production", {{"strain", 0.2}}}};
+    return result_of_scene(scene);
   };
   const Json fine = result(Json::object());
   EXPECT_FALSE(has_warning(fine, "timestep"));
@@ -183,11 +159,7 @@ TEST(StepGate, FlagsImplicitSteps) {
         {{"integrator", {{"method", "implicit"}}},
          {"duration", {{"equilibration", {{"strain", 0.1}}}, {"production", {{"strain", 0.5}}}}}});
     scene.merge_patch(patch);
-    JobSpecification job;
-    job.header = {"point", 2};
-    job.scene = scene;
-    job.scene_name = "scene.json";
-    return run_job(job, {}).value();
+    return result_of_scene(scene);
   };
   const Json fine = result(published(0.5), Json::object());
   EXPECT_FALSE(has_warning(fine, "timestep"));
@@ -220,7 +192,7 @@ TEST(StepGate, NoiseAndRestHaveNoBalance) {
   EXPECT_TRUE(noisy.at("half_step_difference").is_null());
   EXPECT_GT(noisy.at("largest_stability_share"), 0);
   EXPECT_LT(noisy.at("largest_stability_share"), 1);
-  const Json resting = result_of(without_noise({{"flow", {{"shear_rate", 0}}}})).at("gate");
+  const Json resting = result_of(together({without_noise, at_rest})).at("gate");
   EXPECT_TRUE(resting.at("energy_imbalance").is_null());
   EXPECT_TRUE(resting.at("half_step_difference").is_null());
 }

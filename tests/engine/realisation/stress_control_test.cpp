@@ -3,11 +3,9 @@
 
 #include <cmath>
 
-#include "engine/observables/scene_reading.h"
 #include "engine/realisation/driver.h"
 #include "engine/realisation/result.h"
-#include "engine/realisation/simulation.h"
-#include "tests/engine/small_scene.h"
+#include "tests/engine/realisation/small_result.h"
 
 namespace peclet::engine {
 namespace {
@@ -20,12 +18,12 @@ Json at_stress(double stress, const Json& patch) {
   return document;
 }
 
-std::unique_ptr<Simulation> started(const Json& document, int threads = 1) {
-  const Scene scene = read_scene(document, "scene.json");
-  auto simulation =
-      std::make_unique<Simulation>(scene, make_schedule(scene, "scene.json"), 3, threads, "scene.json");
-  simulation->start();
-  return simulation;
+std::unique_ptr<Simulation> started(const Json& document) {
+  return std::make_unique<Simulation>(engine::started(read_scene(document, "scene.json"), 3));
+}
+
+Json result_of(const Json& document, const Simulation& simulation, const Ending& ending) {
+  return make_result({"point", 3}, read_scene(document, "scene.json"), simulation, ending, "", {});
 }
 
 double inertia_of(const Simulation& simulation) {
@@ -41,10 +39,9 @@ double held(const Simulation& simulation, double stress, double solvent) {
   return (pairs / simulation.system().box.volume() + solvent * sums.shear_rate) / steps / stress;
 }
 
-const Json for_grains = {{"fluid", {{"thermal_energy", 0}}},
-                         {"duration",
-                          {{"equilibration", {{"time", nullptr}, {"stress_times", 10}}},
-                           {"production", {{"time", nullptr}, {"stress_times", 40}}}}}};
+const Json for_grains = Json::parse(R"({"fluid": {"thermal_energy": 0},
+    "duration": {"equilibration": {"time": null, "stress_times": 10},
+                 "production": {"time": null, "stress_times": 40}}})");
 
 class StressControlled : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(EitherMethod, StressControlled, testing::Values("explicit", "implicit"),
@@ -91,8 +88,7 @@ TEST(StressControl, EndsWhatStandsStill) {
   EXPECT_NEAR(simulation->schedule().timestep * static_cast<double>(simulation->schedule().equilibration),
               0.01 * 3 * 0.1 / 4, simulation->schedule().timestep);
   // A result exists: the rate in the window is zero, and the summary works.
-  const Scene scene = read_scene(document, "scene.json");
-  const Json result = make_result({"point", 3}, scene, *simulation, *ending, "", {});
+  const Json result = result_of(document, *simulation, *ending);
   const Json& mean = result.at("mean");
   EXPECT_EQ(mean.at("flowing"), 0);
   EXPECT_GT(simulation->strains().production, 0);
@@ -101,7 +97,7 @@ TEST(StressControl, EndsWhatStandsStill) {
   EXPECT_TRUE(result.at("blocks").at("pressure").front().is_number());
   EXPECT_TRUE(result.at("blocks").at("pressure").back().is_null());
   EXPECT_EQ(result.at("blocks").at("shear_rate").back(), 0);
-  EXPECT_NE(summary(result, "here").find("jammed at a strain of"), std::string::npos);
+  EXPECT_TRUE(contains(summary(result, "here"), "jammed at a strain of"));
 }
 
 // At eta_j = 10^4 a strain of 0.01 takes 100 stress times; the window has 40.
@@ -111,8 +107,7 @@ TEST(StressControl, SaysNothingOfWhatFlowsInAWindowThatEndsBeforeAJamIsNoticed) 
     document["flow"]["jammed_viscosity"] = viscosity;
     const auto simulation = started(document);
     const std::optional<Ending> ending = simulation->advance(simulation->schedule().total());
-    const Scene scene = read_scene(document, "scene.json");
-    const Json result = make_result({"point", 3}, scene, *simulation, *ending, "", {});
+    const Json result = result_of(document, *simulation, *ending);
     const Json& mean = result.at("mean");
     const Json& flowing = mean.at("viscosity_of_those_flowing");
     EXPECT_EQ(mean.at("flowing"), is_known ? Json(1) : Json());
@@ -133,11 +128,10 @@ TEST(StressControl, CountsTheStrainOfALongerRunFromItsOwnWindowOn) {
   const Schedule whole = make_schedule(scene, "scene.json");
   const auto first = started(document);
   first->advance(whole.equilibration + 100);
-  ArchiveWriter archive;
-  first->save(archive);
+  const std::string saved = bytes_of(*first);
   const Schedule rest = {whole.timestep, whole.equilibration + 100, whole.production - 100};
   Simulation second(scene, rest, 3, 1, "scene.json");
-  ArchiveReader reader(archive.bytes());
+  ArchiveReader reader(saved);
   second.load_motion(reader);
   const double before = second.system().box.strain();
   EXPECT_GT(before, 0);
@@ -146,17 +140,10 @@ TEST(StressControl, CountsTheStrainOfALongerRunFromItsOwnWindowOn) {
   EXPECT_EQ(second.strains().production, second.system().box.strain() - before);
 }
 
-const Json for_colloids = {{"particles", {{"count", 20}}},
-                           {"volume_fraction", 0.3},
-                           {"contact",
-                            {{"friction", nullptr},
-                             {"rolling_stiffness", nullptr},
-                             {"rolling_friction", nullptr},
-                             {"normal_damping", nullptr},
-                             {"normal_stiffness", 1e4}}},
-                           {"duration",
-                            {{"equilibration", {{"time", nullptr}, {"brownian_times", 0.2}}},
-                             {"production", {{"time", nullptr}, {"brownian_times", 400}}}}}};
+const Json for_colloids = together({elastic_contacts, Json::parse(R"({
+    "particles": {"count": 20}, "volume_fraction": 0.3, "contact": {"normal_stiffness": 1e4},
+    "duration": {"equilibration": {"time": null, "brownian_times": 0.2},
+                 "production": {"time": null, "brownian_times": 400}}})")});
 
 // <rate^2> M / kT = 1. A memory of 20 steps in 40 000 gives a standard error of about sqrt(2 * 40 / 40 000).
 TEST(StressControl, GivesTheStrainItsShareOfTheTemperature) {
@@ -196,8 +183,7 @@ TEST(StressControl, LetsTheStrainOfEveryPackingMove) {
   constexpr int seeds = 12;
   double temperature = 0;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-    Simulation simulation(scene, schedule, seed, 1, "scene.json");
-    simulation.start();
+    Simulation simulation = engine::started(scene, seed);
     double squares = 0;
     constexpr int steps = 400;
     for (int n = 0; n < steps; ++n) {
@@ -213,39 +199,17 @@ TEST(StressControl, LetsTheStrainOfEveryPackingMove) {
   EXPECT_NEAR(temperature, 1, 0.3);
 }
 
-class ResumedAtStress : public testing::TestWithParam<bool> {
- protected:
-  static Json document() {
-    Json document = GetParam() ? at_stress(4, for_colloids) : at_stress(4, for_grains);
-    document["duration"] = {{"equilibration", {{"stress_times", 2}}}, {"production", {{"stress_times", 6}}}};
-    document["observables"] = {"contact_network", "pair_distribution"};
-    document["pair_distribution"] = {{"range", 2.5}};
-    return document;
-  }
-  static std::string bytes_of(const Simulation& simulation) {
-    ArchiveWriter archive;
-    simulation.save(archive);
-    return archive.bytes();
-  }
-};
+class ResumedAtStress : public testing::TestWithParam<bool> {};
 INSTANTIATE_TEST_SUITE_P(WithAndWithoutNoise, ResumedAtStress, testing::Bool());
 
 TEST_P(ResumedAtStress, EndsAsTheUncutOneWhereverItWasCut) {
-  const auto uncut = started(document());
-  const std::uint64_t total = uncut->schedule().total();
-  ASSERT_EQ(uncut->advance(total)->cause, Ending::Cause::completed);
-  for (const std::uint64_t cut : {std::uint64_t{0}, std::uint64_t{1}, total / 5, total / 4 + 1, total - 1}) {
-    const auto before = started(document());
-    before->advance(cut);
-    ArchiveWriter archive;
-    before->save(archive);
-    const auto after = started(document(), /*threads=*/cut == total - 1 ? 2 : 1);
-    ArchiveReader reader(archive.bytes());
-    after->load(reader);
-    EXPECT_TRUE(reader.at_end());
-    after->advance(total);
-    EXPECT_TRUE(bytes_of(*after) == bytes_of(*uncut)) << "cut at " << cut;
-  }
+  Json document = GetParam() ? at_stress(4, for_colloids) : at_stress(4, for_grains);
+  document["duration"] = {{"equilibration", {{"stress_times", 2}}}, {"production", {{"stress_times", 6}}}};
+  document["observables"] = {"contact_network", "pair_distribution"};
+  document["pair_distribution"] = {{"range", 2.5}};
+  const Scene scene = read_scene(document, "scene.json");
+  const std::uint64_t total = make_schedule(scene, "scene.json").total();
+  expect_the_end_of_the_uncut(scene, 3, {{0, 1}, {1, 1}, {total / 5, 1}, {total / 4 + 1, 1}, {total - 1, 2}});
 }
 
 }  // namespace

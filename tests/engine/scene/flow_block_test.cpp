@@ -13,18 +13,17 @@
 namespace peclet::engine {
 namespace {
 
-Json flowing(const Json& flow, const Json& equilibration, const Json& production) {
+Scene flowing(const Json& flow, const Json& equilibration, const Json& production) {
   Json document = small_scene();
   document["flow"] = flow;
   document["duration"] = {{"equilibration", equilibration}, {"production", production}};
-  return document;
+  return read_scene(document, "scene.json");
 }
 
+const Json reversed = Json::parse(R"({"segments": [{"shear_rate": 2, "strain": 3}, {"shear_rate": -2}]})");
+
 TEST(FlowBlock, ReadsAReversal) {
-  const Scene scene =
-      read_scene(flowing(Json::parse(R"({"segments": [{"shear_rate": 2, "strain": 3}, {"shear_rate": -2}]})"),
-                         {{"strain", 3}}, {{"strain", 5}}),
-                 "scene.json");
+  const Scene scene = flowing(reversed, {{"strain", 3}}, {{"strain", 5}});
   EXPECT_EQ(scene.physics.flow.deformation().velocity_gradient(1), simple_shear(2));
   EXPECT_EQ(scene.physics.flow.deformation().velocity_gradient(2), simple_shear(-2));
   EXPECT_EQ(scene.physics.flow.steady_rate(), 2);  // in the window
@@ -36,19 +35,13 @@ TEST(FlowBlock, ReadsAReversal) {
 
 // A window that begins before the last segment has no steady rate.
 TEST(FlowBlock, HasNoSteadyRateAcrossSegments) {
-  const Scene scene =
-      read_scene(flowing(Json::parse(R"({"segments": [{"shear_rate": 2, "strain": 3}, {"shear_rate": -2}]})"),
-                         {{"strain", 2}}, {{"strain", 5}}),
-                 "scene.json");
-  EXPECT_EQ(scene.physics.flow.steady_rate(), 0);
+  EXPECT_EQ(flowing(reversed, {{"strain", 2}}, {{"strain", 5}}).physics.flow.steady_rate(), 0);
 }
 
 TEST(FlowBlock, ReadsRampsAndStops) {
-  const Scene scene =
-      read_scene(flowing(Json::parse(R"({"segments": [{"shear_rate": 0, "final_rate": 2, "time": 1},
-                                           {"shear_rate": 2, "strain": 4}, {"shear_rate": 0}]})"),
-                         {{"strain", 5}}, {{"time", 1}}),
-                 "scene.json");
+  const Json segments = Json::parse(R"([{"shear_rate": 0, "final_rate": 2, "time": 1},
+                                        {"shear_rate": 2, "strain": 4}, {"shear_rate": 0}])");
+  const Scene scene = flowing({{"segments", segments}}, {{"strain", 5}}, {{"time", 1}});
   const Deformation& flow = scene.physics.flow.deformation();
   EXPECT_EQ(flow.velocity_gradient(0.5), simple_shear(1));
   EXPECT_EQ(flow.velocity_gradient(2.5), simple_shear(2));
@@ -57,10 +50,9 @@ TEST(FlowBlock, ReadsRampsAndStops) {
 }
 
 TEST(FlowBlock, ReadsShearAcross) {
-  const Scene scene = read_scene(
+  const Scene scene =
       flowing(Json::parse(R"({"shear_rate": 2, "cross_shear": {"amplitude": 0.1, "frequency": 20}})"),
-              {{"cycles", 2}}, {{"strain", 5}, {"cycles", 2}}),
-      "scene.json");
+              {{"cycles", 2}}, {{"strain", 5}, {"cycles", 2}});
   EXPECT_EQ(scene.physics.flow.steady_rate(), 2);
   EXPECT_DOUBLE_EQ(time_of(scene.equilibration, scene), 2 * 2 * M_PI / 20);
   EXPECT_DOUBLE_EQ(time_of(scene.production, scene), 2.5);
@@ -70,9 +62,10 @@ TEST(FlowBlock, ReadsShearAcross) {
 // A Brownian time is 5 and a cycle 2 pi / 20. A window of moduli has whole cycles, rounded up.
 TEST(FlowBlock, RoundsAnOscillationUpToWholeCycles) {
   constexpr double period = 2 * M_PI / 20;
-  const auto cycles_of = [&](const Json& flow, const Json& equilibration) {
-    Json document = flowing(flow, equilibration, {{"time", 3.2 * period}});
-    document["observables"] = {"oscillation"};
+  const auto cycles_of = [&](Json flow, const Json& equilibration) {
+    Json document = small_scene({{"observables", {"oscillation"}}});
+    document["flow"] = std::move(flow);
+    document["duration"] = {{"equilibration", equilibration}, {"production", {{"time", 3.2 * period}}}};
     const Scene scene = read_scene(document, "scene.json");
     const Schedule schedule = make_schedule(scene, "scene.json");
     EXPECT_NEAR(schedule.timestep * static_cast<double>(schedule.production), 4 * period, 1e-9);
@@ -96,8 +89,7 @@ TEST(FlowBlock, RoundsAnOscillationUpToWholeCycles) {
 }
 
 TEST(FlowBlock, CountsExtensionInHenckyStrains) {
-  const Scene scene =
-      read_scene(flowing({{"extension_rate", 0.5}}, {{"strain", 1}}, {{"strain", 2}}), "scene.json");
+  const Scene scene = flowing({{"extension_rate", 0.5}}, {{"strain", 1}}, {{"strain", 2}});
   EXPECT_EQ(scene.physics.flow.steady_rate(), 1);
   EXPECT_DOUBLE_EQ(time_of(scene.production, scene), 4);
 }
@@ -105,8 +97,7 @@ TEST(FlowBlock, CountsExtensionInHenckyStrains) {
 // sqrt(2 E:E) of diag(1, -1/2, -1/2) is sqrt(3).
 TEST(FlowBlock, ReadsUniaxialAndBiaxialExtension) {
   for (const double rate : {0.5, -0.5}) {
-    const Scene scene =
-        read_scene(flowing({{"uniaxial_rate", rate}}, {{"strain", 1}}, {{"strain", 2}}), "scene.json");
+    const Scene scene = flowing({{"uniaxial_rate", rate}}, {{"strain", 1}}, {{"strain", 2}});
     EXPECT_DOUBLE_EQ(scene.physics.flow.steady_rate(), 0.5 * std::sqrt(3.0));
     EXPECT_DOUBLE_EQ(time_of(scene.production, scene), 4);
     EXPECT_EQ(scene.physics.flow.rate(), 0.5);
@@ -115,8 +106,7 @@ TEST(FlowBlock, ReadsUniaxialAndBiaxialExtension) {
 
 // At stress 3 and viscosity 0.1 the unit of time is 1/30.
 TEST(FlowBlock, CountsTimesOfAStress) {
-  const Scene scene =
-      read_scene(flowing({{"stress", 3}}, {{"stress_times", 30}}, {{"stress_times", 60}}), "scene.json");
+  const Scene scene = flowing({{"stress", 3}}, {{"stress_times", 30}}, {{"stress_times", 60}});
   EXPECT_DOUBLE_EQ(time_of(scene.equilibration, scene), 1);
   EXPECT_DOUBLE_EQ(time_of(scene.production, scene), 2);
   EXPECT_EQ(scene.physics.flow.steady_rate(), 0);

@@ -1,12 +1,48 @@
-// Every fault of a scene has one message: place, value, allowed values.
+// Every fault of a scene, of its flow and of its sizes has one message: place, value, allowed values.
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "contract/errors.h"
+#include "engine/flow/flow_kind.h"
 #include "engine/observables/scene_reading.h"
 #include "engine/scene/scene.h"
+#include "tests/contract/refusal.h"
+#include "tests/engine/small_scene.h"
 
 namespace peclet::engine {
 namespace {
+
+// An edit (RFC 7396: null removes) and its complaint.
+struct SceneFault {
+  const char* edit;
+  const char* pointer;
+  const char* value;    // null: any; "X...": begins with X
+  const char* allowed;  // a part of it
+};
+
+Json patched(Json document, const char* edit) {
+  document.merge_patch(Json::parse(edit));
+  return document;
+}
+
+void expect_fault(const Json& document, const SceneFault& fault) {
+  try {
+    read_scene(document, "scene.json");
+    ADD_FAILURE() << "accepted: " << fault.edit;
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.file(), "scene.json") << fault.edit;
+    EXPECT_EQ(error.pointer(), fault.pointer) << fault.edit;
+    const std::string value = fault.value == nullptr ? error.value() : fault.value;
+    if (value.ends_with("...")) {
+      EXPECT_TRUE(error.value().starts_with(value.substr(0, value.size() - 3))) << error.value();
+    } else {
+      EXPECT_EQ(error.value(), value) << fault.edit;
+    }
+    EXPECT_NE(error.allowed().find(fault.allowed), std::string::npos)
+        << fault.edit << ": " << error.allowed();
+  }
+}
 
 const char* const whole_scene = R"({
   "particles": {"count": 100, "density": 0.1,
@@ -20,15 +56,7 @@ const char* const whole_scene = R"({
   "integrator": {"timestep": 1e-4},
   "duration": {"equilibration": {"strain": 2}, "production": {"strain": 5}}})";
 
-// One edit of the scene (RFC 7396: null removes), and its complaint.
-struct Fault {
-  const char* edit;
-  const char* pointer;
-  const char* value;
-  const char* allowed;  // a part of it
-};
-
-const Fault faults[] = {
+const SceneFault faults[] = {
     {R"({"particles": null})", "/particles", "missing", "must be an object"},
     {R"({"particles": {"count": 0}})", "/particles/count", "0", "integer >= 1 and <= 10000000"},
     {R"({"particles": {"count": 1.5}})", "/particles/count", "1.5", "must be an integer"},
@@ -221,20 +249,249 @@ TEST(SceneFaults, TheUneditedSceneIsAccepted) {
 }
 
 TEST(SceneFaults, EachIsNamedWithFilePointerValueAndWhatIsAllowed) {
-  for (const Fault& fault : faults) {
-    Json document = Json::parse(whole_scene);
-    document.merge_patch(Json::parse(fault.edit));
-    try {
-      read_scene(document, "scene.json");
-      ADD_FAILURE() << "accepted: " << fault.edit;
-    } catch (const InputError& error) {
-      EXPECT_EQ(error.file(), "scene.json") << fault.edit;
-      EXPECT_EQ(error.pointer(), fault.pointer) << fault.edit;
-      EXPECT_EQ(error.value(), fault.value) << fault.edit;
-      EXPECT_NE(error.allowed().find(fault.allowed), std::string::npos)
-          << fault.edit << ": " << error.allowed();
+  for (const SceneFault& fault : faults) expect_fault(patched(Json::parse(whole_scene), fault.edit), fault);
+}
+
+// The flow, a patch of the rest, and the complaint.
+struct FlowFault {
+  const char *flow, *patch, *pointer, *value, *allowed;
+};
+
+const char* const strains = R"({"duration": {"equilibration": {"time": null, "strain": 1},
+                                             "production": {"time": null, "strain": 2}}})";
+const char* const stress_times = R"({"duration": {"equilibration": {"time": null, "stress_times": 1},
+                                                  "production": {"time": null, "stress_times": 2}}})";
+
+const FlowFault flow_faults[] = {
+    {R"({"shear_rate": 1, "extension_rate": 1})", "{}", "/flow/shear_rate", "1",
+     "must be left out together with /flow/extension_rate"},
+    {R"({"segments": [{"shear_rate": 1}], "stress": 2})", "{}", "/flow/stress", "2",
+     "must be left out together with /flow/segments"},
+    {R"({"extension_rate": 0})", "{}", "/flow/extension_rate", "0", "must be a number > 0"},
+    {R"({"extension_rate": 1})", R"({"box": {"height": 9}})", "/box", R"({"height":9})",
+     "must be left out with /flow/extension_rate"},
+    {R"({"extension_rate": 20})", "{}", "/duration", R"({"equilibration":{"time":0.2...)",
+     "must have a Hencky strain of at most 10 in all with /flow/extension_rate; it has 16.8"},
+    {R"({"extension_rate": 1})", R"({"observables": ["profiles"]})", "/observables", R"(["profiles"])",
+     "must not list profiles with /flow/extension_rate"},
+    {R"({"uniaxial_rate": 0})", "{}", "/flow/uniaxial_rate", "0", "must be a number other than 0"},
+    {R"({"uniaxial_rate": "fast"})", "{}", "/flow/uniaxial_rate", "\"fast\"", "must be a number"},
+    {R"({"extension_rate": 1, "uniaxial_rate": 1})", "{}", "/flow/uniaxial_rate", "1",
+     "must be left out together with /flow/extension_rate"},
+    {R"({"uniaxial_rate": -20})", "{}", "/duration", R"({"equilibration":{"time":0.2...)",
+     "must have a Hencky strain of at most 10 in all with /flow/uniaxial_rate; it has 16.8"},
+    {R"({"uniaxial_rate": 1})", R"({"box": {"height": 9}})", "/box", R"({"height":9})",
+     "must be left out with /flow/uniaxial_rate, whose cell is a turned cube"},
+    {R"({"uniaxial_rate": 1})", R"({"observables": ["pair_distribution"]})", "/observables",
+     R"(["pair_distribution"])", "must not list pair_distribution with /flow/uniaxial_rate"},
+    {R"({"uniaxial_rate": 1})", R"({"duration": {"production": {"cycles": 2}}})",
+     "/duration/production/cycles", "2", "must be left out without /flow/oscillation or /flow/cross_shear"},
+    {R"({"segments": []})", "{}", "/flow/segments", "[]", "array of 1 to 64"},
+    {R"({"segments": [{"strain": 1}, {"shear_rate": 1}]})", "{}", "/flow/segments/0/shear_rate", "missing",
+     "must be a number"},
+    {R"({"segments": [{"shear_rate": 1}, {"shear_rate": 1}]})", "{}", "/flow/segments/0",
+     R"({"shear_rate":1})", "must have either strain or time"},
+    {R"({"segments": [{"shear_rate": 1, "strain": 1, "time": 1}, {"shear_rate": 1}]})", "{}",
+     "/flow/segments/0", R"({"shear_rate":1,"strain":1,"time":1})", "must have either strain or time"},
+    {R"({"segments": [{"shear_rate": 0, "strain": 1}, {"shear_rate": 1}]})", "{}", "/flow/segments/0/strain",
+     "1", "must be left out where the shear rate is 0"},
+    {R"({"segments": [{"shear_rate": 1, "strain": 2}]})", "{}", "/flow/segments/0/strain", "2",
+     "must be left out of the last segment, which does not end"},
+    {R"({"segments": [{"shear_rate": 1, "strain": 1.5}, {"shear_rate": 0}]})", strains, "/duration",
+     R"({"equilibration":{"strain":1...)", "would never end: the flow of /flow/segments"},
+    {R"({"shear_rate": 0, "cross_shear": {"amplitude": 0.1, "frequency": 1}})", "{}", "/flow/cross_shear",
+     R"({"amplitude":0.1,"frequency":1})", "must be left out unless the shear rate is > 0"},
+    {R"({"shear_rate": 1, "cross_shear": {"amplitude": 0.1}})", "{}", "/flow/cross_shear/frequency",
+     "missing", "must be a number > 0"},
+    {R"({"shear_rate": 1, "cross_shear": {"amplitude": 0.1, "frequency": 1}})",
+     R"({"observables": ["oscillation"], "duration": {"equilibration": {"cycles": 1.5}}})",
+     "/duration/equilibration/cycles", "1.5", "must be a whole number with the observable oscillation"},
+    {R"({"shear_rate": 1, "cross_shear": {"amplitude": 0.1, "frequency": 1}})",
+     R"({"observables": ["mean_squared_displacement"]})", "/observables", R"(["mean_squared_displacement"])",
+     "with /flow/cross_shear"},
+    {R"({"stress": 0})", "{}", "/flow/stress", "0", "must be a number > 0"},
+    {R"({"stress": 1})", strains, "/duration/equilibration/strain", "1",
+     "must be left out with /flow/stress, whose strain is not known beforehand"},
+    {R"({"shear_rate": 1})", stress_times, "/duration/equilibration/stress_times", "1",
+     "must be left out without /flow/stress"},
+    {R"({"shear_rate": 1, "jammed_viscosity": 100})", "{}", "/flow/jammed_viscosity", "100",
+     "must be left out without stress"},
+    {R"({"stress": 1})", R"({"observables": ["transient"]})", "/observables", R"(["transient"])",
+     "must not list transient with /flow/stress"},
+    {R"({"stress": 1})",
+     R"({"lubrication": {"form": "mari", "inner_gap": null, "outer_gap": null, "regularisation": 0.001,
+                         "outer_distance": 0.2}})",
+     "/lubrication/form", "\"mari\"", "must be kim-karrila with /flow/stress and noise"},
+    {R"({"shear_rate": 1})", R"({"observables": ["transient"], "transient": {"bins": 0}})", "/transient/bins",
+     "0", "must be an integer >= 1"},
+    {R"({"oscillation": {"amplitude": 1, "frequency": 1}})",
+     R"({"observables": ["transient"], "duration": {"equilibration": {"time": null, "cycles": 1},
+                                                    "production": {"time": null, "cycles": 1}}})",
+     "/observables", R"(["transient"])", "must not list transient with /flow/oscillation"},
+};
+
+TEST(FlowFaults, AreNamedWithWhatIsAllowed) {
+  for (const auto& [flow, patch, pointer, value, allowed] : flow_faults) {
+    Json document = small_scene(Json::parse(patch));
+    document["flow"] = Json::parse(flow);
+    SCOPED_TRACE(patch);
+    expect_fault(document, {flow, pointer, value, allowed});
+  }
+}
+
+// A shear rate goes with waves or with a cross shear; all other pairs of flows are refused.
+TEST(FlowFaults, NameTheFlowBesideWhichAnotherIsGiven) {
+  const Json flows = Json::parse(R"({
+      "shear_rate": 1, "oscillation": {"amplitude": 1, "frequency": 1},
+      "cross_shear": {"amplitude": 1, "frequency": 1}, "extension_rate": 1, "uniaxial_rate": 1,
+      "segments": [{"shear_rate": 1}], "stress": 1, "waves": [{"periods": 1, "sine": 1}]})");
+  for (const FlowKind& kind : flow_kinds()) EXPECT_TRUE(flows.contains(kind.key.substr(6))) << kind.key;
+  for (const auto& [first, of_first] : flows.items()) {
+    for (const auto& [second, of_second] : flows.items()) {
+      const std::set<std::string> both = {first, second};
+      if (both.size() == 1 || both == std::set<std::string>{"cross_shear", "shear_rate"} ||
+          both == std::set<std::string>{"shear_rate", "waves"}) {
+        continue;
+      }
+      Json document = small_scene();
+      document["flow"] = {{first, of_first}, {second, of_second}};
+      try {
+        read_scene(document, "scene.json");
+        ADD_FAILURE() << first << " and " << second << " are accepted";
+      } catch (const InputError& error) {
+        const std::string refused = error.pointer().substr(6), other = refused == first ? second : first;
+        EXPECT_TRUE(both.contains(refused)) << error.what();
+        EXPECT_EQ(error.allowed(), "must be left out together with /flow/" + other);
+      }
     }
   }
+}
+
+const char* const mixed = R"({
+  "particles": {"count": 4000, "density": 0.1, "mixture": {
+    "colloids": [{"radius": 1, "volume_share": 1}, {"radius": 1.4, "volume_share": 1}],
+    "grains": [{"radius": 5}], "alpha": 0.4}},
+  "addition": {"added": "grains", "base_volume_fraction": 0.55},
+  "fluid": {"viscosity": 0.1},
+  "flow": {"shear_rate": 0.009},
+  "duration": {"equilibration": {"strain": 2}, "production": {"strain": 5}}})";
+
+const SceneFault mixture_faults[] = {
+    {R"({"volume_fraction": 0.5})", "/addition", "{\"added\":\"grains\",\"base_volume_fraction\":0.55}",
+     "must not be given beside volume_fraction"},
+    {R"({"addition": null})", "/volume_fraction", "missing", "must be a number > 0 and < 0.93"},
+    {R"({"addition": {"added": "sand"}})", "/addition/added", "\"sand\"", "colloids, grains"},
+    {R"({"addition": {"added": null}})", "/addition/added", "missing", "colloids, grains"},
+    {R"({"addition": {"base_volume_fraction": 0.74}})", "/addition/base_volume_fraction", "0.74", "< 0.74"},
+    {R"({"particles": {"mixture": {"alpha": 1}}})", "/particles/mixture/alpha", "1",
+     "must leave a volume fraction < 0.93; with grains added to 0.55 it is 1"},
+    {R"({"particles": {"mixture": {"alpha": 0}}, "addition": {"added": "colloids"}})",
+     "/particles/mixture/alpha", "0", "with colloids added to 0.55 it is 1"},
+    {R"({"particles": {"mixture": {"alpha": 1.01}}})", "/particles/mixture/alpha", "1.01", ">= 0 and <= 1"},
+    {R"({"particles": {"mixture": {"alpha": null}}})", "/particles/mixture/alpha", "missing",
+     ">= 0 and <= 1"},
+    {R"({"particles": {"mixture": {"grains": null}}})", "/particles/mixture/grains", "missing",
+     "array of 1 to"},
+    {R"({"particles": {"mixture": {"colloids": []}}})", "/particles/mixture/colloids", "[]", "array of 1 to"},
+    {R"({"particles": {"mixture": {"colloids": [{"radius": 1, "volume_share": 1}, {"radius": 2}]}}})",
+     "/particles/mixture/colloids/1/volume_share", "missing", "each species must have"},
+    {R"({"particles": {"mixture": {"grains": [{"radius": 1e90}]}}})", "/particles/mixture/grains/0/radius",
+     "1e+90", "choose other units"},
+    {R"({"particles": {"mixture": {"reference": "mean"}, "reference_radius": 1}})",
+     "/particles/reference_radius", "1", "must be left out together with /particles/mixture/reference"},
+    {R"({"particles": {"mixture": {"reference": "largest"}}})", "/particles/mixture/reference", "\"largest\"",
+     "colloids, grains, mean"},
+    {R"({"particles": {"mixture": {"grains": [{"radius": 1.4, "density": 2}]}}})",
+     "/particles/mixture/grains/0/density", "2",
+     "must be 0.1, the density of the other spheres of radius 1.4"},
+    {R"({"particles": {"species": [{"radius": 1}]}})", "/particles/mixture", nullptr,
+     "must not be given beside species"},
+    {R"({"particles": {"mixture": null, "species": [{"radius": 1}]}})", "/addition", nullptr,
+     "must be left out without /particles/mixture"},
+    {R"({"particles": {"mixture": null}})", "/particles/species", "missing", "array of 1 to 256"},
+    {R"({"particles": {"density_rule": "equal"}})", "/particles/density_rule", "\"equal\"", "equal-inertia"},
+    {R"({"particles": {"density_rule": "equal-inertia", "mixture": {"grains": [{"radius": 5, "density": 1}]}}})",
+     "/particles/mixture/grains/0/density", "1", "must be left out with /particles/density_rule"},
+    {R"({"particles": {"mixture": {"grains": [{"radius": 5, "density": 0}]}}})",
+     "/particles/mixture/grains/0/density", "0", "must be a number > 0"},
+};
+
+// A scene with a size distribution, which the edits below change.
+const char* const distributed = R"({
+  "particles": {"count": 4000, "density": 0.1, "species": [{"distribution":
+    {"form": "lognormal", "by": "number", "mean_radius": 1, "relative_width": 0.2}}]},
+  "volume_fraction": 0.5,
+  "fluid": {"viscosity": 0.1},
+  "flow": {"shear_rate": 0.009},
+  "duration": {"equilibration": {"strain": 2}, "production": {"strain": 5}}})";
+
+const SceneFault distribution_faults[] = {
+    {R"({"form": "weibull"})", "/form", "\"weibull\"", "lognormal, uniform, gaussian, histogram"},
+    {R"({"form": null})", "/form", "missing", "lognormal"},
+    {R"({"by": null})", "/by", "missing", "number, volume"},
+    {R"({"mean_radius": null})", "/mean_radius", "missing", "must be a number > 0"},
+    {R"({"relative_width": null})", "/relative_width", "missing", "must be a number > 0"},
+    {R"({"relative_width": 0})", "/relative_width", "0", "must be a number > 0"},
+    {R"({"relative_width": 1.1})", "/relative_width", "1.1", "<= 1"},
+    {R"({"form": "uniform", "relative_width": 0.56})", "/relative_width", "0.56", "must be at most 0.55"},
+    {R"({"form": "gaussian", "relative_width": 0.33})", "/relative_width", "0.33", "must be at most 0.32"},
+    {R"({"classes": 0})", "/classes", "0", "must be an integer >= 1 and <= 256"},
+    {R"({"classes": 257})", "/classes", "257", "<= 256"},
+    {R"({"radii": [1]})", "/radii", "[1]", "must be left out unless form is histogram"},
+    {R"({"form": "histogram", "radii": [1], "shares": [1]})", "/mean_radius", "1",
+     "must be left out unless form is lognormal or uniform or gaussian"},
+    {R"({"form": "histogram", "mean_radius": null, "relative_width": null})", "/radii", "missing",
+     "must be an array of 1 to 256, because form is histogram"},
+    {R"({"form": "histogram", "mean_radius": null, "relative_width": null, "radii": [1, 2], "shares": [1]})",
+     "/shares", "[1]", "must have a share for each of the 2 radii"},
+    {R"({"form": "histogram", "mean_radius": null, "relative_width": null, "radii": [1, 2], "shares": [0, 0]})",
+     "/shares", "[0,0]", "must have a share > 0"},
+    {R"({"form": "histogram", "mean_radius": null, "relative_width": null, "radii": [1, -2], "shares": [1, 1]})",
+     "/radii/1", "-2", "must be a number > 0"},
+};
+
+TEST(CompositionFaults, OfAMixtureAreNamed) {
+  EXPECT_NO_THROW(read_scene(Json::parse(mixed), "scene.json"));
+  for (const SceneFault& fault : mixture_faults) expect_fault(patched(Json::parse(mixed), fault.edit), fault);
+}
+
+TEST(CompositionFaults, OfADistributionAreNamed) {
+  EXPECT_NO_THROW(read_scene(Json::parse(distributed), "scene.json"));
+  const Json::json_pointer place("/particles/species/0/distribution");
+  for (const auto& [edit, pointer, value, allowed] : distribution_faults) {
+    Json document = Json::parse(distributed);
+    document.at(place).merge_patch(Json::parse(edit));
+    expect_fault(document, {edit, (place.to_string() + pointer).c_str(), value, allowed});
+  }
+}
+
+TEST(CompositionFaults, ASizeIsARadiusOrADistribution) {
+  Json document = Json::parse(distributed);
+  document["particles"]["species"][0]["radius"] = 1;
+  expect_fault(document, {"a radius, too", "/particles/species/0/distribution", nullptr,
+                          "must not be given beside radius"});
+  document["particles"]["species"][0].erase("radius");
+  document["particles"]["species"][0].erase("distribution");
+  expect_fault(document, {"neither", "/particles/species/0/radius", "missing", "must be a number > 0"});
+}
+
+TEST(CompositionFaults, SizesOfDistributionsCount) {
+  Json document = Json::parse(distributed);
+  Json& species = document["particles"]["species"];
+  species[0]["distribution"]["classes"] = 128;
+  species[0]["volume_share"] = 1;
+  species.push_back(species[0]);
+  species[1]["distribution"]["mean_radius"] = 2;
+  EXPECT_NO_THROW(read_scene(document, "scene.json"));
+  species.push_back(Json{{"radius", 9}, {"volume_share", 1}});
+  expect_fault(document, {"257 sizes", "/particles/species", nullptr, "must be at most 256 sizes"});
+}
+
+TEST(CompositionFaults, SpheresOfOneGroupCannotBeDenserThanTheyCanBe) {
+  Json document = Json::parse(distributed);
+  document["volume_fraction"] = 0.75;
+  expect_fault(document, {"dense", "/volume_fraction", "0.75",
+                          "must be a number > 0 and < 0.74, with /particles/mixture < 0.93"});
 }
 
 }  // namespace

@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <limits>
 #include <numbers>
 
-#include "contract/errors.h"
 #include "engine/observables/scene_reading.h"
+#include "tests/contract/refusal.h"
 
 namespace peclet::engine {
 namespace {
@@ -249,22 +248,17 @@ TEST(Scene, AConfigurationsBlocksAreReadByTheSameKeys) {
   EXPECT_EQ(physics.lubrication->outer_gap, 0.05);
   EXPECT_EQ(physics.repulsion->cutoff_lengths, 20);
 
-  const auto pointer_of_fault = [&](const Json& patch) {
+  const auto expect_refusal = [&](const Json& patch, const std::string& pointer) {
     Json document = blocks;
     document.merge_patch(patch);
-    try {
-      read_physics(document, "c.json", "/scene");
-    } catch (const InputError& error) {
-      EXPECT_EQ(error.file(), "c.json");
-      return error.pointer();
-    }
-    return std::string("accepted");
+    const std::string refusal = refusal_by([&] { read_physics(document, "c.json", "/scene"); });
+    EXPECT_TRUE(refusal.starts_with("c.json: " + pointer + ": ")) << refusal;
   };
-  EXPECT_EQ(pointer_of_fault({{"particles", 1}}), "/scene/particles");
-  EXPECT_EQ(pointer_of_fault({{"fluid", nullptr}}), "/scene/fluid");
-  EXPECT_EQ(pointer_of_fault({{"fluid", {{"viscosity", -1}}}}), "/scene/fluid/viscosity");
-  EXPECT_EQ(pointer_of_fault({{"contact", {{"normal_stifness", 1}}}}), "/scene/contact/normal_stifness");
-  EXPECT_EQ(pointer_of_fault({{"lubrication", {{"inner_gap", 0.1}}}}), "/scene/lubrication/inner_gap");
+  expect_refusal({{"particles", 1}}, "/scene/particles");
+  expect_refusal({{"fluid", nullptr}}, "/scene/fluid");
+  expect_refusal({{"fluid", {{"viscosity", -1}}}}, "/scene/fluid/viscosity");
+  expect_refusal({{"contact", {{"normal_stifness", 1}}}}, "/scene/contact/normal_stifness");
+  expect_refusal({{"lubrication", {{"inner_gap", 0.1}}}}, "/scene/lubrication/inner_gap");
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Species of a scene chosen from a measured table.
+// Species of a scene chosen from a measured table, and tables as instruments, spreadsheets and people save
+// them.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -6,11 +7,10 @@
 #include <sstream>
 
 #include "contract/durable_file.h"
-#include "contract/errors.h"
-#include "contract/json.h"
 #include "engine/observables/scene_reading.h"
 #include "engine/realisation/schedule.h"
 #include "engine/scene/measured_sizes.h"
+#include "tests/contract/refusal.h"
 #include "tests/engine/small_scene.h"
 #include "tests/engine/temporary_folder.h"
 
@@ -41,13 +41,10 @@ class SizeChoice : public testing::Test {
     scene["particles"]["species"] = Json::parse("{" + answer.block + "}").at("species");
     scene["particles"]["count"] = count;
     scene["integrator"] = {{"method", "implicit"}};  // any sizes
-    try {
+    return refusal_by([&] {
       const Scene read = read_scene(scene, "scene.json");
       check_fit(read, make_schedule(read, "scene.json"), "scene.json");
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    });
   }
 
   TemporaryFolder folder_;
@@ -66,8 +63,7 @@ TEST_F(SizeChoice, OfAllSizesSaysTheCountThatAScenePasses) {
   EXPECT_NEAR(static_cast<double>(spheres), sum * std::pow(1.8, 3) / 0.25, 1);
   for (const std::size_t count : {spheres, spheres + 1, spheres + 100, 2 * spheres})
     EXPECT_EQ(fault_of(all, count), "");
-  const std::string fault = fault_of(all, 60);
-  EXPECT_NE(fault.find(std::to_string(spheres) + " would do for all sizes"), std::string::npos) << fault;
+  EXPECT_TRUE(contains(fault_of(all, 60), std::to_string(spheres) + " would do for all sizes"));
 }
 
 TEST_F(SizeChoice, MergesThinSizesUntilEachHasASphere) {
@@ -107,6 +103,50 @@ TEST(SizeClasses, OfTheThinnestAreMergedWithTheThinnerNeighbour) {
   EXPECT_DOUBLE_EQ(std::pow(merged[1].radius, 3), (0.1 * 8 + 0.3 * 27) / 0.4);
   EXPECT_DOUBLE_EQ(with_one_size_less({{1, 0.1}, {2, 0.9}})[0].number, 1);
   EXPECT_DOUBLE_EQ(with_one_size_less({{1, 0.9}, {2, 0.1}})[0].number, 1);
+}
+
+std::string text_of(const std::vector<MeasuredSize>& sizes) {
+  std::string text;
+  for (const MeasuredSize& one : sizes)
+    text += std::to_string(one.size).substr(0, 4) + " " + std::to_string(one.share).substr(0, 4) + "; ";
+  return text;
+}
+
+TEST(MeasuredSizes, AreReadInEveryDialect) {
+  for (const char* text : {
+           "1.0 10\n1.4 20\n",
+           "1.4 20\n1.0 10",  // descending
+           "\xef\xbb\xbf"
+           "1.0 10\r\n1.4 20\r\n\r\n",
+           "Size;Share\n1,0;10\n1,4;20\n",  // a spreadsheet with decimal commas
+           "\"1,0\";\"10\"\n\"1,4\";\"20\"",
+           "Instrument 7\nSample: No. 3\nd [um]\tq3 [%]\n\n1,0\t10\n1,4\t20\n", "1.0,10\n1.4,20\n",
+           "1.0, 10\n1.4, 20\n", "1.0;10;\n1.4;20;\n", "+1,0 10\n1,4 +20,0\n",
+           "0.9 0\n1.0 10\n1.4 20\n1.6 0\n",  // empty classes
+       }) {
+    EXPECT_EQ(text_of(measured_sizes(text, "s.txt")), "1.00 10.0; 1.40 20.0; ") << text;
+  }
+  EXPECT_EQ(text_of(measured_sizes("a;b;c\n5;1;10\n15;1,4;20", "s.txt", {2, 3})), "1.00 10.0; 1.40 20.0; ");
+}
+
+TEST(MeasuredSizes, ThatAreNotPlainAreRefused) {
+  for (const auto& [text, reason] : std::vector<std::pair<std::string, std::string>>{
+           {"", "s.txt: must have a line of a size and its share"},
+           {"size share\n", "must have a line of a size"},
+           {"1 0\n2 0\n", "must have a line of a size"},
+           {"1 10\n2\n", "line 2: \"2\": must be a size and its share"},
+           {"1,5,20\n", "line 1: \"1,5,20\": has 3 columns: --columns must name"},
+           {"x;y;z\n1;2;3\n", "line 2: \"1;2;3\": has 3 columns"},
+           {"1 10\n-2 10\n", "line 2: \"-2 10\": must have a size > 0"},
+           {"1 10\n2 -10\n", "must have a share >= 0"},
+           {"1 10\n2 1e999\n", "must have a share >= 0"},
+           {"1 10\nTotal 10\n", "line 2: \"Total 10\": must have a size > 0"},
+           {"1.000,5;10\n", "must have a size > 0"},
+           {"1 10\n1.0 20\n", "size 1: must be there once"},
+           {"1 0\n2 40\n3 100\n", "as those of a cumulative curve"},
+           {"1 1\n2 0.4\n3 0\n", "as those of a cumulative curve"}}) {
+    EXPECT_TRUE(contains(refusal_by([&] { measured_sizes(text, "s.txt"); }), reason)) << text;
+  }
 }
 
 }  // namespace

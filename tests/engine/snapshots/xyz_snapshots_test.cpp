@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
-#include "contract/errors.h"
 #include "engine/snapshots/conversion.h"
 #include "engine/snapshots/snapshot.h"
+#include "tests/contract/refusal.h"
 
 namespace peclet::engine {
 namespace {
@@ -13,12 +13,17 @@ const std::string spheres = "B 1 2 3 1.4 0 0 7\nA -1e1 0 0 1 0 0 2\n";
 const std::string text = "2\n" + about + "\n" + spheres;
 
 std::string refusal(const std::string& bytes) {
-  try {
+  return refusal_by([&] {
     for (const std::string_view frame : xyz_frames(bytes, "t.xyz")) read_xyz_frame(frame, "t.xyz");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  });
+}
+
+// Returns the bytes with `to` in the place of `from`, at most `times` times.
+std::string replaced(std::string bytes, const std::string& from, const std::string& to, int times) {
+  for (std::size_t at = bytes.find(from); at != std::string::npos && times-- > 0;
+       at = bytes.find(from, at + to.size()))
+    bytes.replace(at, from.size(), to);
+  return bytes;
 }
 
 TEST(XyzSnapshot, IsSortedByIdsAndPassesOverWhatItDoesNotKnow) {
@@ -53,21 +58,18 @@ TEST(XyzSnapshot, OfATextThatWasWrittenIsWhatWasWritten) {
   EXPECT_EQ(read.stress[1].yz, -6.5);
   EXPECT_EQ(read.step, 77U);
   EXPECT_EQ(read.strain, 2.0 / 3);
-  EXPECT_NE(written.find("stress_total=\"1 2 3 4 5 6\""), std::string::npos);
+  EXPECT_TRUE(contains(written, "stress_total=\"1 2 3 4 5 6\""));
 }
 
 // One set of spheres as editors, shells and other programs save it.
 TEST(XyzSnapshot, IsReadInEveryDialect) {
-  const auto replaced = [](std::string bytes, const std::string& from, const std::string& to) {
-    for (std::size_t at = bytes.find(from); at != std::string::npos; at = bytes.find(from, at + to.size()))
-      bytes.replace(at, from.size(), to);
-    return bytes;
+  const auto everywhere = [](const std::string& from, const std::string& to) {
+    return replaced(text, from, to, 99);
   };
   for (const std::string& bytes :
-       {replaced(text, "\n", "\r\n"), "\xef\xbb\xbf" + text, text + "\n \t\n\r\n", replaced(text, "\"", "'"),
-        replaced(text, " 1 ", "\t+1 "), replaced(text, "2\nL", " 2 \nL"),
-        replaced(text, " pbc", "  note=\"Lattice=1 Time=2\" flag pbc"),
-        replaced(text, "species:S", "type:S")}) {
+       {everywhere("\n", "\r\n"), "\xef\xbb\xbf" + text, text + "\n \t\n\r\n", everywhere("\"", "'"),
+        everywhere(" 1 ", "\t+1 "), everywhere("2\nL", " 2 \nL"),
+        everywhere(" pbc", "  note=\"Lattice=1 Time=2\" flag pbc"), everywhere("species:S", "type:S")}) {
     EXPECT_EQ(refusal(bytes), "") << bytes;
     const std::vector<std::string_view> frames = xyz_frames(bytes, "t.xyz");
     ASSERT_EQ(frames.size(), 1U) << bytes;
@@ -83,7 +85,7 @@ TEST(XyzSnapshot, IsWrittenWithTypesThatAreWords) {
   Snapshot snapshot = read_xyz_frame(text, "t.xyz");
   snapshot.species_names = {"", "two words"};
   const std::string written = xyz_frame(snapshot);
-  EXPECT_NE(written.find("Properties=id:I:1:type:S:1:pos:R:3"), std::string::npos) << written;
+  EXPECT_TRUE(contains(written, "Properties=id:I:1:type:S:1:pos:R:3"));
   EXPECT_EQ(written.find("species"), std::string::npos) << written;
   EXPECT_EQ(read_xyz_frame(written, "t.xyz").species_names, (std::vector<std::string>{"2", "1"}));
 }
@@ -98,8 +100,8 @@ TEST(XyzSnapshot, HasAsManyFramesAsTheText) {
 TEST(XyzSnapshot, ThatIsNoneIsRefused) {
   EXPECT_EQ(refusal(text), "");
   const auto replaced = [](const std::string& from, const std::string& to) {
-    std::string bytes = text;
-    return bytes.replace(bytes.find(from), from.size(), to);
+    EXPECT_TRUE(contains(text, from));
+    return engine::replaced(text, from, to, 1);
   };
   for (const auto& [bytes, reason] : std::vector<std::pair<std::string, std::string>>{
            {"3\n" + about + "\n" + spheres, "must have 4 lines after the first"},
@@ -123,7 +125,7 @@ TEST(XyzSnapshot, ThatIsNoneIsRefused) {
            {replaced("1.4 0 0 7", "nan 0 0 7"), "must be a number"},
            {replaced("1.4 0 0 7", "-1.4 0 0 7"), "radius -1.4 of sphere 1: must be > 0"},
            {replaced("0 0 7", "0 0 2"), "id 2: must be there once"}}) {
-    EXPECT_NE(refusal(bytes).find(reason), std::string::npos) << refusal(bytes) << " has not " << reason;
+    EXPECT_TRUE(contains(refusal(bytes), reason));
   }
 }
 

@@ -37,6 +37,13 @@ inline ParticleState scattered(std::size_t count, const std::vector<double>& siz
   return particles;
 }
 
+// Returns a list built with this skin.
+inline NeighbourList list_of(const ParticleState& particles, const PeriodicCell& box, double skin) {
+  NeighbourList list(ranges_of(particles.radius), skin);
+  list.build(particles, box);
+  return list;
+}
+
 inline std::vector<SeenPair> near(const ParticleState& particles, const PeriodicCell& box, double factor) {
   return every_image(particles.position, box.lengths(), box.tilt(), [&](std::uint32_t i, std::uint32_t j) {
     return factor * (particles.radius[i] + particles.radius[j]);
@@ -54,14 +61,15 @@ inline std::vector<SeenPair> near_with_skin(const ParticleState& particles, cons
   });
 }
 
+inline bool by_name(const SeenPair& a, const SeenPair& b) {
+  return std::tie(a.first, a.second, a.image) < std::tie(b.first, b.second, b.image);
+}
+
 inline std::vector<SeenPair> listed(const NeighbourList& list) {
   std::vector<SeenPair> pairs;
-  for (const Pair& pair : list.pairs()) {
+  for (const Pair& pair : list.pairs())
     pairs.push_back({pair.first, pair.second, list.images()[pair.image], {}});
-  }
-  std::sort(pairs.begin(), pairs.end(), [](const SeenPair& a, const SeenPair& b) {
-    return std::tie(a.first, a.second, a.image) < std::tie(b.first, b.second, b.image);
-  });
+  std::sort(pairs.begin(), pairs.end(), by_name);
   return pairs;
 }
 

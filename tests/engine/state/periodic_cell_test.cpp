@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "engine/state/particles.h"
+#include "tests/engine/components.h"
 #include "tests/engine/draws.h"
 #include "tests/engine/every_image.h"
 
@@ -14,14 +15,11 @@ namespace {
 
 constexpr double rate = 0.7;
 
-void expect_near(const Vector3& a, const Vector3& b, double tolerance) {
-  EXPECT_NEAR(a.x, b.x, tolerance);
-  EXPECT_NEAR(a.y, b.y, tolerance);
-  EXPECT_NEAR(a.z, b.z, tolerance);
-}
+// Returns a cell of these lengths in shear, tilted by `tilt`.
+PeriodicCell sheared_cell(double tilt = 0) { return {{10, 8, 6}, simple_shear(rate), tilt}; }
 
 TEST(PeriodicCell, TiltGrowsWithTheStrain) {
-  PeriodicCell box({10, 8, 6}, simple_shear(rate), 1);
+  PeriodicCell box = sheared_cell(1);
   box.deform(simple_shear(0.25));
   EXPECT_DOUBLE_EQ(box.tilt(), 1 + 0.25 * 8);
   EXPECT_DOUBLE_EQ(box.volume(), 480);
@@ -77,7 +75,7 @@ TEST(PeriodicCell, AnotherBasisIsOneOfTheSameLattice) {
 
 TEST(PeriodicCell, AFlipTakesBackTheTilt) {
   for (const std::int32_t count : {-2, -1, 1, 3}) {
-    PeriodicCell box({10, 8, 6}, simple_shear(rate), 1);
+    PeriodicCell box = sheared_cell(1);
     box.deform(simple_shear(0.9));
     PeriodicCell flipped = box;
     flipped.change_basis(flips(count));
@@ -87,7 +85,7 @@ TEST(PeriodicCell, AFlipTakesBackTheTilt) {
 
 TEST(PeriodicCell, DueFlipsBringTheTiltNextToZero) {
   for (const double strain : {-3.3, -0.63, -0.62, 0.0, 0.6, 0.63, 1.2, 7.77}) {
-    PeriodicCell box({10, 8, 6}, simple_shear(rate));
+    PeriodicCell box = sheared_cell();
     box.deform(simple_shear(strain));
     const auto count = static_cast<std::int32_t>(std::floor(strain * 8 / 10 + 0.5));
     EXPECT_EQ(box.due_change(), flips(count)) << strain;
@@ -98,7 +96,7 @@ TEST(PeriodicCell, DueFlipsBringTheTiltNextToZero) {
 }
 
 TEST(PeriodicCell, ImagesMoveAsTheFlowDoesWhereTheyAre) {
-  const PeriodicCell box({10, 8, 6}, simple_shear(rate), 1);
+  const PeriodicCell box = sheared_cell(1);
   expect_near(box.velocity({3, -2, 1}), {-2 * 8 * rate, 0, 0}, 1e-14);
   Draws draws(2);
   for (int n = 0; n < 20; ++n) {
@@ -139,7 +137,7 @@ TEST(PeriodicCell, KeepsItsVolumeInAFlowOfConstantDensity) {
 }
 
 TEST(PeriodicCell, FractionalCoordinatesAreAlongTheLatticeVectors) {
-  const PeriodicCell box({10, 8, 6}, simple_shear(rate), 3);
+  const PeriodicCell box = sheared_cell(3);
   const Vector3 point = 0.2 * Vector3{10, 0, 0} + 0.7 * Vector3{3, 8, 0} + 0.4 * Vector3{0, 0, 6};
   expect_near(box.frame().fractional(point), {0.2, 0.7, 0.4}, 1e-15);
   Draws draws(5);
@@ -157,7 +155,7 @@ TEST(PeriodicCell, FractionalCoordinatesAreAlongTheLatticeVectors) {
 }
 
 TEST(PeriodicCell, WidthsAreTheDistancesBetweenFaces) {
-  const PeriodicCell box({10, 8, 6}, simple_shear(rate), 3);
+  const PeriodicCell box = sheared_cell(3);
   // Volume over the area of the face: |A2 x A3| = 6 sqrt(9 + 64), |A1 x A3| = 60, |A1 x A2| = 80.
   expect_near(box.frame().widths(), {480 / (6 * std::sqrt(73.0)), 8, 6}, 1e-14);
   Draws draws(6);
@@ -220,9 +218,13 @@ Suspension outside_the_cell() {
   return s;
 }
 
-TEST(Wrapping, PutsEveryParticleIntoTheCell) {
-  Suspension s = outside_the_cell();
+Suspension wrapped(Suspension s) {
   wrap_into_cell(s.particles, s.box);
+  return s;
+}
+
+TEST(Wrapping, PutsEveryParticleIntoTheCell) {
+  const Suspension s = wrapped(outside_the_cell());
   for (std::size_t i = 0; i < 30; ++i) {
     const Vector3 place = s.box.frame().fractional(s.particles.position[i]);
     for (const double coordinate : {place.x, place.y, place.z}) {
@@ -259,26 +261,19 @@ void expect_same_motions(const Suspension& before, const Suspension& after) {
 }
 
 TEST(Wrapping, ChangesNoSeparationAndNoRelativeVelocity) {
-  const Suspension before = outside_the_cell();
-  Suspension after = before;
-  wrap_into_cell(after.particles, after.box);
-  expect_same_motions(before, after);
+  expect_same_motions(outside_the_cell(), wrapped(outside_the_cell()));
 }
 
 TEST(Wrapping, AfterAFlipChangesNoSeparationAndNoRelativeVelocity) {
-  const Suspension before = outside_the_cell();
   for (const std::int32_t count : {-1, 1, 2}) {
-    Suspension after = before;
+    Suspension after = outside_the_cell();
     after.box.change_basis(flips(count));
-    wrap_into_cell(after.particles, after.box);
-    expect_same_motions(before, after);
+    expect_same_motions(outside_the_cell(), wrapped(after));
   }
 }
 
 TEST(Wrapping, CountsWhatItRemoved) {
-  const Suspension before = outside_the_cell();
-  Suspension after = before;
-  wrap_into_cell(after.particles, after.box);
+  const Suspension before = outside_the_cell(), after = wrapped(before);
   for (std::size_t i = 0; i < 30; ++i) {
     expect_near(after.particles.position[i] + after.box.displacement(after.particles.image[i]),
                 before.particles.position[i], 1e-12);
@@ -287,9 +282,7 @@ TEST(Wrapping, CountsWhatItRemoved) {
 
 // The velocity changes with the height by that of the flow, so drag is unchanged.
 TEST(Wrapping, KeepsTheVelocityRelativeToTheStreamingFlow) {
-  const Suspension before = outside_the_cell();
-  Suspension after = before;
-  wrap_into_cell(after.particles, after.box);
+  const Suspension before = outside_the_cell(), after = wrapped(before);
   for (std::size_t i = 0; i < 30; ++i) {
     EXPECT_NEAR(after.particles.velocity[i].x - rate * after.particles.position[i].y,
                 before.particles.velocity[i].x - rate * before.particles.position[i].y, 1e-12 * 40);

@@ -141,9 +141,7 @@ TEST(StepResistance, AheadIsThatOfTheMiddleToFirstOrder) {
     return modes(lubrication, StepResistance::Part::ahead, gap - 0.5 * way, gap + 0.5 * way).inverse -
            (1 / gap - 0.5 / lubrication.outer_gap);
   };
-  for (const double sign : {-1, 1}) {
-    EXPECT_NEAR(error(sign * 1e-3) / error(sign * 5e-4), 4, 0.4);
-  }
+  for (const double sign : {-1, 1}) EXPECT_NEAR(error(sign * 1e-3) / error(sign * 5e-4), 4, 0.4);
 }
 
 }  // namespace

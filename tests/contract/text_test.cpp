@@ -1,8 +1,11 @@
+#include "contract/text.h"
+
 #include <gtest/gtest.h>
+
+#include <cstdint>
 
 #include "contract/errors.h"
 #include "contract/json.h"
-#include "contract/text.h"
 
 namespace peclet {
 namespace {
@@ -80,6 +83,50 @@ TEST(InputError, IsOneShortLineWhateverItQuotes) {
     EXPECT_LE(characters(error.within(given, "/scene").what()), longest_message);
     EXPECT_TRUE(error.within("f", "/scene").pointer().starts_with("/scene/"));
   }
+}
+
+const std::vector<std::string> keys{"particles", "volume_fraction", "fluid", "flow", "contact"};
+
+TEST(NearestName, IsTheOneWithFewestMistakes) {
+  EXPECT_EQ(nearest_name("volume_fracton", keys), "volume_fraction");    // a letter is missing
+  EXPECT_EQ(nearest_name("volume_fractionn", keys), "volume_fraction");  // one too many
+  EXPECT_EQ(nearest_name("partikles", keys), "particles");               // a wrong one
+  EXPECT_EQ(nearest_name("contcat", keys), "contact");                   // two swapped
+  EXPECT_EQ(nearest_name("flwo", keys), "flow");                         // one mistake, a third of 4 letters
+  EXPECT_EQ(nearest_name("run", {"ran", "rum"}), "ran");                 // first of equals
+}
+
+TEST(NearestName, NothingFarFetchedIsOffered) {
+  EXPECT_EQ(nearest_name("seeds", keys), "");
+  EXPECT_EQ(nearest_name("fl", keys), "");
+  EXPECT_EQ(nearest_name("", keys), "");
+  EXPECT_EQ(nearest_name("flow", {}), "");
+  EXPECT_EQ(suggestion("seeds", keys), "");
+  EXPECT_EQ(suggestion("fliud", keys), "; did you mean fluid?");
+}
+
+TEST(TextLines, EndAsOnAnySystem) {
+  std::string_view text = without_byte_order_mark("\xef\xbb\xbfone\r\ntwo\n\nthree");
+  for (const char* line : {"one", "two", "", "three", ""}) EXPECT_EQ(take_line(text), line);
+  EXPECT_EQ(without_byte_order_mark("\xef\xbbone"), "\xef\xbbone");
+}
+
+TEST(TextLines, HaveWords) {
+  std::string_view line = " \ta  bc\t";
+  for (const char* word : {"a", "bc", "", ""}) EXPECT_EQ(take_word(line), word);
+  EXPECT_TRUE(is_blank(" \t\r\n") && is_blank(""));
+  EXPECT_FALSE(is_blank(" x"));
+}
+
+TEST(TextLines, HaveNumbersThatAreFinite) {
+  EXPECT_EQ(number_in<double>("+1.5"), 1.5);
+  EXPECT_EQ(number_in<double>("-2e-3"), -2e-3);
+  EXPECT_EQ(number_in<std::int32_t>("+7"), 7);
+  EXPECT_EQ(number_in<std::uint64_t>("18446744073709551615"), ~std::uint64_t{0});
+  for (const char* word : {"", "+", "+-1", "++1", "1,5", "1.5x", " 1", "nan", "inf", "1e999", "0x10"}) {
+    EXPECT_FALSE(number_in<double>(word)) << word;
+  }
+  EXPECT_FALSE(number_in<std::uint32_t>("-1") || number_in<std::int32_t>("2147483648"));
 }
 
 }  // namespace
