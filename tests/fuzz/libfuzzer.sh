@@ -9,7 +9,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 name=$1 seconds=$2 folder=${3:-build/fuzz/$1}
 clang=${CLANG:-clang++-14}
 declare -A sources=(
-  [spheres]="engine/gsd engine/snapshots engine/pictures engine/state/threads.cpp engine/state/periodic_cell.cpp"
+  [spheres]="engine/snapshots engine/pictures engine/state/threads.cpp engine/state/periodic_cell.cpp"
 )
 files=("tests/fuzz/${name}_target.cpp")
 for source in contract ${sources[$name]}; do
