@@ -216,6 +216,7 @@ void report_faulty(const std::vector<FileRecord>& faulty, const char* code, cons
                    const CampaignDirectory& directory, Findings& findings) {
   if (faulty.empty()) return;
   std::vector<fs::path> places;
+  places.reserve(faulty.size());
   for (const FileRecord& record : faulty) places.push_back(record.place(directory));
   Finding finding{code, Severity::warning,
                   fmt::format("{} files that realisations left {}: {}", places.size(), how,

@@ -129,6 +129,7 @@ std::vector<PointRecord> named(const std::vector<PointRecord>& points,
 
 std::string labels(const std::vector<PointRecord>& points) {
   std::vector<std::string> labels;
+  labels.reserve(points.size());
   for (const PointRecord& point : points) labels.push_back(point.label);
   return listed(labels);
 }
