@@ -152,6 +152,12 @@ class KindTables {
   std::vector<KeyTable> tables_;  // ordered as key_.choices
 };
 
+// Returns the last step of the key's pointer.
+std::string_view name_of(const Key& key);
+
+// Returns the one of `keys` that may be given instead of `key`, or null.
+const Key* alternative_to(const std::vector<const Key*>& keys, const Key& key);
+
 // Returns what a key allows, in words: "must be a number > 0", "must be one of: a, b".
 std::string allowed_values(const Key& key);
 

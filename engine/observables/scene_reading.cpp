@@ -26,8 +26,8 @@ std::string observable_keys() {
                     kind.sampling == Sampling::often ? "one step" : "a 256th of the production window");
     if (kind.interval_is_a_duration) {
       blocks += fmt::format(
-          "{} | object; as /duration/production | Interval between samples, {} Ends at the first of its "
-          "limits; at least one is required.\n",
+          "{} | object; as /duration/production | Interval between samples, {} The shortest of its limits "
+          "counts; at least one is required.\n",
           interval, unless_given);
     } else if (kind.sampling != Sampling::of_every_step) {
       blocks += fmt::format("{} | number > 0; in time | Time between samples, {}\n", interval, unless_given);

@@ -47,6 +47,8 @@ int results_of(const Campaign& campaign, const fs::path& folder) {
       }
     }
     return results;
+  } catch (const std::system_error&) {
+    throw;  // the machine failed, which says nothing of the folder
   } catch (const std::runtime_error&) {
     return 0;
   }

@@ -75,13 +75,13 @@ Descriptor open_folder(const CampaignDirectory& directory) {
 }
 
 // Returns a descriptor below 0 if the file is absent or may not be read.
-Descriptor open_for_viewing(const fs::path& file) {
+Descriptor open_for_reading(const fs::path& file) {
   require_regular(file);
   return open_file(file, O_RDONLY | O_NOFOLLOW | O_NONBLOCK);
 }
 
 std::int64_t written_owner(const CampaignDirectory& directory) {
-  const Descriptor file = open_for_viewing(directory.lock());
+  const Descriptor file = open_for_reading(directory.lock());
   std::array<char, 32> text{};
   const ssize_t count = pread(file.number(), text.data(), text.size(), 0);
   std::string_view said(text.data(), static_cast<std::size_t>(std::max<ssize_t>(0, count)));
@@ -177,7 +177,7 @@ std::optional<fs::path> OwnerLock::folder() const {
 
 std::optional<std::int64_t> current_owner(const CampaignDirectory& directory) {
   const Descriptor folder = open_folder(directory);
-  const Descriptor file = open_for_viewing(directory.lock());
+  const Descriptor file = open_for_reading(directory.lock());
   // Shared locks, held for an instant: they fail while there is an owner.
   for (const int descriptor : {folder.number(), file.number()}) {
     if (descriptor < 0 || flock(descriptor, LOCK_SH | LOCK_NB) == 0 || errno != EWOULDBLOCK) continue;
