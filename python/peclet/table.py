@@ -122,9 +122,9 @@ def column_of(values):
     None becomes NaN, or "" in a column with texts.
     """
     texts = ["" if v is None else v for v in values]
-    if values and all(isinstance(v, str) for v in texts):
-        return np.array(texts)
     if any(isinstance(v, str) for v in values):
+        if all(isinstance(v, str) for v in texts):
+            return np.array(texts)
         column = np.empty(len(texts), object)
         column[:] = texts
         return column

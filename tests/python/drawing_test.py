@@ -23,7 +23,7 @@ KEYS = {
 }
 
 
-def point(settings, mean, half=0.5, standing="converged", jammed=False, good_enough=None):
+def point(settings, mean, half=0.5, state="converged", jammed=False, good_enough=None):
     return {
         "label": str(settings),
         "settings": settings,
@@ -32,7 +32,7 @@ def point(settings, mean, half=0.5, standing="converged", jammed=False, good_eno
         "half_width": half,
         "good_enough": good_enough,
         "count": 8,
-        "state": standing,
+        "state": state,
         "jammed": jammed,
     }
 
@@ -152,8 +152,8 @@ class Drawn(unittest.TestCase):
         return axes
 
     def test_bars_are_as_wide_as_they_are_and_open_marks_have_not_converged(self):
-        standings = ("converged", "undecided", "provisional")
-        axes = self.axes_of([point({"/peclet": k}, 10 + k, 0.5 + k, word) for k, word in enumerate(standings)])
+        states = ("converged", "undecided", "provisional")
+        axes = self.axes_of([point({"/peclet": k}, 10 + k, 0.5 + k, word) for k, word in enumerate(states)])
         bars = [segment for bars in axes.containers for segment in bars.lines[2][0].get_segments()]
         self.assertEqual(
             [(x, low, high) for (x, low), (_, high) in bars], [(0, 9.5, 10.5), (1, 9.5, 12.5), (2, 9.5, 14.5)]

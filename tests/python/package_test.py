@@ -98,6 +98,24 @@ class OfWhatHasJammed(unittest.TestCase):
                     self.assertNotIn(1.5, line.get_xdata())
 
 
+class BeforeTheFirstStopTest(unittest.TestCase):
+    def test_estimates_are_those_of_all_seeds_without_an_interval(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "pilot.json")
+            campaign = peclet.Campaign("pilot", SCENE, {"/volume_fraction": [0.2, 0.3]}, engine=[ENGINE, "serve"])
+            campaign.write(path)
+            subprocess.run([PECLET, "plan", path, "--pilot", "4"], check=True, capture_output=True)
+            status = subprocess.run([PECLET, "status", path, "--json"], check=True, capture_output=True)
+            rows = list(peclet.open(path, PECLET).estimates())
+            self.assertEqual(len(rows), 2)
+            for row, point in zip(rows, json.loads(status.stdout)["points"]):
+                self.assertTrue(row["provisional"])
+                self.assertEqual(row["count"], 4)
+                for name in ("mean", "standard_error"):
+                    self.assertAlmostEqual(row[name], point["all_seeds"][name], delta=1e-12 * point["all_seeds"][name])
+                self.assertTrue(np.isnan(row["half_width"]))
+
+
 class OfACampaign(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -113,7 +131,7 @@ class OfACampaign(unittest.TestCase):
     def tearDownClass(cls):
         cls.scratch.cleanup()
 
-    def test_estimates_are_the_looks_of_the_export(self):
+    def test_estimates_are_the_stop_tests_of_the_export(self):
         table = self.results.estimates()
         self.assertEqual(list(table.columns)[:3], ["peclet", "volume_fraction", "label"])
         self.assertEqual(len(table), 4)
