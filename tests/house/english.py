@@ -56,7 +56,7 @@ def comments(text, mark):
         stripped = line.strip()
         if stripped.startswith(mark):
             begin = begin or number
-            block.append(stripped.lstrip("/#!< ").strip())
+            block.append(stripped.lstrip("/#!<- ").strip())
         elif block:
             yield begin, " ".join(block)
             block, begin = [], 0
@@ -134,12 +134,15 @@ def faults_of_walk(source):
                     yield f"{page}:{number}: {name}() is not in {', '.join(cells[1])}"
 
 
+def faults_in(source):
+    for check in (faults_of_comments, faults_of_pages, faults_of_keys, faults_of_walk):
+        yield from check(source)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--source", default=SOURCE, help="another checkout")
-    source = parser.parse_args().source
-    checks = (faults_of_comments, faults_of_pages, faults_of_keys, faults_of_walk)
-    faults = [fault for check in checks for fault in check(source)]
+    faults = list(faults_in(parser.parse_args().source))
     for fault in faults:
         print(fault)
     return 1 if faults else 0
