@@ -162,10 +162,8 @@ TEST(KeyTable, AnArrayMayHaveAMostNumberOfItems) {
   const KeyTable table("T", "/sizes | array of 1 to 3 | They.");
   EXPECT_NO_THROW(table.validate({{"sizes", {1, 2, 3}}}, "f.json"));
   for (const Json& sizes : {Json::array(), Json{1, 2, 3, 4}}) {
-    EXPECT_TRUE(contains(refusal_by([&] {
-                           table.validate({{"sizes", sizes}}, "f.json");
-                         }),
-                         ": must be an array of 1 to 3"));
+    const std::string refusal = refusal_by([&] { table.validate({{"sizes", sizes}}, "f.json"); });
+    EXPECT_TRUE(refusal.ends_with(": must be an array of 1 to 3")) << refusal;
   }
   EXPECT_EQ(table.json_schema("t")["properties"]["sizes"]["maxItems"], 3);
 }

@@ -64,7 +64,7 @@ def campaign_faults():
         ("a name of control characters", json.dumps({**CAMPAIGN, "name": ESCAPES})),
         ("a name with a slash", json.dumps({**CAMPAIGN, "name": "../x"})),
         ("fewer seeds than the minimum", json.dumps({**CAMPAIGN, "realisations": {"minimum": 10, "maximum": 9}})),
-        ("too few seeds for looks", json.dumps({**CAMPAIGN, "realisations": {"minimum": 3, "maximum": 9}})),
+        ("too few seeds for a stop test", json.dumps({**CAMPAIGN, "realisations": {"minimum": 3, "maximum": 9}})),
         ("an engine that is absent", json.dumps({**CAMPAIGN, "engine": ["./absent"]})),
         ("an engine that is a folder", json.dumps({**CAMPAIGN, "engine": ["/tmp"]})),
         ("an engine of a long name", json.dumps({**CAMPAIGN, "engine": [LONG]})),

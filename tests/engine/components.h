@@ -7,9 +7,9 @@
 
 namespace peclet::engine {
 
-constexpr double SymmetricTensor::*every_component[] = {&SymmetricTensor::xx, &SymmetricTensor::yy,
-                                                        &SymmetricTensor::zz, &SymmetricTensor::xy,
-                                                        &SymmetricTensor::xz, &SymmetricTensor::yz};
+inline constexpr double SymmetricTensor::*every_component[] = {&SymmetricTensor::xx, &SymmetricTensor::yy,
+                                                               &SymmetricTensor::zz, &SymmetricTensor::xy,
+                                                               &SymmetricTensor::xz, &SymmetricTensor::yz};
 
 inline void expect_near(const Vector3& a, const Vector3& b, double tolerance) {
   for (const auto c : {&Vector3::x, &Vector3::y, &Vector3::z}) EXPECT_NEAR(a.*c, b.*c, tolerance);

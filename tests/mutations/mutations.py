@@ -321,7 +321,7 @@ def main():
             "# Which tests notice broken physics\n\nOne line of the engine is broken at a time, in a copy of the "
             "source."
             "\n\n## Coarse mistakes\n\n`mutations.py` tries each with the quick forms of the studies and with all "
-            "tests of the engine and of the physics.\n"
+            "tests of the engine and of the physics.\nNames of tests are those of the commit.\n"
             f"Commit {commit}, {processor()}, {datetime.date.today().isoformat()}.\n\n"
             "| broken | noticed by |\n|---|---|\n" + "\n".join(lines),
             rows,

@@ -242,8 +242,8 @@ class TheSupplement(PageTest):
             label, mean, half = row["label"], float(row["mean"]), float(row["half_width"])
             for other in (on_page[label], in_chart[label], in_figure[label]):
                 self.assertEqual((float(other["mean"]), float(other["half_width"])), (mean, half))
-            for look in (in_json[label]["stop_test"], in_status[label]["stop_test"]):
-                self.assertEqual((look["mean"], look["half_width"]), (mean, half))
+            for tested in (in_json[label]["stop_test"], in_status[label]["stop_test"]):
+                self.assertEqual((tested["mean"], tested["half_width"]), (mean, half))
             # These sum in another order.
             for other in (float(in_long[label]["mean"]), in_json[label]["quantities"][QUANTITIES[0]]["mean"]):
                 self.assertAlmostEqual(other, mean, delta=1e-12 * abs(mean))

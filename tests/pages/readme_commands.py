@@ -13,7 +13,7 @@ import sys
 import tempfile
 
 SOURCE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
-LOOK = re.compile(r"\s(\S+) ± (\S+) \(\S+ %\)")
+ESTIMATE = re.compile(r"\s(\S+) ± (\S+) \(\S+ %\)")
 
 
 def readme():
@@ -40,9 +40,9 @@ def rows(table):
     """Returns estimate, half-width and verdict by point."""
     found = {}
     for line in table.splitlines():
-        look = LOOK.search(line)
-        if look:
-            found[line.split()[0]] = (float(look[1]), float(look[2]), line.split()[-1])
+        estimate = ESTIMATE.search(line)
+        if estimate:
+            found[line.split()[0]] = (float(estimate[1]), float(estimate[2]), line.split()[-1])
     return found
 
 
@@ -51,7 +51,7 @@ def fixed_text(table):
     return [
         line.split()
         for line in table.splitlines()
-        if not LOOK.search(line) and not re.match(r"\d+ seeds ended|predictions:", line)
+        if not ESTIMATE.search(line) and not re.match(r"\d+ seeds ended|predictions:", line)
     ]
 
 
@@ -59,10 +59,10 @@ def compare(page, printed, whole):
     """Compares the tables; `whole` if the page shows all that is printed."""
     mine, its = rows(page), rows(printed)
     assert mine and mine.keys() == its.keys(), f"points: README.md has {list(mine)}, the program {list(its)}"
-    for point, (look, half_width, verdict) in mine.items():
+    for point, (estimate, half_width, verdict) in mine.items():
         other, other_half_width, other_verdict = its[point]
         assert verdict == other_verdict, f"{point}: {verdict} in README.md, {other_verdict} now"
-        assert abs(look - other) <= half_width + other_half_width, f"{point}: {look} in README.md, {other} now"
+        assert abs(estimate - other) <= half_width + other_half_width, f"{point}: {estimate} in README.md, {other} now"
     expected, found = fixed_text(page), fixed_text(printed)
     assert expected == (
         found if whole else found[: len(expected)]

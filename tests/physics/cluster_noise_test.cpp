@@ -22,6 +22,8 @@ using Components = Eigen::Vector<double, components>;  // forces of all spheres,
 using Matrix = Eigen::Matrix<double, components, components>;
 using Form = LubricationParameters::Form;
 
+// Returns four spheres in an inclined cell hardly wider than two unit spheres, so that the first two touch
+// through two images.
 System cluster(const Physics& physics) {
   System system = spheres_in({4.02, 6.0, 7.0}, physics, {1.0, 1.0, 1.4, 0.5}, 1);
   system.box = PeriodicCell({4.02, 6.0, 7.0}, simple_shear(0), /*tilt=*/1.3);

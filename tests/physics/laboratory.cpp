@@ -48,8 +48,8 @@ void Laboratory::thermalise(std::mt19937_64& generator) {
 
 double set_cube(Experiment& experiment, double volume_fraction, double tilt_over_edge) {
   const double edge = cube_edge(experiment.radius, volume_fraction);
-  experiment.box =
-      PeriodicCell({edge, edge, edge}, simple_shear(experiment.physics.flow.rate()), tilt_over_edge * edge);
+  experiment.box = PeriodicCell(
+      {edge, edge, edge}, experiment.physics.flow.deformation().velocity_gradient(0), tilt_over_edge * edge);
   return edge;
 }
 

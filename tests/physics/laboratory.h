@@ -84,7 +84,7 @@ void for_every_image(const System& system, const Range& range, const Claim& clai
         const Vector3 shift =
             system.box.edges() * Vector3{image % 5 - 2.0, image / 5 % 5 - 2.0, image / 25 - 2.0};
         const Vector3 r = place[j] - place[i] + shift;
-        if (norm(r) <= range(i, j)) claim(i, j, r, shift);
+        if (!(norm(r) > range(i, j))) claim(i, j, r, shift);  // also a separation that is not a number
       }
     }
   }

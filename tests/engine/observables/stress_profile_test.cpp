@@ -36,7 +36,6 @@ Json of_pair(const System& system, const Vector3& force, const SymmetricTensor& 
 }
 
 // Returns two spheres and a list of their pair.
-// Returns two spheres and a list of their pair.
 System two_spheres_at(const Vector3& first, const Vector3& second) {
   System system = loose_spheres(2);
   system.particles.position.set(0, first);

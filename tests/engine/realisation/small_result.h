@@ -75,6 +75,7 @@ inline void expect_the_end_of_the_uncut(const Scene& scene, std::uint64_t of_see
   Simulation uncut = started(scene, of_seed);
   const std::uint64_t total = uncut.schedule().total();
   const std::optional<Ending> whole = uncut.advance(total);
+  ASSERT_TRUE(whole.has_value());
   ASSERT_EQ(whole->cause, Ending::Cause::completed) << whole->message;
   for (const auto& [step, threads] : cuts) {
     Simulation before = started(scene, of_seed), after = simulation_of(scene, of_seed, threads);

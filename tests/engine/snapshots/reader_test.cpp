@@ -25,7 +25,6 @@ class GsdFile : public testing::Test {
   }
 
   // Returns the refusal, or nothing if the file was read with every chunk of its index.
-  // Returns the refusal, or nothing if the file was read with every chunk of its index.
   std::string refusal(const std::string& bytes) const {
     write_durably(path_, bytes);
     const std::string message = refusal_by([&] {

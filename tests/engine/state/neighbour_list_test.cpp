@@ -191,7 +191,9 @@ TEST(NeighbourList, HoldsEveryPairOfSeveralBlocksOnAnyNumberOfThreads) {
 
 TEST(NeighbourList, RefusesAParticleThatInteractsWithItsOwnImage) {
   const PeriodicCell box({5, 2, 5}, Matrix3{});
-  EXPECT_THROW(list_of(make_particles({1}, 1), box, 0.05), std::invalid_argument);
+  const ParticleState particles = make_particles({1}, 1);
+  NeighbourList list(ranges_of(particles.radius), 0.05);
+  EXPECT_THROW(list.build(particles, box), std::invalid_argument);
 }
 
 // Moves particles with the flow plus a random displacement of up to `step` in each component.

@@ -39,7 +39,7 @@ TEST(Contact, DampingOpposesTheNormalVelocityAlone) {
 // The energy of a pair at contact, where the force is strength over length.
 TEST(Repulsion, StrengthIsTheEnergyAtContact) {
   const RepulsionOfPair law = of_pair(RepulsionParameters{1.7, 0.01, 20}, 1, 1);
-  EXPECT_NEAR(norm(conservative_force(law, pair_at(1, 1, 0, {1, 0, 0}))), 1.7 / 0.02, 1e-9);
+  expect_near(conservative_force(law, pair_at(1, 1, 0, {1, 0, 0})), {-1.7 / 0.02, 0, 0}, 1e-9);
   EXPECT_EQ(law.energy(0), 1.7);
 }
 

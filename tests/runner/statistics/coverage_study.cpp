@@ -212,7 +212,7 @@ int main(int argc, char** argv) {
   }
   fmt::print(
       "population,minimum,tolerance,needed_seeds,workers,replications,covered_percent,covered_percent_error,"
-      "bias_standard_errors,seeds,looks,converged_percent,skewed_percent,naive_covered_percent,"
+      "bias_standard_errors,seeds,stop_tests,converged_percent,skewed_percent,naive_covered_percent,"
       "naive_bias_standard_errors\n");
   const std::vector<Case> all = cases();
   for (std::size_t row = static_cast<std::size_t>(first); row < all.size(); ++row) {
