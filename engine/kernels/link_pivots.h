@@ -5,13 +5,10 @@
 #pragma once
 
 #include "engine/kernels/link_solver.h"
+#include "engine/kernels/symmetric_inverse.h"
 
 namespace peclet::engine {
 namespace {
-
-// Returns the index of an element in the lower triangle of a symmetric 6 x 6 matrix, row after row.
-constexpr int entry(int row, int column) { return row * (row + 1) / 2 + column; }
-constexpr int entries = 21;
 
 // Before inversion the own block of a row is (a b; -b c) with b v = w x v, and its pivot holds
 //   { a_xx a_yy a_zz w_x   c_xx c_yy c_zz w_y }
@@ -36,39 +33,6 @@ PECLET_ALWAYS_INLINE void block_of_links(const Floats* n, const Floats& squeeze,
   block[7] = p * n[1];
   block[11] = p * n[2];
   block[15] = Floats{};
-}
-
-// Inverts eight symmetric matrices side by side: A = L D L^T, A^-1 = L^-T D^-1 L^-1.
-PECLET_ALWAYS_INLINE void invert(const Floats* a, Floats* inverse) {
-  Floats lower[entries], inverse_lower[entries], per_pivot[6];
-  for (int row = 0; row < 6; ++row) {
-    Floats scaled[6];  // L_rk D_k
-    Floats pivot = a[entry(row, row)];
-    for (int column = 0; column < row; ++column) {
-      Floats sum = a[entry(row, column)];
-      for (int k = 0; k < column; ++k) sum -= scaled[k] * lower[entry(column, k)];
-      scaled[column] = sum;
-      lower[entry(row, column)] = sum * per_pivot[column];
-      pivot -= sum * lower[entry(row, column)];
-    }
-    per_pivot[row] = 1.0F / pivot;
-  }
-  for (int column = 0; column < 6; ++column) {
-    for (int row = column + 1; row < 6; ++row) {
-      Floats sum = lower[entry(row, column)];
-      for (int k = column + 1; k < row; ++k) sum += lower[entry(row, k)] * inverse_lower[entry(k, column)];
-      inverse_lower[entry(row, column)] = Floats{} - sum;
-    }
-  }
-  for (int row = 0; row < 6; ++row) {
-    for (int column = 0; column <= row; ++column) {
-      Floats sum = row == column ? per_pivot[row] : inverse_lower[entry(row, column)] * per_pivot[row];
-      for (int k = row + 1; k < 6; ++k) {
-        sum += inverse_lower[entry(k, row)] * per_pivot[k] * inverse_lower[entry(k, column)];
-      }
-      inverse[entry(row, column)] = sum;
-    }
-  }
 }
 
 // Transposes a matrix of eight rows of eight numbers.

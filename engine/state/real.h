@@ -11,6 +11,13 @@
 #define PECLET_ALWAYS_INLINE [[gnu::always_inline]] inline
 #define PECLET_INLINE_LAMBDA __attribute__((always_inline))
 
+// Unrolls a loop in programs for cards, whose compiler would index arrays in memory otherwise.
+#ifdef __CUDA__
+#define PECLET_UNROLL _Pragma("unroll")
+#else
+#define PECLET_UNROLL
+#endif
+
 namespace peclet::engine {
 
 inline bool any(bool condition) { return condition; }

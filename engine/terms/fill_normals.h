@@ -13,8 +13,7 @@
 namespace peclet::engine {
 namespace {
 
-constexpr int width = identities_per_block;
-
+template <int width>
 inline void draw_words(const NoiseKey& key, const std::uint64_t* identity, const std::uint64_t* image,
                        std::uint64_t (&low)[width], std::uint64_t (&high)[width]) {
   for (int k = 0; k < width; ++k) {
@@ -68,6 +67,7 @@ inline void circle(std::uint32_t bits, float& cosine, float& sine) {
   sine = (quarters & 2U) != 0 ? -y : y;
 }
 
+template <int width>
 inline void box_muller(const std::uint32_t (&radius_bits)[width], const std::uint32_t (&angle_bits)[width],
                        float* first, float* second) {
   for (int k = 0; k < width; ++k) {
@@ -80,6 +80,7 @@ inline void box_muller(const std::uint32_t (&radius_bits)[width], const std::uin
 }
 
 // Splits words into uniforms, bits 0-20, 21-41 and 42-62. Only loops over one width of number become vectors.
+template <int width>
 inline void split_words(const std::uint64_t (&words)[width], std::uint32_t (&uniform)[3][width]) {
   for (int j = 0; j < 3; ++j) {
     std::uint64_t shifted[width];
@@ -88,8 +89,9 @@ inline void split_words(const std::uint64_t (&words)[width], std::uint32_t (&uni
   }
 }
 
+template <int width>
 inline void fill_whole(const NoiseKey& key, const std::uint64_t* identity, const std::uint64_t* image,
-                       NormalBlock& block) {
+                       NormalBlockOf<width>& block) {
   static constexpr std::uint64_t no_image[width] = {};
   std::uint64_t low[width], high[width];
   draw_words(key, identity, image != nullptr ? image : no_image, low, high);
@@ -102,8 +104,9 @@ inline void fill_whole(const NoiseKey& key, const std::uint64_t* identity, const
 }
 
 // Turns the normals of a whole step into those of a part.
+template <int width>
 [[gnu::noinline]] inline void refine(const NoiseKey& key, const std::uint64_t* identity,
-                                     const std::uint64_t* image, NormalBlock& block) {
+                                     const std::uint64_t* image, NormalBlockOf<width>& block) {
   int divisions = 0;
   while (key.part >> (divisions + 1) != 0) ++divisions;
   while (divisions > 0) {
@@ -112,7 +115,7 @@ inline void fill_whole(const NoiseKey& key, const std::uint64_t* identity, const
     const float sign = (key.part >> divisions & 1U) == 0 ? 1.0F : -1.0F;
     // The part fits above the step, because no run has 2^48 steps.
     const NoiseKey of_whole = {key.seed, key.purpose, key.step ^ whole << 48};
-    NormalBlock other;
+    NormalBlockOf<width> other;
     fill_whole(of_whole, identity, image, other);
     for (int c = 0; c < 6; ++c) {
       for (int k = 0; k < width; ++k) {
@@ -122,8 +125,9 @@ inline void fill_whole(const NoiseKey& key, const std::uint64_t* identity, const
   }
 }
 
+template <int width>
 inline void fill_block(const NoiseKey& key, const std::uint64_t* identity, const std::uint64_t* image,
-                       NormalBlock& block) {
+                       NormalBlockOf<width>& block) {
   fill_whole(key, identity, image, block);
   if (key.part != 1) [[unlikely]] {
     refine(key, identity, image, block);

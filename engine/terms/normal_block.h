@@ -25,9 +25,11 @@ struct NoiseKey {
   return std::uint64_t{second} << 32 | first;
 }
 
-struct NormalBlock {
-  alignas(64) float value[6][identities_per_block];
+template <int width>
+struct NormalBlockOf {
+  alignas(8 * width) float value[6][width];
 };
+using NormalBlock = NormalBlockOf<identities_per_block>;
 
 // Fills a block for eight identities. `image` may be null if all images are zero.
 using FillNormals = void (*)(const NoiseKey& key, const std::uint64_t* identity, const std::uint64_t* image,
