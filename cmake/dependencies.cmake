@@ -10,8 +10,8 @@ macro(package name debian)
   endif()
 endmacro()
 
-if(PECLET_STATIC)
-  # Only archives, also of the C library: the programs run on any Linux, with the same mathematical functions.
+if(PECLET_ARCHIVES)
+  # With PECLET_STATIC also of the C library: the programs run on any Linux, with the same mathematical functions.
   set(CMAKE_FIND_LIBRARY_SUFFIXES .a)
   # The archive of OpenMP is in a folder that only g++ knows.
   execute_process(COMMAND ${CMAKE_CXX_COMPILER} -print-file-name=libgomp.a
@@ -60,7 +60,7 @@ target_compile_definitions(Eigen3::Eigen INTERFACE EIGEN_DONT_PARALLELIZE EIGEN_
 
 # Debian has fmt and spdlog as shared libraries only. Their archives are compiled here from their headers, which have
 # the sources. All other code is compiled as for the shared libraries.
-if(PECLET_STATIC)
+if(PECLET_ARCHIVES)
   foreach(library fmt spdlog)
     add_library(${library}_archive STATIC cmake/archives/${library}.cpp)
     foreach(property COMPILE_DEFINITIONS INCLUDE_DIRECTORIES)

@@ -29,6 +29,7 @@ class Implicit : public Integrator {
   // Allows steps to be divided from now on, into parts of at least 2^-deepest_division: a particle may move
   // no farther than `longest_way` relative to the flow [length] in a part.
   void divide_steps(double longest_way);
+  double longest_way() const { return longest_way_; }
   static constexpr int deepest_division = 10;
 
  protected:

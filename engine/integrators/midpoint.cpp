@@ -26,11 +26,6 @@ constexpr double far = 7;
 // Squared residuals below it are rounding errors, as of spheres that follow the flow.
 constexpr double no_motion = std::numeric_limits<float>::min();
 
-// The share s of a step's advance after which springs push. Half is of second order. A little more damps
-// stiff springs that stick: with z = dt k / R a step multiplies them by (1 - (1 - s) z) / (1 + s z), which
-// tends to -(1 - s) / s. The error of first order is a fifth of that of s = 1.
-constexpr double felt_share = 0.6;
-
 }  // namespace
 
 Midpoint::Midpoint(const Physics& physics, const ParticleState& particles, double timestep, double tolerance,

@@ -18,6 +18,11 @@ class Midpoint final : public Implicit {
   Midpoint(const Physics& physics, const ParticleState& particles, double timestep, double tolerance,
            std::uint64_t seed, int threads, InstructionSet set = chosen_instruction_set());
 
+  // The share s of a step's advance after which springs push. Half is of second order. A little more damps
+  // stiff springs that stick: with z = dt k / R a step multiplies them by (1 - (1 - s) z) / (1 + s z), which
+  // tends to -(1 - s) / s. The error of first order is a fifth of that of s = 1.
+  static constexpr double felt_share = 0.6;
+
   void mark(const System& system) override;
   void return_to_mark(System& system) override;
   void save(ArchiveWriter& archive) const override;

@@ -17,7 +17,8 @@ Physics lubrication_alone(Physics physics) {
   return physics;
 }
 
-// Returns true if inertia carries all spheres across the outer gap in such a step.
+}  // namespace
+
 bool carried_by_inertia(const Physics& physics, const ParticleState& particles, double timestep) {
   if (!physics.lubrication || particles.count() == 0) return false;
   for (std::size_t i = 0; i < particles.count(); ++i) {
@@ -28,8 +29,6 @@ bool carried_by_inertia(const Physics& physics, const ParticleState& particles, 
   }
   return true;
 }
-
-}  // namespace
 
 NoisyMidpoint::NoisyMidpoint(const Physics& physics, const ParticleState& particles, double timestep,
                              double tolerance, std::uint64_t seed, int threads, InstructionSet set)

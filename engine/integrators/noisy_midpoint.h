@@ -24,6 +24,9 @@
 
 namespace peclet::engine {
 
+// Returns true if inertia carries all spheres across the outer gap in such a step.
+bool carried_by_inertia(const Physics& physics, const ParticleState& particles, double timestep);
+
 class NoisyMidpoint final : public Implicit {
  public:
   NoisyMidpoint(const Physics& physics, const ParticleState& particles, double timestep, double tolerance,

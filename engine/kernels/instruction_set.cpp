@@ -13,6 +13,8 @@ namespace {
 
 constexpr std::array every_set = {InstructionSet::baseline, InstructionSet::avx2, InstructionSet::avx512};
 
+const char* wanted_set() { return std::getenv("PECLET_INSTRUCTION_SET"); }
+
 }  // namespace
 
 const char* name_of(InstructionSet set) {
@@ -44,8 +46,13 @@ bool is_available(InstructionSet set) {
   return set == InstructionSet::baseline;
 }
 
+bool emulated_card_is_chosen() {
+  const char* const wanted = wanted_set();
+  return wanted != nullptr && std::string_view(wanted) == "emulated";
+}
+
 InstructionSet chosen_instruction_set() {
-  const char* const wanted = std::getenv("PECLET_INSTRUCTION_SET");
+  const char* const wanted = wanted_set();
   InstructionSet widest = InstructionSet::baseline;
   std::string available;
   for (const InstructionSet set : every_set) {
@@ -53,6 +60,11 @@ InstructionSet chosen_instruction_set() {
     widest = set;
     available += (available.empty() ? "" : ", ") + std::string(name_of(set));
     if (wanted != nullptr && std::string_view(wanted) == name_of(set)) return set;
+  }
+  if (emulated_card_is_chosen()) {
+    throw InputError(
+        "PECLET_INSTRUCTION_SET", "", wanted,
+        "must be an instruction set; PECLET_DEVICE=emulated makes `peclet-engine serve` emulate a card");
   }
   if (wanted != nullptr && *wanted != '\0') {
     throw InputError("PECLET_INSTRUCTION_SET", "", wanted,

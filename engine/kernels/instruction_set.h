@@ -18,6 +18,10 @@ bool is_available(InstructionSet set);
 // Throws InputError if that is unknown or not available.
 InstructionSet chosen_instruction_set();
 
+// True if PECLET_INSTRUCTION_SET is "emulated": `peclet-engine forces` then uses the kernels for cards, which
+// the processor emulates. Runs do not know that name.
+bool emulated_card_is_chosen();
+
 PairKernel pair_kernel(InstructionSet set, const Terms& terms);  // `terms` must be valid
 FillNormals fill_normals(InstructionSet set);
 const OneBodyKernels& one_body_kernels(InstructionSet set);

@@ -58,6 +58,7 @@ class Production {
   }
 
   const std::array<BlockSums, count_of_blocks>& blocks() const { return blocks_; }
+  void set_blocks(const std::array<BlockSums, count_of_blocks>& blocks) { blocks_ = blocks; }
   // Returns the block that a step of the window belongs to.
   std::size_t block_at(std::uint64_t index) const {
     return static_cast<std::size_t>(index * count_of_blocks / steps_);

@@ -104,6 +104,8 @@ class NeighbourList {
   std::size_t crossings() const { return incoming_.size(); }
 
   const RangeTable& ranges() const { return ranges_; }
+  double skin() const { return skin_; }
+  double skin_of_candidates() const { return skin_of_candidates_; }
   const ListMoment& listed() const { return listed_; }
   const ListMoment& moment_of_candidates() const { return keeps_candidates() ? found_ : listed_; }
   std::uint64_t builds() const { return builds_; }
