@@ -100,7 +100,7 @@ constexpr const char* result_rows = R"(
 /engine | object | Provenance of the engine. version, binary_sha256 and instruction_set are its identity.
 /engine/version, /engine/instruction_set | name
 /engine/binary_sha256 | hash | Hash of everything that can change a result.
-/engine/git_commit?, /engine/compiler?, /engine/flags?, /engine/build_type?, /engine/cpu? | string
+/engine/git_commit?, /engine/compiler?, /engine/flags?, /engine/build_type?, /engine/cpu?, /engine/device? | string
 /engine/git_dirty? | true or false or null
 )";
 
@@ -110,8 +110,9 @@ constexpr const char* frame_rows = R"(
 /protocol | integer = 1
 /program? | string
 /engine | object | Provenance of the engine, as in the result.
-/ahead | true or false; default false | The engine accepts one further job while one runs, and begins it when
-    that one has ended.
+/capacity | integer >= 1 and <= 100000; default 1 | Number of jobs that the engine runs at once.
+/ahead | true or false; default false | The engine accepts one job more than it runs, and begins it when one
+    has ended.
 /scene_schema? | object | JSON Schema of its scenes, with title, symbol and unit of keys.
 /derived? | array | Descriptions of the derived numbers of validated, in the order in which they are shown.
 /derived/* | object

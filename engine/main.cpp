@@ -5,11 +5,15 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <atomic>
 #include <charconv>
 #include <csignal>
+#include <cstdlib>
 #include <exception>
 #include <limits>
+#include <mutex>
 
+#include "contract/documents.h"
 #include "contract/errors.h"
 #include "contract/frames.h"
 #include "contract/named_files.h"
@@ -18,8 +22,10 @@
 #include "engine/forces/configuration.h"
 #include "engine/pictures/colouring.h"
 #include "engine/pictures/picture.h"
+#include "engine/realisation/crew.h"
 #include "engine/realisation/job.h"
 #include "engine/realisation/result.h"
+#include "engine/realisation/serve.h"
 #include "engine/scene/composition.h"
 #include "engine/scene/measured_sizes.h"
 #include "engine/snapshots/conversion.h"
@@ -30,10 +36,10 @@ namespace {
 using namespace peclet;
 using namespace peclet::engine;
 
-volatile std::sig_atomic_t stop_requested = 0;
+std::atomic<bool> stop_requested = false;
 
 void request_stop(int signal) {
-  stop_requested = 1;
+  stop_requested = true;
   std::signal(signal, SIG_DFL);  // a second signal ends the process at once
 }
 
@@ -43,18 +49,27 @@ constexpr InputLimits configuration_limits{std::size_t{32} << 20, 1'300'000};
 struct RunOptions {
   std::string scene, output, checkpoint, extended;
   std::uint64_t seed = 0;
+  std::string seeds;  // FIRST..LAST; empty: one seed
+  std::string device = "none";
   int threads = 1;
   bool quiet = false;
 };
 
+constexpr std::uint64_t largest_seed = std::numeric_limits<std::uint64_t>::max();
+
+// Returns the whole number that a text is, if it is one.
+std::optional<std::uint64_t> whole(std::string_view text) {
+  std::uint64_t number = 0;
+  const char* const end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, number);
+  return read.ec == std::errc() && read.ptr == end ? std::optional(number) : std::nullopt;
+}
+
 // Returns a check for whole numbers; the parser's own would read "-1" as the largest number.
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
   return {[least, most](const std::string& text) {
-            std::uint64_t number = 0;
-            const char* const end = text.data() + text.size();
-            const auto read = std::from_chars(text.data(), end, number);
-            const bool is_one =
-                read.ec == std::errc() && read.ptr == end && number >= least && number <= most;
+            const std::optional<std::uint64_t> number = whole(text);
+            const bool is_one = number && *number >= least && *number <= most;
             return is_one ? std::string()
                           : fmt::format("\"{}\" must be a whole number from {} to {}", text, least, most);
           },
@@ -83,27 +98,49 @@ std::filesystem::path target_of(const std::filesystem::path& path) {
   return leads_nowhere ? path : target;
 }
 
-int run(const RunOptions& options) {
-  if (!options.output.empty()) check_output(options.output);
-  if (!options.checkpoint.empty()) check_output(options.checkpoint);
+// Returns the name of one seed's file: out.SEED.json for out.json.
+std::string file_of_seed(const std::filesystem::path& path, std::uint64_t seed) {
+  if (path.empty()) return "";
+  return std::filesystem::path(path).replace_extension(fmt::format("{}{}", seed, path.extension().string()));
+}
+
+// Returns the options of each seed. Throws InputError for options that do not go together.
+std::vector<RunOptions> each_seed(const RunOptions& options) {
+  if (options.seeds.empty()) return {options};
+  const std::size_t dots = options.seeds.find("..");
+  const bool has_dots = dots != std::string::npos;
+  const std::string_view text = options.seeds;
+  const auto first = has_dots ? whole(text.substr(0, dots)) : std::nullopt;
+  const auto last = has_dots ? whole(text.substr(dots + 2)) : std::nullopt;
+  if (!first || !last || *last < *first || *last - *first >= std::uint64_t{most_realisations}) {
+    throw InputError("--seeds", "", options.seeds,
+                     fmt::format("must be FIRST..LAST, {} seeds at most", most_realisations));
+  }
+  if (options.output.empty()) {
+    throw InputError("--seeds", "", options.seeds, "needs --output, after which the results are named");
+  }
+  std::vector<RunOptions> all(*last - *first + 1, options);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    all[k].seed = *first + k;
+    all[k].output = file_of_seed(options.output, all[k].seed);
+    all[k].checkpoint = file_of_seed(options.checkpoint, all[k].seed);
+  }
+  return all;
+}
+
+// Runs one seed, with a crew if there is one. Returns the exit code.
+int run_seed(const RunOptions& options, const Json& scene, Crew* crew) {
   JobSpecification job;
   job.header.seed = options.seed;
-  job.scene = read_json_input(options.scene);
-  if (job.scene.is_object() && job.scene.contains("scene")) {
-    throw InputError(options.scene, "", "", "is a campaign, not a scene; `peclet run` runs campaigns");
-  }
+  job.scene = scene;
   job.scene_name = options.scene;
   job.threads = options.threads;
   job.checkpoint = target_of(options.checkpoint);
   job.extended = target_of(options.extended);
   job.files = files_beside(options.output);
   JobEvents events;
-  if (!options.checkpoint.empty()) {
-    std::signal(SIGINT, request_stop);
-    std::signal(SIGTERM, request_stop);
-    events.drain_requested = [] { return stop_requested != 0; };
-  }
-  const std::optional<Json> finished = run_job(job, events);
+  if (!options.checkpoint.empty()) events.drain_requested = [] { return stop_requested.load(); };
+  const std::optional<Json> finished = crew != nullptr ? crew->run(job, events) : run_job(job, events);
   if (!finished) {
     fmt::print(stderr, "peclet-engine: stopped; the same command continues from {}\n", options.checkpoint);
     return ExitCode::stopped;
@@ -124,6 +161,92 @@ int run(const RunOptions& options) {
     fmt::print(stderr, "{}", summary(result, options.output.empty() ? "standard output" : options.output));
   }
   return completed ? ExitCode::done : ExitCode::unconverged;
+}
+
+// Runs seeds side by side. Returns the gravest of their exit codes.
+int run_together(const std::vector<RunOptions>& seeds, const Json& scene, Ensemble& ensemble, Device device) {
+  std::mutex mutex;  // guards the next two
+  int gravest = ExitCode::done;
+  std::exception_ptr error;
+  Crew crew(ensemble, device);
+  const auto run_one = [&](const RunOptions& options) {
+    int code = ExitCode::error;
+    std::exception_ptr thrown;
+    try {
+      code = run_seed(options, scene, &crew);
+    } catch (...) {
+      thrown = std::current_exception();
+    }
+    const std::lock_guard lock(mutex);
+    gravest = std::max(gravest, code);
+    if (!error) error = thrown;
+  };
+  for (std::size_t next = 0;;) {
+    bool is_ending = stop_requested;
+    {
+      const std::lock_guard lock(mutex);
+      is_ending = is_ending || error;
+    }
+    for (; !is_ending && next < seeds.size() && crew.active() < ensemble.jobs(); ++next) {
+      crew.begin([&run_one, &options = seeds[next]] { run_one(options); });
+    }
+    if (crew.active() == 0) {
+      if (error) std::rethrow_exception(error);
+      return next < seeds.size() ? std::max<int>(gravest, ExitCode::stopped) : gravest;
+    }
+    if (stop_requested) crew.drain();
+    crew.turn();
+  }
+}
+
+// Returns the number of the card that the environment chooses.
+int device_number() {
+  const char* const wanted = std::getenv("PECLET_DEVICE_NUMBER");
+  if (wanted == nullptr || *wanted == '\0') return 0;
+  constexpr std::uint64_t most = 1023;
+  const std::optional<std::uint64_t> number = whole(wanted);
+  if (!number || *number > most) {
+    throw InputError("PECLET_DEVICE_NUMBER", "", wanted,
+                     fmt::format("must be a whole number from 0 to {}", most));
+  }
+  return static_cast<int>(*number);
+}
+
+int run(const RunOptions& options) {
+  const std::vector<RunOptions> seeds = each_seed(options);
+  for (const RunOptions& one : seeds) {
+    if (!one.output.empty()) check_output(one.output);
+    if (!one.checkpoint.empty()) check_output(one.checkpoint);
+  }
+  const Json scene = read_json_input(options.scene);
+  if (scene.is_object() && scene.contains("scene")) {
+    throw InputError(options.scene, "", "", "is a campaign, not a scene; `peclet run` runs campaigns");
+  }
+  std::unique_ptr<Ensemble> ensemble;
+  Device device = Device::processor;
+  if (options.device != "none") {
+    device = device_named(options.device, "--device");
+    ensemble = make_ensemble(device, device_number(), "--device");
+  }
+  if (!options.checkpoint.empty()) {
+    std::signal(SIGINT, request_stop);
+    std::signal(SIGTERM, request_stop);
+  }
+  if (ensemble) return run_together(seeds, scene, *ensemble, device);
+  int gravest = ExitCode::done;
+  for (const RunOptions& one : seeds) {
+    if (stop_requested) return std::max<int>(gravest, ExitCode::stopped);
+    gravest = std::max(gravest, run_seed(one, scene, nullptr));
+  }
+  return gravest;
+}
+
+int serve_on_device() {
+  const char* const wanted = std::getenv("PECLET_DEVICE");
+  if (wanted == nullptr || *wanted == '\0') return serve(0);
+  const Device device = device_named(wanted, "PECLET_DEVICE");
+  const std::unique_ptr<Ensemble> ensemble = make_ensemble(device, device_number(), "PECLET_DEVICE");
+  return serve(0, ensemble.get(), device);
 }
 
 int forces(const std::string& path) {
@@ -155,7 +278,19 @@ int main(int argc, char** argv) {
   run_command->add_option("scene", options.scene, "Scene, a JSON file")->required();
   run_command->add_option("--seed", options.seed, "Seed of packing and noise")
       ->capture_default_str()
-      ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()));
+      ->check(whole_number(0, largest_seed));
+  run_command
+      ->add_option("--seeds", options.seeds,
+                   "Seeds FIRST..LAST; for --output out.json the results are out.SEED.json, and "
+                   "checkpoints likewise")
+      ->excludes("--seed");
+  run_command
+      ->add_option("--device", options.device,
+                   "What makes the steps: none (the processor), cuda (a card, with many seeds side by side), "
+                   "auto (a card if there is one and it can run the scene), "
+                   "emulated (the processor as a card, slowly, for tests)")
+      ->capture_default_str()
+      ->check(one_of({"none", "cuda", "auto", "emulated"}));
   run_command
       ->add_option("--threads", options.threads,
                    "Largest number of threads; each gets at least 4000 particles and a processor")
@@ -164,9 +299,10 @@ int main(int argc, char** argv) {
   run_command->add_option("--output", options.output, "File for the result instead of standard output");
   run_command->add_option("--checkpoint", options.checkpoint,
                           "Checkpoint, written every five minutes; the run resumes from it if it exists");
-  run_command->add_option(
-      "--extend", options.extended,
-      "Checkpoint of a shorter run (its final.checkpoint), from which this run continues");
+  run_command
+      ->add_option("--extend", options.extended,
+                   "Checkpoint of a shorter run (its final.checkpoint), from which this run continues")
+      ->excludes("--seeds");
   run_command->add_flag("--quiet", options.quiet, "No summary on standard error");
   CLI::App* serve_command = app.add_subcommand("serve", "Work for `peclet run`: frames on standard input");
   std::string configuration;
@@ -231,7 +367,7 @@ int main(int argc, char** argv) {
 
   try {
     if (*run_command) return run(options);
-    if (*serve_command) return serve(0);
+    if (*serve_command) return serve_on_device();
     if (*forces_command) return forces(configuration);
     if (*trajectory_command) return done_with(convert_trajectory(conversion));
     if (*snapshot_command) return done_with(draw_picture(picture));

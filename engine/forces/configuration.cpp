@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "contract/errors.h"
+#include "engine/forces/card_pass.h"
 #include "engine/kernels/force_field.h"
 #include "engine/kernels/pair_access.h"
 #include "engine/kernels/pair_recipes.h"
@@ -271,19 +272,24 @@ std::vector<TermRecipe> recipes_of(const Physics& physics) {
   return recipes;
 }
 
-// Evaluation answers `peclet-engine forces` with the kernels of the time loop, term by term.
+// Evaluation answers `peclet-engine forces` with the kernels of the time loop, term by term. The kernels for
+// cards compute the pairs if they are asked for; the other terms are those of the baseline then.
 class Evaluation {
  public:
   explicit Evaluation(const Configuration& configuration)
       : configuration_(configuration),
         terms_(required_terms(configuration.physics)),
-        set_(chosen_instruction_set()),
+        is_as_card_(emulated_card_is_chosen()),
+        set_(is_as_card_ ? InstructionSet::baseline : chosen_instruction_set()),
         by_term_(configuration) {
     const ParticleState& particles = configuration.particles;
     const std::vector<double> sizes = distinct_radii(particles.radius);
     kinds_ = make_pair_kinds(configuration.physics, sizes);
     list_ = NeighbourList(range_table(kinds_, sizes.size()), 0);
     list_.build(particles, configuration.box);
+    if (is_as_card_) {
+      if (const auto refusal = refusal_by_card(configuration.physics, list_)) throw *refusal;
+    }
     std::vector<HeldContact> held = configuration.springs;
     sort_contacts(held);
     springs_ = placed_contacts(list_, particles, held, spring_kinds(terms_));
@@ -340,7 +346,10 @@ class Evaluation {
         .given_noise = &noise_,
         .varying = feels_varying_flow(physics) ? &varying_ : nullptr,
     };
-    if (!list_.pairs().empty()) {
+    if (list_.pairs().empty()) return loads;
+    if (is_as_card_) {
+      loads.sums = evaluate_as_card(physics, terms, input, springs, loads.force, loads.torque);
+    } else {
       loads.sums = PairPass(terms, set_).evaluate(input, springs, loads.force, loads.torque);
     }
     return loads;
@@ -416,6 +425,7 @@ class Evaluation {
 
   const Configuration& configuration_;
   Terms terms_;
+  bool is_as_card_;
   InstructionSet set_;
   ByTerm by_term_;
   std::vector<PairKind> kinds_;

@@ -63,7 +63,8 @@ void with_payload(const std::filesystem::path& path, std::size_t particles, cons
 
 void require_same_motion(const CheckpointIdentity& found, const CheckpointIdentity& identity) {
   if (found.seed != identity.seed) refuse("another seed");
-  if (found.binary_sha256 != identity.binary_sha256) refuse("another build of this program");
+  if (found.binary_sha256 != identity.binary_sha256)
+    refuse("another build of this program or another device");
   if (found.motion_sha256 != identity.motion_sha256) {
     refuse("a scene that differs in more than durations, observables and files, or has another time step");
   }

@@ -21,7 +21,7 @@ namespace peclet::engine {
 struct CheckpointIdentity {
   std::string scene_sha256;  // of the canonical scene with its defaults
   std::uint64_t seed = 0;
-  std::string binary_sha256;
+  std::string binary_sha256;       // if an ensemble made the steps, its name follows after a space
   std::string motion_sha256 = {};  // motion_of()
 
   friend bool operator==(const CheckpointIdentity&, const CheckpointIdentity&) = default;
@@ -30,7 +30,7 @@ struct CheckpointIdentity {
 // Returns the SHA-256 of the scene without durations, observables and files, and of the size of the step.
 std::string motion_of(const Scene& scene, const Schedule& schedule);
 
-// The file is not a checkpoint, truncated, altered, or of another version, scene, seed or binary.
+// The file is not a checkpoint, truncated, altered, or of another version, scene, seed, binary or device.
 class CheckpointError : public IntegrityError {
  public:
   using IntegrityError::IntegrityError;

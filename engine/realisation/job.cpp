@@ -32,45 +32,56 @@ constexpr std::size_t fewest_particles_per_thread = 4000;
 // Delay before a checkpoint that did not fit onto the disk is tried again [s].
 constexpr std::chrono::duration<double> when_full{5};
 
-double processor_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
+// Time after which frames of a realisation whose steps are made elsewhere are moved from memory to their
+// file.
+constexpr std::chrono::seconds between_looks_at_frames{10};
 
-// Time spent on the realisation, in this process and in earlier ones.
+// Time spent on the realisation, in this process and in earlier ones. With one thread this is the time of the
+// thread that runs the job, because other threads may run other jobs.
 class Meter {
  public:
-  explicit Meter(Spent before) : before_(before), processor_(processor_seconds()), start_(Clock::now()) {}
+  explicit Meter(int threads)
+      : clock_(threads == 1 ? CLOCK_THREAD_CPUTIME_ID : CLOCK_PROCESS_CPUTIME_ID),
+        processor_(processor_seconds()),
+        start_(Clock::now()) {}
 
   Spent spent() const {
     return {before_.processor_seconds + processor_seconds() - processor_,
             before_.wall_seconds + std::chrono::duration<double>(Clock::now() - start_).count()};
   }
   void start_after(const Spent& earlier) { before_ = earlier; }
+  void add(double seconds) { before_.processor_seconds += seconds; }
 
  private:
+  double processor_seconds() const {
+    timespec now{};
+    clock_gettime(clock_, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+  }
+
+  clockid_t clock_;
   Spent before_;
   double processor_;
   Clock::time_point start_;
 };
 
-Progress progress_of(const Simulation& simulation) {
-  const std::uint64_t step = simulation.system().step;
-  return {step < simulation.schedule().equilibration ? "equilibration" : "production", step,
-          simulation.schedule().total(), simulation.system().box.net_strain()};
+// Returns the program that makes the steps of a job, as its checkpoints name it.
+std::string program_of(const ResultHeader& header) {
+  const auto binary = provenance().at("binary_sha256").get<std::string>();
+  return header.in_ensemble ? binary + ' ' + header.ensemble : binary;
 }
 
 class Job {
  public:
-  Job(const JobSpecification& job, const JobEvents& events)
+  Job(const JobSpecification& job, const JobEvents& events, const StepsElsewhere& elsewhere)
       : job_(job),
         events_(events),
-        meter_(Spent{}),
+        elsewhere_(elsewhere),
+        meter_(job.threads),
         scene_(read_scene(job.scene, job.scene_name)),
         schedule_(make_schedule(scene_, job.scene_name)),
-        identity_{sha256(canonical_json(scene_.document)), job.header.seed,
-                  provenance().at("binary_sha256").get<std::string>(), motion_of(scene_, schedule_)} {
+        identity_{sha256(canonical_json(scene_.document)), job.header.seed, program_of(job.header),
+                  motion_of(scene_, schedule_)} {
     if (!job.extended.empty()) plan_extension();
   }
 
@@ -249,19 +260,32 @@ class Job {
 
   // Makes steps until the realisation ends. Returns nothing if the job was drained before.
   std::optional<Ending> loop() {
-    // 65536 particle-steps take about ten milliseconds.
-    const std::uint64_t stride = std::max<std::uint64_t>(1, 65536 / scene_.particles.count);
     Clock::time_point next_checkpoint =
         Clock::now() +
         std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(job_.checkpoint_seconds));
     while (true) {
-      if (std::optional<Ending> ending = simulation_->advance(stride)) return ending;
-      events_.progress(progress_of(*simulation_));
+      if (std::optional<Ending> ending = make_steps(next_checkpoint)) return ending;
+      const System& system = simulation_->system();
+      events_.progress(progress_of(*simulation_, system.step, system.box.net_strain()));
       if (!relieve_memory()) return std::nullopt;
       if (job_.checkpoint.empty()) continue;
       if (events_.drain_requested()) return std::nullopt;
       if (Clock::now() > next_checkpoint) next_checkpoint = Clock::now() + checkpoint_on_the_way();
     }
+  }
+
+  // Makes some of the steps, elsewhere at most until the next checkpoint; returns the ending as advance().
+  std::optional<Ending> make_steps(Clock::time_point next_checkpoint) {
+    if (!elsewhere_) {
+      // 65536 particle-steps take about ten milliseconds.
+      return simulation_->advance(std::max<std::uint64_t>(1, 65536 / scene_.particles.count));
+    }
+    Clock::time_point until = job_.checkpoint.empty() ? Clock::time_point::max() : next_checkpoint;
+    if (frames_file_) until = std::min(until, Clock::now() + between_looks_at_frames);
+    double spent = 0;
+    std::optional<Ending> ending = elsewhere_(*simulation_, until, spent);
+    meter_.add(spent);
+    return ending;
   }
 
   // Writes frames to their file if they take much memory. Returns false as write_patiently().
@@ -306,6 +330,7 @@ class Job {
 
   const JobSpecification& job_;
   const JobEvents& events_;
+  const StepsElsewhere& elsewhere_;
   Meter meter_;
   Scene scene_;
   Schedule schedule_;
@@ -316,8 +341,14 @@ class Job {
 
 }  // namespace
 
-std::optional<Json> run_job(const JobSpecification& job, const JobEvents& events) {
-  return Job(job, events).run();
+std::optional<Json> run_job(const JobSpecification& job, const JobEvents& events,
+                            const StepsElsewhere& elsewhere) {
+  return Job(job, events, elsewhere).run();
+}
+
+Progress progress_of(const Simulation& simulation, std::uint64_t step, double strain) {
+  return {step < simulation.schedule().equilibration ? "equilibration" : "production", step,
+          simulation.schedule().total(), strain};
 }
 
 }  // namespace peclet::engine

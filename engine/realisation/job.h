@@ -1,6 +1,7 @@
 // Runs one realisation from its scene to its result, with checkpoints.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -48,11 +49,19 @@ struct JobEvents {
   std::function<bool(const NoRoomError&)> wait_for_room = [](const NoRoomError&) { return false; };
 };
 
-// Returns the result, or nothing if the job was drained. Its checkpoint is then on disk, or, if the disk was
-// full, the previous one. Throws InputError, CheckpointError, std::system_error.
-std::optional<Json> run_job(const JobSpecification& job, const JobEvents& events);
+// Makes the steps of a realisation elsewhere. Returns its ending once it has ended; nothing if it has not at
+// `until`, or if the job shall write a checkpoint and end. The realisation is then at home, in its
+// Simulation. Adds to `processor_seconds` its share of the time that other threads have spent on it.
+using StepsElsewhere = std::function<std::optional<Ending>(
+    Simulation&, std::chrono::steady_clock::time_point until, double& processor_seconds)>;
 
-// Answers frames (schema/README.md) until the peer leaves or sends drain or stop. Returns the exit code.
-int serve(int descriptor);
+// Returns the result, or nothing if the job was drained. Its checkpoint is then on disk, or, if the disk was
+// full, the previous one. The job makes its steps itself unless it is told where they are made. Throws
+// InputError, CheckpointError, std::system_error.
+std::optional<Json> run_job(const JobSpecification& job, const JobEvents& events,
+                            const StepsElsewhere& elsewhere = nullptr);
+
+// Returns the progress of a realisation that has made `step` steps, to a net strain.
+Progress progress_of(const Simulation& simulation, std::uint64_t step, double strain);
 
 }  // namespace peclet::engine

@@ -72,6 +72,14 @@ Json ending_json(const Ending& ending, const std::string& saved_state) {
           {"state", saved_state.empty() ? Json() : Json(saved_state)}};
 }
 
+// Returns what computed a result.
+Json engine_of(const ResultHeader& header) {
+  if (header.ensemble.empty()) return engine_identity();
+  Json engine = engine_identity(header.ensemble);
+  engine["device"] = header.in_ensemble ? header.ensemble : "processor";
+  return engine;
+}
+
 Json common_part(const ResultHeader& header, const Scene& scene, const Schedule& schedule,
                  std::uint64_t steps, const Strains& strains, const Spent& spent) {
   const double dt = schedule.timestep;
@@ -97,7 +105,7 @@ Json common_part(const ResultHeader& header, const Scene& scene, const Schedule&
           {"inefficiencies", nullptr},
           {"statistical_inefficiency", nullptr},
           {"cost", {{"cpu_seconds", spent.processor_seconds}, {"wall_seconds", spent.wall_seconds}}},
-          {"engine", engine_identity()}};
+          {"engine", engine_of(header)}};
 }
 
 // Returns the statistical_inefficiency() of the block means of every scalar.
@@ -358,6 +366,12 @@ const Json& engine_identity() {
     return all;
   }();
   return identity;
+}
+
+Json engine_identity(const std::string& ensemble) {
+  Json all = engine_identity();
+  all["instruction_set"] = ensemble + "; " + all["instruction_set"].get<std::string>();
+  return all;
 }
 
 std::string summary(const Json& result, const std::string& place) {

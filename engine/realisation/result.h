@@ -14,6 +14,8 @@ namespace peclet::engine {
 struct ResultHeader {
   std::string point;  // identity of the state point in its campaign; empty for a single run
   std::uint64_t seed = 0;
+  std::string ensemble = {};  // name of the ensemble that the process has; empty: it has none
+  bool in_ensemble = false;   // the ensemble makes the steps, not the processor
 };
 
 // Returns the result: means over the production window and over its blocks. Stresses are in units of
@@ -36,6 +38,9 @@ Json target_hints(const Scene& scene);
 
 // Returns the provenance of this engine, with the instruction set that its results depend on.
 const Json& engine_identity();
+// Returns the provenance of a process with an ensemble. It has one identity, with the name of the ensemble
+// before the instruction set, which packs the spheres and computes what the ensemble cannot.
+Json engine_identity(const std::string& ensemble);
 
 // Returns a summary of a result with means, in about ten lines that end with a newline: means with their
 // standard errors within this run (from block means and their statistical inefficiency), steps, warnings,

@@ -199,14 +199,22 @@ void Simulation::note_errors(std::uint64_t index, const StepReport& report) {
       ++errors_.samples;
     }
   }
+  const std::uint64_t between = steps_between_comparisons();
+  if (between > 0 && (index + 1) % between == 0) compare_half_steps();
+}
+
+std::uint64_t Simulation::steps_between_comparisons() const {
   const bool is_smooth = scene_.physics.thermal_energy == 0 && scene_.physics.flow.is_steady();
-  const std::uint64_t between = std::max(schedule_.production / comparisons, intervals.comparison);
-  if (is_smooth && (index + 1) % between == 0) {
-    integrator_->complete(system_);
-    const Integrator::HalfSteps sample = integrator_->compare_half_steps(system_, intervals.compared_steps);
-    errors_.half_steps.whole += sample.whole;
-    errors_.half_steps.halved += sample.halved;
-  }
+  if (!is_smooth) return 0;
+  return std::max(schedule_.production / comparisons, integrator_->intervals().comparison);
+}
+
+void Simulation::compare_half_steps() {
+  integrator_->complete(system_);
+  const Integrator::HalfSteps sample =
+      integrator_->compare_half_steps(system_, integrator_->intervals().compared_steps);
+  errors_.half_steps.whole += sample.whole;
+  errors_.half_steps.halved += sample.halved;
 }
 
 void Simulation::save(ArchiveWriter& archive) const {

@@ -68,6 +68,8 @@ class Simulation {
   void load_motion(ArchiveReader& archive);
 
  private:
+  friend class CardEnsemble;
+
   void begin();
   void load_system(ArchiveReader& archive);
   PairWatcher* watchers_of_step();
@@ -78,6 +80,10 @@ class Simulation {
   std::uint64_t at_most_a_block(std::uint64_t interval) const {
     return std::min(interval, schedule_.production / count_of_blocks);
   }
+  // Returns the number of steps between comparisons with half steps in the window; 0 if there are none.
+  std::uint64_t steps_between_comparisons() const;
+  // Compares the stress of the next steps with that of half steps.
+  void compare_half_steps();
   // Samples the energy error of the step, and compares the stress of steps with that of half steps.
   void note_errors(std::uint64_t index, const StepReport& report);
 

@@ -12,7 +12,9 @@ import socket
 import subprocess
 import sys
 import tempfile
+import time
 
+NO_CARD = "no card: "
 SCENE = {
     "particles": {"count": 40, "density": 0.1, "species": [{"radius": 1}]},
     "volume_fraction": 0.4,
@@ -41,6 +43,14 @@ def bad_arguments(engine, scene):
         (["run", scene, "--seed", ""], '""'),
         (["run", scene, "--threads", "0"], '--threads: "0" must be a whole number from 1 to 1024'),
         (["run", scene, "--threads", "two"], '"two" must be a whole number'),
+        (["run", scene, "--seeds", "1..2"], "--seeds: 1..2: needs --output"),
+        (["run", scene, "--seeds", "2..1"], "--seeds: 2..1: must be FIRST..LAST"),
+        (["run", scene, "--seeds", "1-2"], "--seeds: 1-2: must be FIRST..LAST"),
+        (["run", scene, "--seeds", "0..1000000"], "1000000 seeds at most"),
+        (["run", scene, "--seeds", "1..2", "--seed", "1"], "--seed: cannot stand beside --seeds"),
+        (["run", scene, "--seeds", "1..2", "--extend", "x"], "cannot stand beside"),
+        (["run", scene, "--device", "gpu"], '--device: "gpu" must be one of none, cuda, auto, emulated'),
+        (["run", scene, "--device", "cuda"], "--device: cuda: no card"),
         (["trajectory", "t.gsd", "--format", "pdb"], '--format: "pdb" must be one of lammps, xyz'),
         (["snapshot", "t.gsd", "--output", "t.png", "--colour", "blue"], '"blue" must be one of species, '),
     ]:
@@ -109,6 +119,100 @@ def summaries(engine, scene, folder):
     assert done.stdout + done.stderr == "", done.stderr
 
 
+def seeds(engine, scene, folder):
+    largest = 2**64 - 1
+
+    def path(*parts):
+        return os.path.join(folder, ".".join(parts))
+
+    def results(name, *options):
+        arguments = ["--seeds", f"{largest - 1}..{largest}", "--output", path(name, "json"), "--quiet", *options]
+        done = subprocess.run([engine, "run", scene, *arguments], capture_output=True, text=True, check=True)
+        without_a_card = done.stderr.startswith("--device: no card: ") and done.stderr.count("\n") == 1
+        assert done.stdout == "" and (done.stderr == "" or without_a_card and "auto" in options), done.stderr
+        found = []
+        for seed in (largest - 1, largest):
+            with open(path(name, str(seed), "json")) as file:
+                found.append(json.load(file))
+            assert found[-1].pop("seed") == seed
+            found[-1].pop("cost")
+        return found
+
+    two = results("some")
+    assert two[0]["final_state_sha256"] != two[1]["final_state_sha256"]
+    alone = subprocess.run([engine, "run", scene, "--seed", str(largest)], capture_output=True, text=True, check=True)
+    assert json.loads(alone.stdout)["mean"] == two[1]["mean"]
+    assert results("any", "--device", "auto") == two, "a machine without a card"
+
+
+def stopped_seeds(engine, folder):
+    """Stops a run of two seeds, of which the second has not begun then."""
+    scene = os.path.join(folder, "longer.json")
+    with open(scene, "w") as file:
+        json.dump({**SCENE, "duration": {**SCENE["duration"], "production": {"time": 10000}}}, file)
+    paths = {name: os.path.join(folder, f"stopped{name}") for name in (".json", ".ckpt")}
+    arguments = ["--seeds", "4..5", "--output", paths[".json"], "--checkpoint", paths[".ckpt"]]
+    with subprocess.Popen([engine, "run", scene, *arguments], stderr=subprocess.PIPE, text=True) as process:
+        time.sleep(1)
+        process.terminate()
+        said = process.stderr.read()
+    assert process.returncode == 75 and f"continues from {os.path.join(folder, 'stopped.4.ckpt')}" in said, said
+    assert sorted(name for name in os.listdir(folder) if name.startswith("stopped")) == ["stopped.4.ckpt"]
+
+
+def devices(engine):
+    def serving(device):
+        environment = os.environ | {"PECLET_DEVICE": device}
+        done = subprocess.run([engine, "serve"], stdin=subprocess.DEVNULL, capture_output=True, env=environment)
+        return done.returncode, done.stderr.decode()
+
+    code, said = serving("cuda")
+    assert code == 2 and said.startswith("peclet-engine: PECLET_DEVICE: cuda: " + NO_CARD), said
+    allowed = "must be cuda or auto; or emulated, for tests\n"
+    assert serving("gpu") == (2, "peclet-engine: PECLET_DEVICE: gpu: " + allowed), serving("gpu")
+
+
+def emulated(engine, folder):
+    """Runs scenes on the processor as a card. What a card cannot do is refused, and nothing is written."""
+    ours = os.path.join(folder, "emulated")
+    os.mkdir(ours)
+    scene = os.path.join(ours, "scene.json")
+    usual = {
+        **SCENE,
+        "integrator": {"method": "implicit"},
+        "duration": {"equilibration": {"time": 0.1}, "production": {"time": 0.3}},
+    }
+    run = [engine, "run", scene, "--device", "emulated", "--output", os.path.join(ours, "out.json")]
+    for patch, named in [
+        ({"integrator": SCENE["integrator"]}, '/integrator/method: "explicit": must be implicit for a card'),
+        ({"flow": {"oscillation": {"amplitude": 1, "frequency": 1}}}, "/flow: {"),
+        ({"observables": ["fabric"]}, '/observables: ["fabric"]: must be absent: '),
+        ({"box": {"height": 8}}, '/box: {"height":8}: must be absent: a cube for a card'),
+        (
+            {"particles": {**SCENE["particles"], "count": 4097}},
+            "/particles/count: 4097: must be at most 4096 for a card",
+        ),
+    ]:
+        with open(scene, "w") as file:
+            json.dump({**usual, **patch}, file)
+        options = ["--seeds", "1..3", "--checkpoint", os.path.join(ours, "out.ckpt")]
+        done = subprocess.run([*run, *options], capture_output=True, text=True)
+        assert (done.returncode, done.stdout) == (2, ""), done
+        assert done.stderr.startswith(f"peclet-engine: {scene}: {named}") and done.stderr.count("\n") == 1, done.stderr
+        assert os.listdir(ours) == ["scene.json"], os.listdir(ours)
+    with open(scene, "w") as file:
+        json.dump(usual, file)
+    subprocess.run([*run, "--seeds", "1..2", "--quiet"], check=True)
+    subprocess.run([*run, "--seed", "2", "--quiet"], check=True)
+    results = []
+    for name in ("out.1.json", "out.2.json", "out.json"):
+        with open(os.path.join(ours, name)) as file:
+            results.append(json.load(file))
+        assert results[-1].pop("cost") and results[-1]["engine"]["device"] == "emulated"
+        assert results[-1]["engine"]["instruction_set"].startswith("emulated; ")
+    assert results[0]["mean"] != results[1]["mean"] and results[1] == results[2]
+
+
 def waiting(engine):
     def environment_of_engine(wishes):
         environment = {k: v for k, v in os.environ.items() if k not in ("OMP_WAIT_POLICY", "GOMP_SPINCOUNT")} | wishes
@@ -135,6 +239,10 @@ def main():
             json.dump(SCENE, f)
         bad_arguments(engine, scene)
         summaries(engine, scene, folder)
+        seeds(engine, scene, folder)
+        stopped_seeds(engine, folder)
+        emulated(engine, folder)
+    devices(engine)
     waiting(engine)
 
 

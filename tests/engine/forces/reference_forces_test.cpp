@@ -8,6 +8,7 @@
 
 #include "contract/json.h"
 #include "engine/forces/configuration.h"
+#include "engine/kernels/instruction_set.h"
 
 namespace peclet::engine {
 namespace {
@@ -21,7 +22,10 @@ std::vector<Json> reference_documents() {
   for (const fs::directory_entry& entry :
        fs::directory_iterator(fs::path(PECLET_SOURCE_DIR) / "tests/reference/forces")) {
     if (entry.path().extension() == ".json") {
-      documents.push_back(read_json(entry.path()));
+      Json document = read_json(entry.path());
+      const bool has_waves = document.at("configuration").at("scene").at("flow").contains("waves");
+      if (has_waves && emulated_card_is_chosen()) continue;  // engine/forces/card_pass.h
+      documents.push_back(std::move(document));
       documents.back()["name"] = entry.path().filename().string();
     }
   }
