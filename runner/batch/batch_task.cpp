@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <csignal>
+#include <map>
 #include <random>
 #include <utility>
+#include <vector>
 
 #include "contract/durable_file.h"
 #include "contract/errors.h"
@@ -50,9 +52,13 @@ class BatchTask {
     fs::create_directories(folder_.left(index_));
     publish_results(folder_, manifest_, index_);
     for (const int place : manifest_.tasks.at(static_cast<std::size_t>(index_))) {
-      if (fs::exists(folder_.forgotten())) break;  // its seeds are queued again
-      if (!fs::exists(folder_.ended(place))) run_seed(place);
+      if (!fs::exists(folder_.ended(place))) to_come_.push_back(place);
     }
+    while (begin_seeds()) {
+      turn();
+      judge_lease();
+    }
+    if (drained_ || !to_come_.empty()) throw Stopped{};
     fs::remove(folder_.trouble(index_));
   }
 
@@ -68,7 +74,19 @@ class BatchTask {
     return command;
   }
 
-  void run_seed(int place);
+  // A seed that the engine has.
+  struct Seed {
+    int place = 0, slot = 0;
+    Job job{};
+    AttemptReport report{};
+    Clock::time_point noted{};
+  };
+
+  // Gives the engine seeds while it has room for them. Returns false once all have ended or, after a signal,
+  // none is in the engine.
+  bool begin_seeds();
+  std::vector<int>::iterator next_place();
+  void begin_seed(int place);
   void start_engine();
   void turn();
   void handle(const Hello& event);
@@ -82,13 +100,23 @@ class BatchTask {
   void handle(const StopSignal& event);
   // Returns the outcome, or `drained` if the engine may have failed because it could not write.
   AttemptOutcome unless_it_lacked_room(AttemptOutcome outcome) const {
-    return is_blamed(outcome) && unwritable_folder(job_) ? AttemptOutcome::drained : outcome;
+    const bool lacked = is_blamed(outcome) && !in_hand_.empty() &&
+                        unwritable_folder(in_hand_.begin()->second.job);  // as of all others
+    return lacked ? AttemptOutcome::drained : outcome;
   }
-  bool is_in_hand(std::int64_t job) const { return watch_.is_busy() && job == job_.attempt; }
+  Seed* seed_of(std::int64_t job) {
+    const auto known = in_hand_.find(job);
+    return known == in_hand_.end() ? nullptr : &known->second;
+  }
+  int allowed_with(int place) const {
+    return largest_company(capacity_, manifest_.seeds.at(static_cast<std::size_t>(place)).halvings);
+  }
   void judge_lease();
   void condemn(AttemptReason reason);
-  void note_running();
-  void end(const AttemptReason& how, const ExitStatus& ending = {});
+  void note_running(Seed& seed);
+  void end(const Seed& seed, const AttemptEnd& how);
+  // Notes that the seed has been given back, for another run of this task.
+  void note_drained(Seed& seed);
 
   Manifest manifest_;
   BundleFolder folder_;
@@ -98,14 +126,12 @@ class BatchTask {
   Awake lease_;
   AwakeClock awake_;
   WorkerWatch watch_;
-  bool stopping_ = false;
-
-  // The seed in hand.
-  int place_ = 0;
-  Job job_;
-  AttemptReport report_;
-  bool drained_ = false;
-  Clock::time_point noted_{};
+  bool stopping_ = false;  // told to leave
+  bool drained_ = false;   // a seed has been given back
+  int capacity_ = 1;
+  Json engine_;                           // provenance of the engine
+  std::vector<int> to_come_;              // places
+  std::map<std::int64_t, Seed> in_hand_;  // by the number of the job
 };
 
 void BatchTask::turn() {
@@ -116,9 +142,8 @@ void BatchTask::turn() {
 }
 
 void BatchTask::start_engine() {
-  while (!watch_.is_idle()) {
+  while (!watch_.takes_jobs() && !stopping_) {
     if (!watch_.is_there()) {
-      if (stopping_) throw Stopped{};
       pool_.start(the_worker);
       watch_.start(awake_.awake());
     }
@@ -127,39 +152,67 @@ void BatchTask::start_engine() {
   }
 }
 
-void BatchTask::run_seed(int place) {
-  if (stopping_) throw Stopped{};
-  start_engine();
-  if (stopping_) throw Stopped{};
-  const BundledSeed& seed = manifest_.seeds.at(static_cast<std::size_t>(place));
-  place_ = place;
-  job_ = Job{place + 1,
-             seed.point,
-             seed.seed,
-             manifest_.scenes.at(seed.point),
-             manifest_.threads,
-             folder_.shared().checkpoint(seed.point, seed.seed),
-             folder_.task(index_) / (result_name(seed) + run_ + ".result"),
-             folder_.shared().failures(),
-             manifest_.checkpoint_seconds,
-             std::min(1.0, manifest_.lease_seconds / 5)};
-  report_.outcome = AttemptOutcome::running;
-  report_.step = 0;
-  report_.host = host_name();
-  report_.process = pool_.process(the_worker);
-  report_.started_at = utc_now();
-  watch_.begin_job(awake_.awake());
-  note_running();
-  pool_.assign(the_worker, job_);
-  while (watch_.is_busy()) {
-    turn();
-    judge_lease();
+bool BatchTask::begin_seeds() {
+  if (!stopping_ && !drained_ && !to_come_.empty() && !watch_.is_there()) start_engine();
+  if (stopping_ || drained_) return watch_.is_busy();
+  while (watch_.takes_jobs()) {
+    const auto next = next_place();
+    if (next == to_come_.end()) break;
+    if (fs::exists(folder_.forgotten())) {  // its seeds are queued again
+      to_come_.clear();
+      break;
+    }
+    const int place = *next;
+    to_come_.erase(next);
+    if (!fs::exists(folder_.ended(place))) begin_seed(place);
   }
-  if (drained_) throw Stopped{};
+  return watch_.is_busy() || !to_come_.empty();
+}
+
+// Returns the first place whose seed may join those in the engine.
+std::vector<int>::iterator BatchTask::next_place() {
+  const int jobs = watch_.jobs();
+  const bool is_full = jobs >= capacity_ ||
+                       std::any_of(in_hand_.begin(), in_hand_.end(),
+                                   [&](const auto& seed) { return allowed_with(seed.second.place) <= jobs; });
+  if (is_full) return to_come_.end();
+  return std::find_if(to_come_.begin(), to_come_.end(),
+                      [&](int place) { return allowed_with(place) > jobs; });
+}
+
+void BatchTask::begin_seed(int place) {
+  const BundledSeed& about = manifest_.seeds.at(static_cast<std::size_t>(place));
+  Seed seed;
+  seed.place = place;
+  const auto is_taken = [&](int slot) {
+    return std::any_of(in_hand_.begin(), in_hand_.end(),
+                       [&](const auto& other) { return other.second.slot == slot; });
+  };
+  while (is_taken(seed.slot)) ++seed.slot;
+  seed.job = Job{place + 1,
+                 about.point,
+                 about.seed,
+                 manifest_.scenes.at(about.point),
+                 manifest_.threads,
+                 folder_.shared().checkpoint(about.point, about.seed),
+                 folder_.task(index_) / (result_name(about) + run_ + ".result"),
+                 folder_.shared().failures(),
+                 manifest_.checkpoint_seconds,
+                 std::min(1.0, manifest_.lease_seconds / 5)};
+  seed.report.outcome = AttemptOutcome::running;
+  seed.report.host = host_name();
+  seed.report.process = pool_.process(the_worker);
+  seed.report.started_at = utc_now();
+  seed.report.engine = engine_;
+  watch_.begin_job(seed.job.attempt, awake_.awake());
+  note_running(seed);
+  pool_.assign(the_worker, seed.job);
+  in_hand_.emplace(seed.job.attempt, std::move(seed));
 }
 
 void BatchTask::handle(const Hello& event) {
-  report_.engine = event.engine;
+  engine_ = event.engine;
+  capacity_ = event.capacity;
   std::string identity;
   try {
     identity = engine_identity(event.engine);
@@ -172,31 +225,36 @@ void BatchTask::handle(const Hello& event) {
                     "different kinds alike",
                     identity, manifest_.engine_identity));
   }
-  if (watch_.is_starting()) watch_.rest(awake_.awake());
+  if (watch_.is_starting()) watch_.greet();
 }
 
 void BatchTask::handle(const Progressed& event) {
-  if (!is_in_hand(event.job)) return;
+  Seed* const seed = seed_of(event.job);
+  if (seed == nullptr) return;
   watch_.hear(event, awake_.awake());
-  report_.step = event.step;
-  if (Clock::now() - noted_ > std::chrono::duration<double>(manifest_.checkpoint_seconds)) note_running();
+  seed->report.step = event.step;
+  if (Clock::now() - seed->noted > std::chrono::duration<double>(manifest_.checkpoint_seconds))
+    note_running(*seed);
 }
 
 void BatchTask::handle(const JobFailed& event) {
-  if (is_in_hand(event.job)) end({unless_it_lacked_room(AttemptOutcome::refused), event.message});
+  if (const Seed* const seed = seed_of(event.job))
+    end(*seed, {unless_it_lacked_room(AttemptOutcome::refused), 0, {}, event.message});
 }
 
 void BatchTask::handle(const Drained& event) {
-  if (is_in_hand(event.job) && !stopping_) {  // it could do so again and again
-    return condemn({AttemptOutcome::garbled, "gave back a job without being asked to"});
+  Seed* const seed = seed_of(event.job);
+  if (seed != nullptr && !stopping_) {  // it could do so again and again
+    return condemn({AttemptOutcome::garbled, "gave back a job without being asked to", event.job});
   }
-  if (is_in_hand(event.job)) drained_ = true;
+  if (seed != nullptr) note_drained(*seed);
   pool_.drain(the_worker);  // an idle engine leaves
 }
 
 // The engine keeps its work and waits. It is not blamed as long as the disk is full.
 void BatchTask::handle(const ShortOfRoom& event) {
-  if (is_in_hand(event.job) && !has_room(job_.spool.parent_path(), event.bytes)) watch_.renew(awake_.awake());
+  const Seed* const seed = seed_of(event.job);
+  if (seed != nullptr && !has_room(seed->job.spool.parent_path(), event.bytes)) watch_.renew(awake_.awake());
 }
 
 // Only the first signal counts: a batch system sends several, and kills the task in the end.
@@ -206,21 +264,24 @@ void BatchTask::handle(const StopSignal&) {
 }
 
 void BatchTask::handle(const ResultSpooled& result) {
-  if (!is_in_hand(result.job)) return;
+  const Seed* const seed = seed_of(result.job);
+  if (seed == nullptr) return;
+  const Job& job = seed->job;
   try {
-    if (result.spool != job_.spool) throw ResultError("wrote its result to another file than the job names");
-    const RealisationResult read = read_spool_file(job_.spool, result.sha256);
-    if (read.point != job_.point || read.seed != job_.seed) {
+    if (result.spool != job.spool) throw ResultError("wrote its result to another file than the job names");
+    const RealisationResult read = read_spool_file(job.spool, result.sha256);
+    if (read.point != job.point || read.seed != job.seed) {
       throw ResultError("its result is of another point or seed than the job");
     }
-    open_files_in_spool(read.document, job_.spool);
+    open_files_in_spool(read.document, job.spool);
   } catch (const ResultError& error) {
-    if (fs::exists(job_.spool)) reject(folder_.shared(), job_.spool);
-    condemn({AttemptOutcome::garbled, error.what()});
+    if (fs::exists(job.spool)) reject(folder_.shared(), job.spool);
+    condemn({AttemptOutcome::garbled, error.what(), result.job});
     return;
   }
-  end({AttemptOutcome::result});
-  publish_results(folder_, manifest_, index_);
+  const fs::path spool = job.spool;
+  end(*seed, {AttemptOutcome::result});
+  publish_result(folder_, manifest_, index_, spool);
 }
 
 void BatchTask::handle(const Exited& event) {
@@ -231,14 +292,22 @@ void BatchTask::handle(const Exited& event) {
   }
   // A result may be durable although its worker could not announce it.
   if (!watch.condemned()) publish_results(folder_, manifest_, index_);
-  if (fs::exists(folder_.ended(place_))) return;
+  std::erase_if(in_hand_, [this](const auto& seed) {
+    const bool has_ended = fs::exists(folder_.ended(seed.second.place));
+    if (has_ended) fs::remove(folder_.running(index_, seed.second.slot));
+    return has_ended;
+  });
   AttemptReason how = watch.ended(event.ending, stopping_);
   if (!watch.condemned()) how.outcome = unless_it_lacked_room(how.outcome);
-  if (watch.condemned() || (!drained_ && how.outcome != AttemptOutcome::drained))
-    return end(how, event.ending);
-  drained_ = true;
-  report_.outcome = AttemptOutcome::drained;
-  note_running();
+  const int others = static_cast<int>(in_hand_.size()) - 1;
+  while (!in_hand_.empty()) {
+    Seed& seed = in_hand_.begin()->second;
+    if (!watch.condemned() && how.outcome == AttemptOutcome::drained) {
+      note_drained(seed);
+    } else {
+      end(seed, end_with_engine(how, event.ending, seed.job.attempt, others));
+    }
+  }
 }
 
 void BatchTask::judge_lease() {
@@ -251,25 +320,36 @@ void BatchTask::condemn(AttemptReason reason) {
   pool_.kill(the_worker);
 }
 
-void BatchTask::note_running() {
-  noted_ = Clock::now();
-  write_report(folder_.running(index_), place_, report_);
+void BatchTask::note_running(Seed& seed) {
+  seed.noted = Clock::now();
+  write_report(folder_.running(index_, seed.slot), seed.place, seed.report);
 }
 
-// Ends the seed in hand. A worker that is still there becomes idle.
-void BatchTask::end(const AttemptReason& how, const ExitStatus& ending) {
-  report_.outcome = how.outcome;
-  report_.message = how.message;
-  report_.ending = ending;
-  write_report(folder_.ended(place_), place_, report_);
-  fs::remove(folder_.running(index_));
-  if (watch_.is_busy()) watch_.rest(awake_.awake());
+void BatchTask::note_drained(Seed& seed) {
+  drained_ = true;
+  seed.report.outcome = AttemptOutcome::drained;
+  note_running(seed);
+  const std::int64_t job = seed.job.attempt;
+  watch_.end_job(job);
+  in_hand_.erase(job);
+}
+
+void BatchTask::end(const Seed& seed, const AttemptEnd& how) {
+  AttemptReport report = seed.report;
+  static_cast<AttemptEnd&>(report) = how;
+  report.step = seed.report.step;
+  write_report(folder_.ended(seed.place), seed.place, report);
+  fs::remove(folder_.running(index_, seed.slot));
+  const std::int64_t job = seed.job.attempt;
+  watch_.end_job(job);
+  in_hand_.erase(job);
 }
 
 }  // namespace
 
 int run_task(const TaskOptions& options) {
   Manifest manifest = read_manifest(options.manifest);
+  choose_device(manifest.device);
   if (options.index < 0 || options.index >= static_cast<int>(manifest.tasks.size())) {
     throw InputError(options.manifest.string(), "/tasks", std::to_string(options.index),
                      fmt::format("must be a task below {}", manifest.tasks.size()));

@@ -11,9 +11,10 @@
 
 namespace peclet::runner {
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(BundledSeed, point, seed)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Manifest, bundle, campaign, engine, engine_folder, engine_identity,
-                                   threads, lease_seconds, checkpoint_seconds, scenes, seeds, tasks)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(BundledSeed, point, seed, halvings)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Manifest, bundle, campaign, engine, engine_folder,
+                                                engine_identity, threads, device, lease_seconds,
+                                                checkpoint_seconds, scenes, seeds, tasks)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(AttemptReport, step, message, host, process, started_at, engine)
 
 namespace {
@@ -48,12 +49,15 @@ const KeyTable& manifest_keys() {
 /engine_folder | string | Folder in which the engine runs.
 /engine_identity | string | Identity that the engine there must have.
 /threads | integer >= 1 and <= 2147483647
+/device? | one of auto, cuda, none | PECLET_DEVICE of the engine there; none unsets it.
 /lease_seconds, /checkpoint_seconds | number > 0
 /scenes | object | Scenes by hash of the point.
 /seeds | array | Seeds in the order in which tasks take them.
 /seeds/* | object
 /seeds/*/point | string
 /seeds/*/seed | integer >= 0 and < {}
+/seeds/*/halvings | integer >= 0 and <= 31; default 0 | How often the number of seeds in its engine is halved,
+    because engines died with it.
 /tasks | array | Places in seeds, for each task.
 /tasks/* | array
 /tasks/*/* | integer >= 0 and <= 2147483647
@@ -65,6 +69,10 @@ const KeyTable& manifest_keys() {
 Json manifest_json(const Manifest& manifest) {
   Json document = manifest;
   document["schema_version"] = 1;
+  if (manifest.device.empty()) document.erase("device");
+  for (Json& seed : document["seeds"]) {
+    if (seed["halvings"] == 0) seed.erase("halvings");
+  }
   return document;
 }
 
@@ -132,6 +140,7 @@ void write_report(const fs::path& path, int place, const AttemptReport& report) 
   document["outcome"] = to_string(report.outcome);
   document["exit_status"] = number_or_null(report.ending.status);
   document["signal"] = number_or_null(report.ending.signal);
+  if (report.company > 0) document["company"] = report.company;
   write_durably(path, document.dump(1) + '\n');
 }
 
@@ -141,6 +150,8 @@ const KeyTable& report_keys() {
 /place | integer >= 0 and <= 2147483647 | Place of the seed in the manifest.
 /outcome | one of running, result, crashed, hung, garbled, refused, drained, killed, abandoned
 /step | count | Last step that was reported.
+/company | integer >= 0 and <= 2147483647; default 0 | Other seeds in its engine when that died, if any of them
+    may have done it.
 /exit_status | integer >= -2147483648 and <= 2147483647 or null | Exit status of the engine; null if it had
     none.
 /signal | integer >= 0 and <= 2147483647 or null | Signal that ended the engine; null if none did.
@@ -156,39 +167,55 @@ std::optional<PlacedReport> read_report(const fs::path& path) {
   const Json document = report_keys().validate(read_json(path), path.string());
   PlacedReport placed{document["place"], document.get<AttemptReport>()};
   placed.report.outcome = attempt_outcome(document["outcome"].get<std::string>());
+  placed.report.company = document["company"];
   placed.report.ending = {optional_number(document["exit_status"]), optional_number(document["signal"])};
   return placed;
 }
 
-void publish_results(const BundleFolder& folder, const Manifest& manifest, int task) {
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder.task(task))) {
-    const fs::path& file = entry.path();
-    if (file.extension() != ".result") continue;
-    try {
-      const RealisationResult result = read_spool_file(file, "");
-      const std::optional<int> place = place_of(manifest, task, result);
-      if (!place || !file.filename().string().starts_with(
-                        result_name(manifest.seeds[static_cast<std::size_t>(*place)]))) {
-        throw ResultError("it is of another seed than the one that was asked for");
-      }
-      // The note comes first, then the move: a task that runs again finds one of them and runs nothing twice.
-      if (!fs::exists(folder.ended(*place))) {
-        AttemptReport report;
-        report.outcome = AttemptOutcome::result;
-        report.engine = result.document.at("engine");
-        write_report(folder.ended(*place), *place, report);
-      }
-      const fs::path spool = folder.shared().spool() / (file.stem().string() + ".json");
-      create_folders_durably(left_folder(spool));  // it may have been deleted
-      // Files moved before a crash are in their places; the owner rejects a result without its files.
-      for (const fs::path& left : left_files_of(file)) {
-        rename_durably(left, left_folder(spool) / left.filename());
-      }
-      rename_durably(file, spool);
-    } catch (const ResultError&) {
-      reject(folder.shared(), file);
-    }
+std::vector<PlacedReport> read_running(const BundleFolder& folder, int task) {
+  std::vector<PlacedReport> running;
+  std::error_code absent;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder.task(task), absent)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with("running") || entry.path().extension() != ".json") continue;
+    if (const std::optional<PlacedReport> report = read_report(entry.path())) running.push_back(*report);
   }
+  return running;
+}
+
+void publish_result(const BundleFolder& folder, const Manifest& manifest, int task, const fs::path& file) {
+  try {
+    const RealisationResult result = read_spool_file(file, "");
+    const std::optional<int> place = place_of(manifest, task, result);
+    if (!place || !file.filename().string().starts_with(
+                      result_name(manifest.seeds[static_cast<std::size_t>(*place)]))) {
+      throw ResultError("it is of another seed than the one that was asked for");
+    }
+    // The note comes first, then the move: a task that runs again finds one of them and runs nothing twice.
+    if (!fs::exists(folder.ended(*place))) {
+      AttemptReport report;
+      report.outcome = AttemptOutcome::result;
+      report.engine = result.document.at("engine");
+      write_report(folder.ended(*place), *place, report);
+    }
+    const fs::path spool = folder.shared().spool() / (file.stem().string() + ".json");
+    create_folders_durably(left_folder(spool));  // it may have been deleted
+    // Files moved before a crash are in their places; the owner rejects a result without its files.
+    for (const fs::path& left : left_files_of(file)) {
+      rename_durably(left, left_folder(spool) / left.filename());
+    }
+    rename_durably(file, spool);
+  } catch (const ResultError&) {
+    reject(folder.shared(), file);
+  }
+}
+
+void publish_results(const BundleFolder& folder, const Manifest& manifest, int task) {
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder.task(task))) {
+    if (entry.path().extension() == ".result") files.push_back(entry.path());
+  }
+  for (const fs::path& file : files) publish_result(folder, manifest, task, file);
 }
 
 }  // namespace peclet::runner

@@ -5,7 +5,8 @@
 //     manifest.json          what is to be done; written once, by the owner
 //     *.sh                   the job and the commands, from the template; written once
 //     ended/N.json           how the bundle's seed N has ended; written by its task
-//     tasks/I/running.json   the seed that task I runs or has drained; written by it
+//     tasks/I/running.json   the seed that task I runs or has drained; written by it. Further ones are in
+//                            running-1.json ..., if its engine runs several at once
 //     tasks/I/trouble.json   why task I could do nothing at all
 //     tasks/I/*.result       results that are not in the spool yet
 //     tasks/I/files          files that their realisations leave beside them
@@ -31,6 +32,7 @@ namespace peclet::runner {
 struct BundledSeed {
   std::string point;  // hash of the scene
   int seed = 0;
+  int halvings = 0;  // of the seeds in its engine, as in blame.h
 };
 
 struct Manifest {
@@ -39,6 +41,7 @@ struct Manifest {
   fs::path engine_folder;           // folder in which it runs, if the node has it
   std::string engine_identity;      // identity that the engine there must have
   int threads = 1;
+  std::string device{};  // as in choose_device()
   double lease_seconds = 120, checkpoint_seconds = 60;
   Json scenes;                          // by hash
   std::vector<BundledSeed> seeds;       // in the order in which tasks take them
@@ -67,7 +70,9 @@ class BundleFolder {
   fs::path logs() const { return root_ / "logs"; }
   fs::path ended(int place) const { return root_ / "ended" / (std::to_string(place) + ".json"); }
   fs::path task(int index) const { return root_ / "tasks" / std::to_string(index); }
-  fs::path running(int index) const { return task(index) / "running.json"; }
+  fs::path running(int index, int slot = 0) const {
+    return task(index) / (slot == 0 ? "running.json" : "running-" + std::to_string(slot) + ".json");
+  }
   fs::path trouble(int index) const { return task(index) / "trouble.json"; }
   fs::path left(int index) const { return task(index) / "files"; }
   void create(int tasks) const;
@@ -85,6 +90,8 @@ struct PlacedReport {
 const KeyTable& report_keys();
 // Returns nothing if there is no report. Throws InputError if the file is not a report.
 std::optional<PlacedReport> read_report(const fs::path& path);
+// Returns the reports of the seeds that the task runs or has drained.
+std::vector<PlacedReport> read_running(const BundleFolder& folder, int task);
 
 // Returns how the names of a seed's results begin, in the task's folder and in the spool.
 std::string result_name(const BundledSeed& seed);
@@ -99,5 +106,7 @@ std::string handed_over_advice(const std::vector<HandedOver>& bundles, const std
 // Moves the results in a task's own folder into the spool, after the files that their realisations left, and
 // notes them as ended. Files that are not results go to spool/rejected.
 void publish_results(const BundleFolder& folder, const Manifest& manifest, int task);
+// Does so with one of them.
+void publish_result(const BundleFolder& folder, const Manifest& manifest, int task, const fs::path& file);
 
 }  // namespace peclet::runner

@@ -202,6 +202,7 @@ Manifest Bundles::manifest_of(const BundleSettings& settings, const std::vector<
   manifest.engine_folder = settings.engine_folder;
   manifest.engine_identity = engine_identity(settings.engine_provenance);
   manifest.threads = settings.threads;
+  manifest.device = settings.device;
   manifest.lease_seconds = settings.lease_seconds;
   manifest.checkpoint_seconds = settings.checkpoint_seconds;
   manifest.scenes = Json::object();
@@ -211,7 +212,7 @@ Manifest Bundles::manifest_of(const BundleSettings& settings, const std::vector<
     manifest.scenes[point.hash] = point.scene;
     if (place % settings.seeds_per_task == 0) manifest.tasks.emplace_back();
     manifest.tasks.back().push_back(place);
-    manifest.seeds.push_back({point.hash, id.seed});
+    manifest.seeds.push_back({point.hash, id.seed, state_.halvings_of(point.id, id.seed)});
   }
   return manifest;
 }
@@ -405,17 +406,25 @@ void Bundles::book(const BundleRecord& bundle, const BundleFolder& folder, const
 void Bundles::return_seed(const BundleRecord& bundle, const BundleFolder& folder,
                           const BundleSeedRecord& seed, Returned& returned) {
   const std::optional<SeedId> id = state_.identify(seed.point, seed.seed);
-  const std::optional<PlacedReport> cut_off = read_report(folder.running(seed.task));
+  const std::vector<PlacedReport> running = read_running(folder, seed.task);
+  const auto cut_off = std::find_if(running.begin(), running.end(), [&](const PlacedReport& placed) {
+    return placed.place == seed.place && placed.report.outcome == AttemptOutcome::running;
+  });
   if (const std::string trouble = trouble_of(folder, seed.task); !trouble.empty()) {
     returned.troubles.insert(trouble);
   }
   ++returned.seeds;
-  if (!cut_off) ++returned.lifeless;
-  if (id && cut_off && cut_off->place == seed.place && cut_off->report.outcome == AttemptOutcome::running) {
+  if (running.empty()) ++returned.lifeless;
+  if (id && cut_off != running.end()) {
     // The task had no time to report: the attempt is counted, but not blamed.
     AttemptReport report = cut_off->report;
     report.outcome = AttemptOutcome::killed;
     report.message = "its task ended without a report";
+    report.company = static_cast<int>(std::count_if(running.begin(), running.end(),
+                                                    [](const auto& placed) {
+                                                      return placed.report.outcome == AttemptOutcome::running;
+                                                    })) -
+                     1;
     state_.end_handed_over(*id, seed.task, report,
                            folder.shared().checkpoint(state_.point(id->point).hash, id->seed));
     book_.seed_ended(bundle.id, seed.place, to_string(report.outcome));

@@ -28,6 +28,7 @@ struct BundleSettings {
   int seeds_per_task = 1;
   int largest_array = 1000;  // most tasks of one bundle
   int threads = 1;
+  std::string device{};  // as in choose_device()
   double lease_seconds = 120, checkpoint_seconds = 60;
   bool ahead = false;  // also hand over the seeds of the stop tests after the next ones
   BatchTemplate scripts;

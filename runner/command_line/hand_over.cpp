@@ -86,7 +86,11 @@ BundleSettings bundle_settings(const HandOverOptions& options, OwnedCampaign& ow
   settings.lease_seconds = options.lease_seconds;
   settings.checkpoint_seconds = options.checkpoint_seconds;
   settings.ahead = options.ahead;
+  settings.device = options.device;
   settings.options = options.options;
+  // Later words win, such as --gres=gpu:a100:1 of the user.
+  if (options.device == "cuda" && options.system == "slurm")
+    settings.options.insert(settings.options.begin(), "--gres=gpu:1");
   settings.engine = {owned.command.program.string()};
   settings.engine.insert(settings.engine.end(), owned.command.arguments.begin(),
                          owned.command.arguments.end());
@@ -268,6 +272,7 @@ std::string status_text(Database& database) {
 
 int hand_over_campaign(const HandOverOptions& options) {
   check(options);
+  choose_device(options.device);
   OwnedCampaign owned(options.campaign, options.directory, options.force, options.accept_engine);
   const BundleSettings settings = bundle_settings(options, owned);
   bool finished = false;

@@ -17,6 +17,7 @@ struct HandOverOptions {
   int seeds_per_task = 1;
   int largest_array = 0;  // 0: what the batch system says
   int threads = 1;
+  std::string device;  // as in choose_device(); with cuda, Slurm is asked for a graphics card
   double lease_seconds = 120, checkpoint_seconds = 60;
   std::vector<std::string> options;  // words for the submit command
   std::string accept_engine;         // name of the engine that replaces another one; "": none

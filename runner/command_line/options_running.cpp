@@ -13,9 +13,17 @@
 namespace peclet::runner {
 namespace {
 
+void add_device(CLI::App* verb, std::string& device) {
+  add_option(verb, "--device", device,
+             "Whether engines compute on a graphics card, where they can: PECLET_DEVICE of the engine, which "
+             "`none` unsets")
+      ->check(CLI::IsMember({"auto", "cuda", "none"}));
+}
+
 void add_team(CLI::App* verb, RunOptions& run) {
+  add_device(verb, run.device);
   add_number(verb, "--workers", run.workers, whole_number(1, 100'000),
-             "Engine processes; cores / threads unless given");
+             "Engine processes; unless given, one for each card that --device finds, else cores / threads");
   add_number(verb, "--threads", run.threads, whole_number(1, 4096),
              "Threads of each; unless given, cores / workers if --workers is given, else 1");
 }
@@ -288,13 +296,14 @@ seeds count as handed over until a job of that name has been looked for.
   add_option(verb, "--shared FOLDER", options->shared,
              "Folder that this machine and the nodes see in the same place; the one used last unless given");
   add_number(verb, "--seeds-per-task", options->seeds_per_task, whole_number(1, 100'000),
-             "Seeds that one task runs, one after another")
+             "Seeds that one task runs, as many at once as the engine can")
       ->capture_default_str();
   add_number(verb, "--largest-array", options->largest_array, whole_number(1, 1'000'000),
              "Tasks of one job at most; what the batch system allows unless given");
   add_number(verb, "--threads", options->threads, whole_number(1, 4096), "Threads of each engine")
       ->capture_default_str();
   add_option(verb, "--option WORD", options->options, "Word for the submit command (sbatch)");
+  add_device(verb, options->device);
   add_option(verb, "--template FOLDER", options->template_folder,
              "Folder with job.sh and the commands, for other sites")
       ->check(CLI::ExistingDirectory);
@@ -345,7 +354,7 @@ prints. The exit code is 1 while the folder of seeds that are out does not exist
 void add_task(VerbSet& verbs) {
   const auto [verb, options] = verbs.add<TaskOptions>(
       run_task, "task", "Run one task of a bundle; what job scripts call on a node", {0, 1, 2, 6, 75}, R"(
-Runs the seeds of the task one after another, except those that have ended already. SIGTERM, SIGINT and
+Runs the seeds of the task, except those that have ended already, as many at once as the engine can. SIGTERM, SIGINT and
 SIGUSR1 make the engine save a checkpoint and exit.
 
   peclet task /scratch/me/flow-curve/bundles/NAME/manifest.json 7

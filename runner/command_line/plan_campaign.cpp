@@ -92,7 +92,7 @@ std::optional<CostGuess> guess_cost(const Campaign& campaign, const std::vector<
     const std::size_t place = order[static_cast<std::size_t>(std::lround(share * last))];
     if (!tried.insert(place).second) continue;
     const StatePoint& point = campaign.points.at(place);
-    const CostTrial trial = try_cost(point.scene, command);
+    const CostTrial trial = try_cost(point.scene, command, campaign.maximum_realisations);
     if (trial.seconds) return CostGuess{place, *trial.seconds};
     if (!trial.broke_off.empty()) broke_off.push_back(point.label + " broke off: " + trial.broke_off);
   }
@@ -102,7 +102,8 @@ std::optional<CostGuess> guess_cost(const Campaign& campaign, const std::vector<
 Plan plan_of(const Campaign& campaign, const std::vector<SceneAnswer>& scenes,
              const std::map<std::string, PointHistory>& known, const RunOptions& options,
              const std::optional<CostGuess>& guess = {}) {
-  Plan plan = make_plan(campaign, work_of(scenes), known, worker_count(options).workers, guess);
+  const int capacity = scenes.empty() ? 1 : scenes.front().capacity;
+  Plan plan = make_plan(campaign, work_of(scenes), known, worker_count(options).workers, guess, capacity);
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     const Json found = scenes[i].derived.value("flow_over_rest", Json());
     if (found.is_number()) plan.points.at(i).flow_over_rest = found.get<double>();
@@ -114,6 +115,7 @@ Plan plan_of(const Campaign& campaign, const std::vector<SceneAnswer>& scenes,
 }  // namespace
 
 int plan_campaign(const PlanOptions& options) {
+  choose_device(options.run.device);
   const std::filesystem::path& file = options.run.campaign;
   const Campaign campaign = read_campaign(file);
   if (options.pilot && (*options.pilot < 2 || *options.pilot > campaign.minimum_realisations)) {

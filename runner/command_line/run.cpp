@@ -224,12 +224,21 @@ int run(const RunOptions& options, std::optional<int> ceiling, const Conclusion&
   return code;
 }
 
+// Returns the number of engines that fill the cards of this machine, one for each; 0 without a card, or if
+// the device is another.
+int workers_for_cards(const std::string& device) {
+  if (device != "cuda" && device != "auto") return 0;
+  const int cards = visible_cards();
+  return device == "cuda" ? std::max(1, cards) : cards;
+}
+
 }  // namespace
 
 WorkerCount worker_count(const RunOptions& options) {
   const int cores = usable_cores();
-  if (options.workers > 0 && options.threads > 0) return {options.workers, options.threads};
-  if (options.workers > 0) return {options.workers, std::max(1, cores / options.workers)};
+  const int workers = options.workers == 0 ? workers_for_cards(options.device) : options.workers;
+  if (workers > 0 && options.threads > 0) return {workers, options.threads};
+  if (workers > 0) return {workers, std::max(1, cores / workers)};
   const int threads = std::max(1, options.threads);
   return {std::max(1, cores / threads), threads};
 }
@@ -264,6 +273,7 @@ void notify_of(const RunOptions& options, int code, const std::string& summary) 
 }  // namespace
 
 int run_campaign(const RunOptions& options) {
+  choose_device(options.device);
   std::string summary;
   try {
     const int code = run_and_conclude(options, summary);

@@ -25,7 +25,8 @@ std::string notify(const std::string& command, const RunOutcome& outcome);
 struct RunOptions {
   std::filesystem::path campaign;
   std::filesystem::path directory;     // "": beside the campaign file
-  int workers = 0;                     // 0: cores / threads
+  std::string device;                  // as in choose_device()
+  int workers = 0;                     // 0: one for each card of the device, else cores / threads
   int threads = 0;                     // for each worker; 0: 1, or cores / workers if workers are given
   bool quiet = false;                  // no progress
   bool jsonl = false;                  // events on standard output, instead of the table at the end

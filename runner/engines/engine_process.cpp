@@ -204,6 +204,31 @@ EngineCommand resolve_engine(const Campaign& campaign, const fs::path& campaign_
                    "must be a program beside peclet, on PATH, or one of peclet's adapters");
 }
 
+void choose_device(const std::string& device) {
+  if (device == "none") {
+    unsetenv("PECLET_DEVICE");
+  } else if (!device.empty()) {
+    setenv("PECLET_DEVICE", device.c_str(), 1);
+  }
+}
+
+int visible_cards(const fs::path& devices) {
+  if (const char* const named = std::getenv("CUDA_VISIBLE_DEVICES")) {
+    const std::string_view names = named;
+    return names.empty() || names.front() == '-' ? 0 : static_cast<int>(std::ranges::count(names, ',')) + 1;
+  }
+  constexpr std::string_view prefix = "nvidia";
+  int cards = 0;
+  std::error_code unreadable;
+  for (const fs::directory_entry& entry : fs::directory_iterator(devices, unreadable)) {
+    const std::string name = entry.path().filename().string();
+    const bool is_card = name.size() > prefix.size() && name.starts_with(prefix) &&
+                         name.find_first_not_of("0123456789", prefix.size()) == name.npos;
+    cards += is_card ? 1 : 0;
+  }
+  return cards;
+}
+
 EngineProcess::EngineProcess(const EngineCommand& command) {
   Ends pipe = make_pipe();
   fcntl(pipe.first.number(), F_SETFL, O_NONBLOCK);

@@ -40,6 +40,13 @@ struct EngineCommand {
 // among its arguments keep their meaning. Throws InputError at /engine/0 if the program is not found.
 EngineCommand resolve_engine(const Campaign& campaign, const fs::path& campaign_file);
 
+// Sets PECLET_DEVICE for the engines of this process: "auto" or "cuda". "none" unsets it, and "" leaves it as
+// it is.
+void choose_device(const std::string& device);
+// Returns the number of NVIDIA cards that CUDA_VISIBLE_DEVICES names or, unless it is set, of their files in
+// `devices`.
+int visible_cards(const fs::path& devices = "/dev");
+
 // A running engine. Movable; owns the process and this end of its socket.
 class EngineProcess {
  public:

@@ -104,6 +104,7 @@ class Conversation {
     }
     hello = checked_frame(std::move(hello));
     identity_ = hello["engine"];
+    capacity_ = hello["capacity"].get<int>();
     words_ = std::make_shared<const Vocabulary>(hello);
     try {
       engine_identity(identity_);
@@ -122,6 +123,7 @@ class Conversation {
   }
 
   const Json& identity() const { return identity_; }
+  int capacity() const { return capacity_; }
   const std::shared_ptr<const Vocabulary>& words() const { return words_; }
 
  private:
@@ -168,6 +170,7 @@ class Conversation {
   EngineProcess process_;
   FrameChannel channel_;
   Json identity_;
+  int capacity_ = 1;
   std::shared_ptr<const Vocabulary> words_;
 };
 
@@ -234,6 +237,7 @@ std::vector<SceneAnswer> ask_once(const Campaign& campaign, const fs::path& camp
     check_observables(answer, campaign, point, campaign_file);
     answers.push_back(read_answer(answer, engine.identity()));
     answers.back().words = engine.words();
+    answers.back().capacity = engine.capacity();
   }
   return answers;
 }
@@ -242,15 +246,17 @@ using Clock = std::chrono::steady_clock;
 
 class Trial {
  public:
-  explicit Trial(const Json& scene) : scene_(scene) {}
+  Trial(const Json& scene, int seeds) : scene_(scene), seeds_(seeds) {}
 
   // Returns false if the trial is over.
   bool hear(const WorkerEvent& event, WorkerPool& pool, const CampaignDirectory& directory) {
-    if (std::holds_alternative<Hello>(event)) {
-      pool.assign(0, job(directory));
+    if (const auto* const hello = std::get_if<Hello>(&event)) {
+      for (int seed = 0; seed < std::min(seeds_, hello->capacity); ++seed)
+        pool.assign(0, job(directory, seed));
       begun_ = Clock::now();
       return true;
     }
+    if (is_of_another_seed(event)) return true;
     if (const auto* progressed = std::get_if<Progressed>(&event)) return hear(*progressed);
     if (const auto* spooled = std::get_if<ResultSpooled>(&event)) {
       found_.seconds.reset();
@@ -270,6 +276,18 @@ class Trial {
  private:
   static constexpr double long_enough = 2, longest = 10;
 
+  static bool is_of_another_seed(const WorkerEvent& event) {
+    return std::visit(
+        [](const auto& happened) {
+          if constexpr (requires { happened.job; }) {
+            return happened.job != 1;
+          } else {
+            return false;
+          }
+        },
+        event);
+  }
+
   bool hear(const Progressed& progressed) {
     // The steps of packing are not those of the realisation.
     if (progressed.step == 0 || progressed.steps == 0 || progressed.phase == 0) return true;
@@ -286,19 +304,21 @@ class Trial {
   }
   double since_begun() const { return std::chrono::duration<double>(Clock::now() - begun_).count(); }
 
-  Job job(const CampaignDirectory& directory) const {
+  Job job(const CampaignDirectory& directory, int seed) const {
     Job job;
-    job.attempt = 1;
+    job.attempt = seed + 1;
     job.point = sha256(canonical_json(scene_));
+    job.seed = seed;
     job.scene = scene_;
-    job.checkpoint = directory.checkpoint(job.point, 0);
-    job.spool = directory.spool_file(job.point, 0, 1);
+    job.checkpoint = directory.checkpoint(job.point, seed);
+    job.spool = directory.spool_file(job.point, seed, job.attempt);
     job.failures = directory.failures();
     job.progress_seconds = 0.2;
     return job;
   }
 
   const Json& scene_;
+  int seeds_;
   Clock::time_point begun_ = Clock::now();
   std::optional<std::int64_t> first_;
   double first_after_ = 0;
@@ -331,13 +351,13 @@ std::vector<double> particle_steps(const std::vector<SceneAnswer>& answers) {
   return work;
 }
 
-CostTrial try_cost(const Json& scene, const EngineCommand& command) {
+CostTrial try_cost(const Json& scene, const EngineCommand& command, int seeds) {
   const ScratchFolder folder("peclet-trial");
   const CampaignDirectory directory(folder.path());
   create_folders(directory);
   StopSignals signals;
   ProcessPool pool(1, command, directory, signals);
-  Trial trial(scene);
+  Trial trial(scene, seeds);
   pool.start(0);
   bool goes_on = true;
   while (goes_on && !trial.is_late()) {

@@ -21,6 +21,7 @@ struct SceneAnswer {
   Json derived;  // numbers that follow from the scene, by name
   std::vector<std::string> warnings;
   Json identity;                            // that of the engine
+  int capacity = 1;                         // realisations that an engine runs at once
   std::shared_ptr<const Vocabulary> words;  // that of the engine, shared by all answers
 };
 
@@ -40,8 +41,9 @@ struct CostTrial {
 };
 
 // Estimates the cost of a realisation. The engine runs seed 0 in a temporary folder and is killed after two
-// seconds, from which the time of the whole is extrapolated. `seconds` is absent if there is no progress
-// within ten seconds, or if the realisation fails or ends early, as one that jams.
-CostTrial try_cost(const Json& scene, const EngineCommand& command);
+// seconds, from which the time of the whole is extrapolated. Beside it run the next of `seeds` seeds, as many
+// as the engine runs at once. `seconds` is absent if there is no progress within ten seconds, or if the
+// realisation fails or ends early, as one that jams.
+CostTrial try_cost(const Json& scene, const EngineCommand& command, int seeds = 1);
 
 }  // namespace peclet::runner

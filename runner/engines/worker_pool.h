@@ -31,7 +31,8 @@ struct Job {
 struct Hello {
   int worker;
   Json engine;
-  bool ahead = false;  // takes one further job while it has one, and begins it after that
+  bool ahead = false;  // takes one job more than it runs, and begins it when one has ended
+  int capacity = 1;    // jobs that it runs at once
 };
 struct Progressed {
   int worker;
@@ -86,11 +87,11 @@ class WorkerPool {
   virtual void start(int worker) = 0;
   // Returns the number of the worker's process, for messages.
   virtual std::int64_t process(int worker) const = 0;
-  // Gives the worker a job. Requires that the worker said hello and has no job, or takes jobs ahead and has
-  // only one. If the worker has died meanwhile, Exited follows.
+  // Gives the worker a job. Requires that the worker said hello and has fewer jobs than its capacity, or
+  // takes jobs ahead and has no more than that. If the worker has died meanwhile, Exited follows.
   virtual void assign(int worker, const Job& job) = 0;
-  // Tells the worker to save a checkpoint and exit; Drained (if it has a job) and Exited follow. A further
-  // job that has not begun is dropped without an event.
+  // Tells the worker to save checkpoints and exit; Drained (for each job) and Exited follow. A further job
+  // that has not begun is dropped without an event.
   virtual void drain(int worker) = 0;
   virtual void kill(int worker) = 0;
   // True if the worker's process is stopped, as by SIGSTOP.

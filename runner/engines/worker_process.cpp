@@ -107,7 +107,8 @@ WorkerEvent as_event(int worker, Json given) {
   const auto text = [&](const char* key) { return message[key].get<std::string>(); };
   const auto count = [&](const char* key) { return message[key].get<std::int64_t>(); };
   const std::string type = text("type");
-  if (type == "hello") return Hello{worker, message["engine"], message["ahead"]};
+  if (type == "hello")
+    return Hello{worker, message["engine"], message["ahead"], message["capacity"].get<int>()};
   if (type == "progress") {
     return Progressed{worker,        count("job"),   phase_number(text("phase")),
                       count("step"), count("steps"), message["strain"].get<double>()};
@@ -165,23 +166,27 @@ void AwakeClock::end_turn(Time now) {
 void WorkerWatch::start(Awake now) {
   *this = {};
   stage_ = Stage::starting;
-  since_ = now;
-}
-
-void WorkerWatch::rest(Awake now) {
-  stage_ = Stage::idle;
-  since_ = now;
-}
-
-void WorkerWatch::begin_job(Awake now) {
-  stage_ = Stage::busy;
-  since_ = renewed_ = now;
-  progress_ = {};
+  started_ = now;
 }
 
 void WorkerWatch::hear(const Progressed& progress, Awake now) {
-  if (std::tie(progress.phase, progress.step) > std::tie(progress_.phase, progress_.step)) renewed_ = now;
-  progress_ = {progress.phase, progress.step, progress.steps, progress.strain};
+  Course& job = jobs_.at(progress.job);
+  if (std::tie(progress.phase, progress.step) > std::tie(job.progress.phase, job.progress.step)) {
+    job.renewed = now;
+    // Jobs that are packed or wait for a place make no steps. They have time as long as the engine gets on.
+    for (auto& [number, other] : jobs_) {
+      if (other.progress.phase == 0) other.renewed = now;
+    }
+  }
+  job.progress = {progress.phase, progress.step, progress.steps, progress.strain};
+}
+
+void WorkerWatch::renew(Awake now) {
+  for (auto& [number, job] : jobs_) job.renewed = now;
+}
+
+const WorkerWatch::Course& WorkerWatch::slowest() const {
+  return std::ranges::min_element(jobs_, {}, [](const auto& job) { return job.second.renewed; })->second;
 }
 
 void WorkerWatch::condemn(AttemptReason reason) {
@@ -190,8 +195,8 @@ void WorkerWatch::condemn(AttemptReason reason) {
 
 bool WorkerWatch::is_overdue(Awake now, Awake lease) const {
   if (condemned_) return false;
-  return (stage_ == Stage::starting && now - since_ > hello_patience) ||
-         (is_busy() && now - renewed_ > lease);
+  return (stage_ == Stage::starting && now - started_ > hello_patience) ||
+         (is_busy() && now - slowest().renewed > lease);
 }
 
 AttemptReason WorkerWatch::overdue(Awake lease, bool is_stopped) const {
@@ -200,7 +205,7 @@ AttemptReason WorkerWatch::overdue(Awake lease, bool is_stopped) const {
                           : is_stopped ? ": its process has been stopped"
                                        : "";
   return {is_recalled_ || is_stopped ? AttemptOutcome::killed : AttemptOutcome::hung,
-          fmt::format("no new step after {} for {:g} s{}", progress_.step, lease.count(), why)};
+          fmt::format("no new step after {} for {:g} s{}", slowest().progress.step, lease.count(), why)};
 }
 
 AttemptReason WorkerWatch::ended(const ExitStatus& ending, bool all_recalled) const {
@@ -209,7 +214,21 @@ AttemptReason WorkerWatch::ended(const ExitStatus& ending, bool all_recalled) co
   return {left ? AttemptOutcome::drained : outcome_of(ending), to_string(ending)};
 }
 
+AttemptEnd end_with_engine(const AttemptReason& how, const ExitStatus& ending, std::int64_t job, int others) {
+  if (how.job == 0) return {how.outcome, 0, ending, how.message, 0, others};
+  if (how.job == job) return {how.outcome, 0, ending, how.message};
+  return {AttemptOutcome::killed, 0, ending, "its engine was killed for another job", 0, others};
+}
+
 const char* phase_name(int phase) { return job_phases.at(static_cast<std::size_t>(phase)); }
+
+bool is_file_of(const Job& job, const fs::path& path) {
+  const fs::path folder = path.parent_path();
+  const bool is_beside_result =
+      folder == left_folder(job.spool) && path.filename().string().starts_with(left_stem(job.spool));
+  return path == job.spool || checkpoint_of(path) == job.checkpoint || folder == job.failures ||
+         is_beside_result;
+}
 
 std::optional<fs::path> unwritable_folder(const Job& job) {
   for (const fs::path& folder :
@@ -258,7 +277,10 @@ ProcessPool::~ProcessPool() {
 }
 
 void ProcessPool::start(int worker) {
-  workers_.at(static_cast<std::size_t>(worker)) = std::make_unique<Worker>(Worker{EngineProcess(command_)});
+  EngineCommand command = command_;
+  if (std::getenv("PECLET_DEVICE") != nullptr)
+    command.environment.push_back(fmt::format("PECLET_DEVICE_NUMBER={}", worker));
+  workers_.at(static_cast<std::size_t>(worker)) = std::make_unique<Worker>(Worker{EngineProcess(command)});
 }
 
 std::int64_t ProcessPool::process(int worker) const {

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -52,7 +53,12 @@ class AwakeClock {
 struct AttemptReason {
   AttemptOutcome outcome = AttemptOutcome::result;
   std::string message{};
+  std::int64_t job = 0;  // job that did it; 0 if that is not known
 };
+
+// Returns how a job ended with its engine, which had `others` beside it and died for this reason. In company
+// it is not blamed unless it is known to have done it; then the others are not suspect.
+AttemptEnd end_with_engine(const AttemptReason& how, const ExitStatus& ending, std::int64_t job, int others);
 
 struct JobProgress {
   int phase = 0;  // as in Progressed
@@ -60,52 +66,65 @@ struct JobProgress {
   double strain = 0;
 };
 
-// The stage of one worker, as its owner knows it, and whether the worker is overdue. It has no clock and no
-// process, but is told events and their times. The dispatcher and the tasks of a batch system use it.
+// The stage of one worker and the progress of its jobs, as its owner knows them, and whether the worker is
+// overdue. It has no clock and no process, but is told events and their times. The dispatcher and the tasks
+// of a batch system use it.
 class WorkerWatch {
  public:
   bool is_there() const { return stage_ != Stage::absent; }
   bool is_starting() const { return stage_ == Stage::starting; }
-  // True if the worker may get a job: it has none, and is not being killed.
-  bool is_idle() const { return stage_ == Stage::idle && !condemned_; }
-  bool is_busy() const { return stage_ == Stage::busy; }
+  // True if the worker may get jobs: it has said hello, and is neither being killed nor told to leave.
+  bool takes_jobs() const { return stage_ == Stage::ready && !condemned_ && !is_recalled_; }
+  bool is_busy() const { return !jobs_.empty(); }
+  // Returns the number of jobs that the worker runs.
+  int jobs() const { return static_cast<int>(jobs_.size()); }
 
   // Records that the process was started; forgets all about an earlier one.
   void start(Awake now);
-  // Records that the worker said hello, or has no job any more.
-  void rest(Awake now);
-  void begin_job(Awake now);
-  // Records the progress of the job. A new step renews the lease; a message without one does not.
+  // Records that the worker said hello.
+  void greet() { stage_ = Stage::ready; }
+  void begin_job(std::int64_t job, Awake now) { jobs_[job] = {now, {}}; }
+  void end_job(std::int64_t job) { jobs_.erase(job); }
+  // Records the progress of a job that it has. A new step renews the lease; a message without one does not.
   void hear(const Progressed& progress, Awake now);
-  // Renews the lease without a step, because the worker waits for something that is not its fault.
-  void renew(Awake now) { renewed_ = now; }
-  // Records that the worker gave its job back at that step.
-  void leave_at(std::int64_t step) { progress_.step = step; }
-  // Records that the worker was told to leave its job.
+  // Renews the leases without a step, because the worker waits for something that is not its fault.
+  void renew(Awake now);
+  // Records that the worker gave the job back at that step.
+  void leave_at(std::int64_t job, std::int64_t step) { jobs_.at(job).progress.step = step; }
+  // Records that the worker was told to leave its jobs.
   void recall() { is_recalled_ = true; }
   // Records that the owner has killed the worker for that reason. The first reason stays.
   void condemn(AttemptReason reason);
 
   bool is_recalled() const { return is_recalled_; }
   const std::optional<AttemptReason>& condemned() const { return condemned_; }
-  const JobProgress& progress() const { return progress_; }
+  const JobProgress& progress(std::int64_t job) const { return jobs_.at(job).progress; }
 
-  // True if no new step came for longer than `lease`, or no hello for a minute.
+  // True if a job made no new step for longer than `lease`, or no hello came for a minute.
   bool is_overdue(Awake now, Awake lease) const;
   // Returns the reason to kill an overdue worker. One that is stopped (SIGSTOP) or recalled is not to blame.
   AttemptReason overdue(Awake lease, bool is_stopped) const;
-  // Returns the outcome of the attempt whose process has ended. `all_recalled`: all workers were recalled.
+  // Returns the outcome of attempts whose process has ended. `all_recalled`: all workers were recalled.
   AttemptReason ended(const ExitStatus& ending, bool all_recalled) const;
 
  private:
-  enum class Stage { absent, starting, idle, busy };
+  enum class Stage { absent, starting, ready };
+  struct Course {
+    Awake renewed{};
+    JobProgress progress{};
+  };
+  // Returns the course of the job that has made no step for longest. Requires a job.
+  const Course& slowest() const;
 
   Stage stage_ = Stage::absent;
-  Awake since_{}, renewed_{};
-  JobProgress progress_;
+  Awake started_{};
+  std::map<std::int64_t, Course> jobs_;
   bool is_recalled_ = false;
   std::optional<AttemptReason> condemned_;
 };
+
+// Returns true if an engine may write this file for the job.
+bool is_file_of(const Job& job, const fs::path& path);
 
 // Returns the first folder of a job that does not exist or has no room, if any. An engine that cannot wait
 // for room may then fail, and is not to blame.

@@ -113,6 +113,7 @@ void CampaignState::book_stop_tests() {
 }
 
 void CampaignState::read_point_states() {
+  suspects_.forget();
   point_states_.read_seeds(database_, campaign());
   for (int place = 0; place < point_states_.size(); ++place) leave_to_batch_system(place);
 }
@@ -150,8 +151,24 @@ void CampaignState::book_outcome(SeedId id, const Outcome& outcome) {
   changes_.after.note(fmt::format("{}: {}", about.label, message));
 }
 
-std::optional<GivenSeed> CampaignState::give_out(int worker, std::int64_t process, std::int64_t engine) {
-  const std::optional<SeedId> id = next();
+std::optional<SeedId> CampaignState::next_for(const Company& company) {
+  if (company.capacity == 1) return next();
+  suspects_.read(seeds_);
+  if (!suspects_.any()) return next();
+  if (!suspects_.may_grow(company)) return std::nullopt;
+  const std::optional<double> budget = budget_left();
+  const auto may_run = [&](KnownSeed seed) {
+    const std::optional<SeedId> id = identify(seed.point, seed.seed);
+    return id && scheduler().may_be_next(*id, budget);
+  };
+  if (const auto seed = suspects_.next_for(company, may_run)) return identify(seed->point, seed->seed);
+  const auto is_no_suspect = [&](SeedId id) { return !suspects_.contains({point(id.point).id, id.seed}); };
+  return budget ? scheduler().next_within(*budget, is_no_suspect) : scheduler().next(is_no_suspect);
+}
+
+std::optional<GivenSeed> CampaignState::give_out(int worker, std::int64_t process, std::int64_t engine,
+                                                 const Company& company) {
+  const std::optional<SeedId> id = next_for(company);
   if (!id) return std::nullopt;
   const PointRecord& about = point(id->point);
   GivenSeed given_seed{*id, about.id, {}};
@@ -170,15 +187,18 @@ void CampaignState::end_attempt(const GivenSeed& given_seed, const AttemptEnd& e
   leave(given_seed);
   changes_.spent_seconds += end.held_seconds;
   seeds_.end_attempt(given_seed.job.attempt, end);
-  const SeedFate fate = judge(seeds_.history(given_seed.point_id, given_seed.id.seed), retries_);
+  const std::vector<PastAttempt> history = seeds_.history(given_seed.point_id, given_seed.id.seed);
+  // Where any seed of an engine may have done it, none is given up.
+  const SeedFate fate = end.company > 0 ? SeedFate{} : judge(history, retries_);
+  if (!fate.quarantine) suspects_.note({given_seed.point_id, given_seed.id.seed}, history);
   if (fate.discard_checkpoint) changes_.after.discard(given_seed.job.checkpoint);
-  if (is_blamed(end.outcome)) {
+  if (end.blamed()) {
     changes_.after.warn(fmt::format("{}: {}{}{}; {}", name_of(given_seed), to_string(end.outcome),
                                     end.message.empty() ? "" : ": ", end.message,
                                     fate.quarantine ? "it is given up" : "it is tried again"));
   }
-  changes_.after.tell(
-      AttemptFailed{point_name(given_seed), given_seed.id.seed, end.outcome, end.message, fate.quarantine});
+  changes_.after.tell(AttemptFailed{point_name(given_seed), given_seed.id.seed, end.outcome, end.message,
+                                    fate.quarantine, end.blamed()});
   if (!fate.quarantine) {
     seeds_.requeue(given_seed.point_id, given_seed.id.seed);
     if (takes_part(given_seed.id)) point_states_.scheduler().give_back(given_seed.id);
@@ -191,6 +211,7 @@ void CampaignState::end_attempt(const GivenSeed& given_seed, const AttemptEnd& e
 }
 
 void CampaignState::leave(const GivenSeed& given_seed) {
+  suspects_.acquit({given_seed.point_id, given_seed.id.seed});
   if (takes_part(given_seed.id)) point_states_.leave(given_seed.id);
 }
 
@@ -289,10 +310,15 @@ std::optional<double> CampaignState::wall_seconds(const GivenSeed& given_seed) c
   return given_seed.id.point == nowhere ? std::nullopt : point_states_.wall_seconds(given_seed.id.point);
 }
 
-std::optional<SeedId> CampaignState::next() const {
+std::optional<double> CampaignState::budget_left() const {
   const std::optional<double> budget = point_states_.bounds().budget_seconds;
-  if (!budget) return scheduler().next();
-  return scheduler().next_within(*budget - spent_seconds() - point_states_.expected_seconds());
+  if (!budget) return std::nullopt;
+  return *budget - spent_seconds() - point_states_.expected_seconds();
+}
+
+std::optional<SeedId> CampaignState::next() const {
+  const std::optional<double> budget = budget_left();
+  return budget ? scheduler().next_within(*budget) : scheduler().next();
 }
 
 void CampaignState::ingest_spool() {
@@ -355,11 +381,11 @@ void CampaignState::end_handed_over(SeedId id, int task, const AttemptReport& re
   const PointRecord& about = point(id.point);
   seeds_.attempt_elsewhere(about.id, id.seed, task, report);
   if (has_ended(id)) return;
-  const SeedFate fate = judge(seeds_.history(about.id, id.seed), retries_);
+  const SeedFate fate = report.company > 0 ? SeedFate{} : judge(seeds_.history(about.id, id.seed), retries_);
   if (fate.discard_checkpoint) changes_.after.discard(checkpoint);
   // A drained attempt with a message failed because a disk was full, which is not blamed.
   const bool is_excused = report.outcome == AttemptOutcome::drained && !report.message.empty();
-  if (is_blamed(report.outcome) || is_excused) {
+  if (report.blamed() || is_excused) {
     changes_.after.warn(fmt::format("{} on {}: {}{}{}; {}", name(id), report.host, to_string(report.outcome),
                                     report.message.empty() ? "" : ": ", report.message,
                                     fate.quarantine ? "it is given up" : "it is tried again"));

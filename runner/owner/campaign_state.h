@@ -20,6 +20,7 @@
 #include "runner/owner/after_commit.h"
 #include "runner/owner/point_states.h"
 #include "runner/owner/run_listener.h"
+#include "runner/owner/suspects.h"
 #include "runner/store/campaign_directory.h"
 #include "runner/store/point_store.h"
 #include "runner/store/result_store.h"
@@ -58,8 +59,14 @@ class CampaignState {
   // Returns the next seed to be run within the bounds. The remaining budget is what was not spent, less the
   // expected cost of the seeds that workers have.
   std::optional<SeedId> next() const;
-  // Books the next seed as given to a worker. Returns nothing if no seed is to be run now.
-  std::optional<GivenSeed> give_out(int worker, std::int64_t process, std::int64_t engine);
+  // Books the next seed as given to a worker whose engine has this company; suspects go first. Returns
+  // nothing if no seed is to be run there now.
+  std::optional<GivenSeed> give_out(int worker, std::int64_t process, std::int64_t engine,
+                                    const Company& company = {});
+  // True if some seed may not join every company.
+  bool has_suspects() const { return suspects_.any(); }
+  // Returns the halvings() of a seed of a point.
+  int halvings_of(std::int64_t point_id, int seed) { return halvings(seeds_.history(point_id, seed)); }
   // Books a result that a worker announced (`sha256`) or left behind (""); `held_seconds` is as in
   // AttemptEnd. Returns false if the file is not a valid result of the job: it is rejected, `why` says why,
   // and the attempt has not ended.
@@ -133,6 +140,8 @@ class CampaignState {
     return id.point != nowhere && id.seed < campaign().maximum_realisations;
   }
   void leave(const GivenSeed& given_seed);
+  std::optional<SeedId> next_for(const Company& company);
+  std::optional<double> budget_left() const;
   std::string name_of(const GivenSeed& given_seed) const;
   PointName point_name(int place) const;
   PointName point_name(const GivenSeed& given_seed) const;
@@ -176,6 +185,7 @@ class CampaignState {
   std::optional<Campaign> next_campaign_;  // campaign after the open transaction
   Changes committed_;                      // effects of earlier transactions, not carried out yet
   FileRemoval removal_;
+  Suspects suspects_;           // read once an engine has room for two seeds
   int turned_down_ = 0;         // spool files rejected in the present batch
   std::set<std::string> away_;  // shared folders already reported as missing
 };

@@ -48,10 +48,13 @@ int worker_of(const WorkerEvent& event) {
       event);
 }
 
-// Returns the unbooked progress that `later` replaces, if it is the last event of its worker; otherwise null.
+// Returns the unbooked progress that `later` replaces, if its worker has said nothing since but the progress
+// of other jobs; otherwise null.
 Progressed* superseded(std::vector<WorkerEvent>& news, const Progressed& later) {
-  const auto last = std::find_if(news.rbegin(), news.rend(),
-                                 [&](const WorkerEvent& event) { return worker_of(event) == later.worker; });
+  const auto last = std::find_if(news.rbegin(), news.rend(), [&](const WorkerEvent& event) {
+    const auto* const progress = std::get_if<Progressed>(&event);
+    return worker_of(event) == later.worker && (progress == nullptr || progress->job == later.job);
+  });
   auto* const progress = last == news.rend() ? nullptr : std::get_if<Progressed>(&*last);
   return progress != nullptr && progress->job == later.job && progress->phase == later.phase ? progress
                                                                                              : nullptr;
@@ -117,7 +120,7 @@ const char* Dispatcher::why_nothing() const {
 }
 
 void Dispatcher::turn() {
-  if (settings_.chore()) mark_lost_folders();
+  if (settings_.chore()) std::ranges::for_each(now_.workers, &Worker::mark_lost_folders);
   start_workers();
   listen();
   judge_time();
@@ -164,10 +167,11 @@ void Dispatcher::show_leases() {
   if (clock_() - leases_shown_ < lease_display_interval) return;
   leases_shown_ = clock_();
   for (Worker& worker : now_.workers) {
-    if (!worker.assignment || worker.assignment->shown) continue;
-    Assignment& about = *worker.assignment;
-    state_.renew_lease(about.given_seed, worker.watch.progress());
-    about.shown = true;
+    for (Assignment& about : worker.running) {
+      if (about.shown) continue;
+      state_.renew_lease(about.given_seed, worker.watch.progress(about.job()));
+      about.shown = true;
+    }
   }
 }
 
@@ -188,9 +192,10 @@ void Dispatcher::report() {
   const Time now = clock_();
   if (now - reported_ < report_interval) return;
   reported_ = now;
-  RunReport report = state_.report(pool_.size());
+  RunReport report = state_.report(places());
   report.workers = pool_.size();
   report.busy = busy();
+  for (const Worker& worker : now_.workers) report.running += worker.watch.jobs();
   report.results = now_.results;
   report.elapsed = std::chrono::duration<double>(now - started_).count();
   listener_.report(report);
@@ -210,67 +215,67 @@ void Dispatcher::handle(const Hello& event) {
   }
   worker.engine = state_.admit_engine(event.engine);
   worker.takes_ahead = event.ahead;
-  worker.watch.rest(awake_.awake());
+  worker.capacity = capacity_ = event.capacity;
+  worker.watch.greet();
 }
 
 void Dispatcher::handle(const Progressed& event) {
-  if (!has_job(event.worker, event.job)) return;
-  Worker& worker = at(event.worker);
-  worker.watch.hear(event, awake_.awake());
-  worker.assignment->shown = false;
+  Assignment* const about = running_job(event.worker, event.job);
+  if (about == nullptr) return;
+  at(event.worker).watch.hear(event, awake_.awake());
+  about->shown = false;
 }
 
 void Dispatcher::handle(const ResultSpooled& event) {
-  if (!has_job(event.worker, event.job)) return;
-  const Worker& worker = at(event.worker);
-  const Assignment& about = *worker.assignment;
+  const Assignment* const about = running_job(event.worker, event.job);
+  if (about == nullptr) return;
   std::string why;
-  if (event.spool != about.given_seed.job.spool) {
-    condemn(event.worker, {AttemptOutcome::garbled, "wrote its result to another file than the job names"});
-  } else if (state_.take_result(about.given_seed, event.sha256, worker.watch.progress().step,
-                                processor_seconds_since(about.given), why)) {
+  if (event.spool != about->given_seed.job.spool) {
+    condemn(event.worker,
+            {AttemptOutcome::garbled, "wrote its result to another file than the job names", event.job});
+  } else if (state_.take_result(about->given_seed, event.sha256,
+                                at(event.worker).watch.progress(event.job).step,
+                                processor_seconds_since(about->given), why)) {
     ++now_.results;
     now_.early_exits = 0;
-    go_on(event.worker);
-  } else if (lacked_room(event.worker)) {
-    end_assignment(event.worker, {AttemptOutcome::drained, 0, {}, why});
+    at(event.worker).end(event.job, awake_.awake(), clock_());
+  } else if (lacked_room(*about)) {
+    end_assignment(event.worker, *about, {AttemptOutcome::drained, 0, {}, why});
   } else {
-    condemn(event.worker, {AttemptOutcome::garbled, why});
+    condemn(event.worker, {AttemptOutcome::garbled, why, event.job});
   }
 }
 
 void Dispatcher::handle(const JobFailed& event) {
-  if (!has_job(event.worker, event.job)) return;
-  const AttemptOutcome outcome =
-      lacked_room(event.worker) ? AttemptOutcome::drained : AttemptOutcome::refused;
-  end_assignment(event.worker, {outcome, 0, {}, event.message});
+  const Assignment* const about = running_job(event.worker, event.job);
+  if (about == nullptr) return;
+  const AttemptOutcome outcome = lacked_room(*about) ? AttemptOutcome::drained : AttemptOutcome::refused;
+  end_assignment(event.worker, *about, {outcome, 0, {}, event.message});
 }
 
 void Dispatcher::handle(const Drained& event) {
-  if (!has_job(event.worker, event.job)) return;
+  const Assignment* const about = running_job(event.worker, event.job);
+  if (about == nullptr) return;
   Worker& worker = at(event.worker);
   if (stopping_ == Stopping::no && !worker.watch.is_recalled()) {  // it could do so again and again
-    condemn(event.worker, {AttemptOutcome::garbled, "gave back a job without being asked to"});
-    return;
+    return condemn(event.worker,
+                   {AttemptOutcome::garbled, "gave back a job without being asked to", event.job});
   }
-  worker.watch.leave_at(event.step);
+  worker.watch.leave_at(event.job, event.step);
   if (const auto waiting = std::exchange(worker.waiting, std::nullopt)) give_back(*waiting);
-  end_assignment(event.worker, {AttemptOutcome::drained});
+  end_assignment(event.worker, *about, {AttemptOutcome::drained});
   pool_.drain(event.worker);  // an idle engine leaves
 }
 
 // The engine keeps its work and waits. It is not blamed as long as the disk is full.
 void Dispatcher::handle(const ShortOfRoom& event) {
-  if (!has_job(event.worker, event.job)) return;
-  const Job& job = at(event.worker).assignment->given_seed.job;
-  const fs::path folder = event.path.parent_path();
-  const bool is_beside_result =
-      folder == left_folder(job.spool) && event.path.filename().string().starts_with(left_stem(job.spool));
-  if (event.path != job.spool && checkpoint_of(event.path) != job.checkpoint && folder != job.failures &&
-      !is_beside_result) {
-    condemn(event.worker, {AttemptOutcome::garbled, "wrote a file that does not belong to its job"});
-    return;
+  const Assignment* const about = running_job(event.worker, event.job);
+  if (about == nullptr) return;
+  if (!is_file_of(about->given_seed.job, event.path)) {
+    return condemn(event.worker,
+                   {AttemptOutcome::garbled, "wrote a file that does not belong to its job", event.job});
   }
+  const fs::path folder = event.path.parent_path();
   const int error = lack_of_room(folder, event.bytes);
   if (error == 0) return;
   begin_pause(lack_of_room_in(folder, event.bytes, error));
@@ -284,8 +289,8 @@ void Dispatcher::handle(const Garbled& event) {
 void Dispatcher::handle(const Exited& event) {
   Worker& worker = at(event.worker);
   const auto waiting = std::exchange(worker.waiting, std::nullopt);
-  if (worker.assignment) {
-    exited_during_job(event.worker, event.ending);
+  if (worker.watch.is_busy()) {
+    exited_during_jobs(event.worker, event.ending);
   } else {
     exited_without_job(event.worker, event.ending);
   }
@@ -293,15 +298,26 @@ void Dispatcher::handle(const Exited& event) {
   worker = Worker{};
 }
 
-void Dispatcher::exited_during_job(int number, const ExitStatus& ending) {
-  const Worker& worker = at(number);
-  if (left_result(number, *worker.assignment, worker.watch.progress().step)) return;
-  AttemptReason how = worker.watch.ended(ending, stopping_ != Stopping::no);
-  if (!worker.watch.condemned() &&
-      (stopping_ == Stopping::at_once || (is_blamed(how.outcome) && lacked_room(number)))) {
+void Dispatcher::exited_during_jobs(int number, const ExitStatus& ending) {
+  const WorkerWatch& watch = at(number).watch;
+  std::vector<Assignment> jobs = at(number).running;
+  std::erase_if(jobs, [&](const Assignment& about) {
+    return left_result(number, about, watch.progress(about.job()).step);
+  });
+  AttemptReason how = watch.ended(ending, stopping_ != Stopping::no);
+  // All jobs write into the same folders.
+  if (!watch.condemned() && (stopping_ == Stopping::at_once ||
+                             (is_blamed(how.outcome) && !jobs.empty() && lacked_room(jobs.front())))) {
     how.outcome = AttemptOutcome::drained;
   }
-  end_assignment(number, {how.outcome, 0, ending, how.message});
+  const int others = static_cast<int>(jobs.size()) - 1;
+  for (const Assignment& about : jobs)
+    end_assignment(number, about, end_with_engine(how, ending, about.job(), others));
+  if (others > 0 && how.job == 0 && is_blamed(how.outcome)) {
+    state_.warn(fmt::format(
+        "worker {}: {} with {} realisations: {}; none is blamed, and they are tried again in smaller groups",
+        number, to_string(how.outcome), jobs.size(), how.message));
+  }
 }
 
 void Dispatcher::exited_without_job(int number, const ExitStatus& ending) {
@@ -330,27 +346,34 @@ void Dispatcher::obey_stop_signal() {
   }
 }
 
-// Serves idle workers first, so that no seed waits behind a job while an idle worker could run it.
+// Fills the workers in turn, then gives jobs ahead, so that no seed waits while a worker could run it.
 void Dispatcher::give_out_seeds() {
   if (stopping_ != Stopping::no || pause_.lasts() || state_.scheduler().finished()) return;
-  for (int number = 0; number < pool_.size(); ++number) {
-    Worker& worker = at(number);
-    if (!worker.watch.is_idle() || worker.watch.is_recalled()) continue;
-    worker.assignment = next_assignment(number);
-    if (!worker.assignment) return;
-    worker.watch.begin_job(awake_.awake());
+  for (bool any = true; any;) {
+    any = false;
+    for (int number = 0; number < pool_.size(); ++number) {
+      Worker& worker = at(number);
+      if (!worker.has_place()) continue;
+      std::optional<Assignment> given = next_assignment(number);
+      if (!given && state_.has_suspects()) continue;  // another worker may get the seed
+      if (!given) return;
+      worker.begin(std::move(*given), awake_.awake());
+      any = true;
+    }
   }
   for (int number = 0; number < pool_.size(); ++number) {
     Worker& worker = at(number);
-    if (!takes_a_second_job(worker)) continue;
+    if (!takes_a_further_job(worker)) continue;
     worker.waiting = next_assignment(number);
-    if (!worker.waiting) return;
+    if (!worker.waiting && !state_.has_suspects()) return;
   }
 }
 
 // Books the next seed as this worker's, to be sent after the commit. Returns nothing if there is no seed.
-std::optional<Dispatcher::Assignment> Dispatcher::next_assignment(int number) {
-  std::optional<GivenSeed> given_seed = state_.give_out(number, pool_.process(number), at(number).engine);
+std::optional<Assignment> Dispatcher::next_assignment(int number) {
+  const Worker& worker = at(number);
+  std::optional<GivenSeed> given_seed =
+      state_.give_out(number, pool_.process(number), worker.engine, worker.company());
   if (!given_seed) return std::nullopt;
   given_seed->job.threads = settings_.threads;
   given_seed->job.checkpoint_seconds = settings_.checkpoint_seconds;
@@ -363,50 +386,35 @@ std::optional<Dispatcher::Assignment> Dispatcher::next_assignment(int number) {
   return about;
 }
 
-bool Dispatcher::takes_a_second_job(const Worker& worker) const {
-  if (!worker.watch.is_busy() || !worker.takes_ahead || worker.waiting) return false;
-  if (worker.watch.condemned() || worker.watch.is_recalled()) return false;
-  const std::optional<double> seconds = state_.wall_seconds(worker.assignment->given_seed);
-  return seconds && *seconds < longest_job_to_queue_behind;
+bool Dispatcher::takes_a_further_job(const Worker& worker) const {
+  return worker.takes_one_ahead() &&
+         std::any_of(worker.running.begin(), worker.running.end(), [this](const Assignment& about) {
+           const std::optional<double> seconds = state_.wall_seconds(about.given_seed);
+           return seconds && *seconds < longest_job_to_queue_behind;
+         });
 }
 
-bool Dispatcher::has_job(int worker, std::int64_t job) {
-  const Worker& about = at(worker);
-  if (about.watch.condemned()) return false;
-  if (about.assignment && about.assignment->given_seed.job.attempt == job) return true;
-  if (about.finished_job == job) return false;  // a repeated message does no harm
-  condemn(worker, {AttemptOutcome::garbled, fmt::format("spoke of job {}, which it does not have", job)});
-  return false;
-}
-
-void Dispatcher::mark_lost_folders() {
-  for (Worker& worker : now_.workers) {
-    for (std::optional<Assignment>* const about : {&worker.assignment, &worker.waiting}) {
-      if (*about) (*about)->lost_a_folder = true;
-    }
-  }
-}
-
-void Dispatcher::go_on(int number) {
+Assignment* Dispatcher::running_job(int number, std::int64_t job) {
   Worker& worker = at(number);
-  worker.finished_job = worker.assignment->given_seed.job.attempt;
-  worker.assignment = std::exchange(worker.waiting, std::nullopt);
-  if (!worker.assignment) return worker.watch.rest(awake_.awake());
-  worker.assignment->begun = clock_();
-  worker.watch.begin_job(awake_.awake());
+  if (worker.watch.condemned()) return nullptr;
+  if (Assignment* const known = worker.find(job)) return known;
+  if (!worker.has_finished(job))  // a repeated message does no harm
+    condemn(number, {AttemptOutcome::garbled, fmt::format("spoke of job {}, which it does not have", job)});
+  return nullptr;
 }
 
 double Dispatcher::processor_seconds_since(Time time) const {
   return settings_.threads * std::chrono::duration<double>(clock_() - time).count();
 }
 
-void Dispatcher::end_assignment(int number, const AttemptEnd& end) {
-  const Assignment& about = *at(number).assignment;
+void Dispatcher::end_assignment(int number, const Assignment& about, const AttemptEnd& end) {
+  Worker& worker = at(number);
+  const std::int64_t job = about.job();
   AttemptEnd complete = end;
-  complete.step = at(number).watch.progress().step;
-  complete.held_seconds = processor_seconds_since(about.begun);
+  complete.step = worker.watch.progress(job).step;
+  complete.held_seconds = processor_seconds_since(about.begun) / worker.capacity;
   state_.end_attempt(about.given_seed, complete);
-  go_on(number);
+  worker.end(job, awake_.awake(), clock_());
 }
 
 // A result may be durable although its worker could not announce it. A rejected result stays rejected.
@@ -539,8 +547,7 @@ void Dispatcher::end_pause() {
   }
 }
 
-bool Dispatcher::lacked_room(int number) {
-  const Assignment& about = *at(number).assignment;
+bool Dispatcher::lacked_room(const Assignment& about) {
   if (about.lost_a_folder) return true;
   const std::optional<fs::path> folder = unwritable_folder(about.given_seed.job);
   if (folder && fs::exists(*folder)) {
@@ -582,9 +589,8 @@ void Dispatcher::find_running_seeds() {
   for (int number = 0; number < pool_.size(); ++number) {
     Worker& worker = at(number);
     bool wanted = true;
-    for (std::optional<Assignment>* const about : {&worker.assignment, &worker.waiting}) {
-      if (*about && !state_.find_place((*about)->given_seed)) wanted = false;
-    }
+    for (Assignment& about : worker.running) wanted = state_.find_place(about.given_seed) && wanted;
+    if (worker.waiting) wanted = state_.find_place(worker.waiting->given_seed) && wanted;
     if (wanted || worker.watch.is_recalled()) continue;
     worker.watch.recall();
     pool_.drain(number);

@@ -5,9 +5,12 @@
 // the way (pause.h), the events are kept and booked again every few seconds. Until that succeeds no seed is
 // given out, and workers continue with those they have.
 //
+// A worker has as many jobs as its engine runs at once. If an engine with several jobs dies, any of them may
+// have done it, and none is blamed: blame.h says how the one is found.
+//
 // A worker whose jobs are shorter than a commit would mostly wait for commits. If its engine allows, it holds
-// a second job, which it begins by itself when the first has ended. Until then the second job has not begun,
-// and is not blamed for anything that the worker does.
+// one more job, which it begins by itself when another has ended. Until then that job has not begun, and is
+// not blamed for anything that the worker does.
 #pragma once
 
 #include <chrono>
@@ -20,6 +23,7 @@
 
 #include "runner/campaign/paths.h"
 #include "runner/engines/worker_process.h"
+#include "runner/owner/booked_worker.h"
 #include "runner/owner/campaign_state.h"
 #include "runner/owner/pause.h"
 
@@ -53,21 +57,7 @@ class Dispatcher {
   Ending run();
 
  private:
-  struct Assignment {
-    GivenSeed given_seed;
-    Time given{};                // when the worker got it
-    Time begun{};                // when the worker could begin it: no earlier job was left
-    bool shown = false;          // the database has its latest progress
-    bool lost_a_folder = false;  // a folder into which it writes was deleted
-  };
-  struct Worker {
-    WorkerWatch watch{};
-    std::int64_t engine = 0;
-    bool takes_ahead = false;
-    std::optional<Assignment> assignment{};  // present if and only if the worker is busy
-    std::optional<Assignment> waiting{};     // job behind the assignment
-    std::int64_t finished_job = 0;           // last attempt that ended; attempts are numbered from 1
-  };
+  using Worker = BookedWorker;
   // State that booking changes; a copy is put back if booking fails.
   struct Snapshot {
     std::vector<Worker> workers;
@@ -113,28 +103,28 @@ class Dispatcher {
   void report();
 
   std::optional<Assignment> next_assignment(int worker);
-  bool takes_a_second_job(const Worker& worker) const;
-  bool has_job(int worker, std::int64_t job);
-  // True if the worker may have failed because it could not write: a disk is full, or a deleted folder was
-  // not made anew yet. Begins a pause if a disk is full now.
-  bool lacked_room(int worker);
-  void mark_lost_folders();
+  bool takes_a_further_job(const Worker& worker) const;
+  // Returns the job that the worker runs. Condemns a worker that never had it, and returns null.
+  Assignment* running_job(int worker, std::int64_t job);
+  // True if the job may have failed because its worker could not write: a disk is full, or a deleted folder
+  // was not made anew yet. Begins a pause if a disk is full now.
+  bool lacked_room(const Assignment& about);
   void condemn(int worker, AttemptReason reason);
-  // Ends the worker's job; the waiting job begins, or the worker becomes idle.
-  void go_on(int worker);
   // Returns the most processor time [s] that a worker can have spent since `time`.
   double processor_seconds_since(Time time) const;
-  void end_assignment(int worker, const AttemptEnd& end);
+  void end_assignment(int worker, const Assignment& about, const AttemptEnd& end);
   // Takes the result of a worker that exited at this step of its job. Returns false without a valid one.
   bool left_result(int worker, const Assignment& about, std::int64_t step);
   // Gives back a waiting assignment, which never began.
   void give_back(const Assignment& waiting);
-  void exited_during_job(int worker, const ExitStatus& ending);
+  void exited_during_jobs(int worker, const ExitStatus& ending);
   void exited_without_job(int worker, const ExitStatus& ending);
   Worker& at(int worker) { return now_.workers.at(static_cast<std::size_t>(worker)); }
   bool anyone_there() const;
   bool has_nothing_to_do() const;
   int busy() const;
+  // Returns the number of jobs that all workers have room for.
+  int places() const { return pool_.size() * capacity_; }
   const char* why_nothing() const;
 
   Database& database_;
@@ -151,6 +141,7 @@ class Dispatcher {
   bool request_waits_ = false;     // a request waits for something in the way
   std::set<std::string> told_of_;  // kinds of hindrances reported in the present pause
   Stopping stopping_ = Stopping::no;
+  int capacity_ = 1;  // of the engine, as its last hello says
   AwakeClock awake_;
   Time started_, reported_, leases_shown_, requests_heard_{};
   Awake stopping_since_{};

@@ -43,12 +43,9 @@ Json json_of(const SeedEnded& event) {
 }
 
 Json json_of(const AttemptFailed& event) {
-  return {{"event", "attempt-failed"},
-          {"point", point_json(event.point)},
-          {"seed", event.seed},
-          {"outcome", to_string(event.outcome)},
-          {"blamed", is_blamed(event.outcome)},
-          {"given_up", event.given_up},
+  return {{"event", "attempt-failed"}, {"point", point_json(event.point)},
+          {"seed", event.seed},        {"outcome", to_string(event.outcome)},
+          {"blamed", event.blamed},    {"given_up", event.given_up},
           {"message", event.message}};
 }
 

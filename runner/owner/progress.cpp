@@ -57,6 +57,7 @@ std::string progress_line(const RunReport& report) {
                         rough(*report.budget_seconds / seconds_per_hour));
   }
   if (report.workers > 0) line += fmt::format(" | workers {}/{}", report.busy, report.workers);
+  if (report.running > report.busy) line += fmt::format(": {} realisations", report.running);
   return line;
 }
 

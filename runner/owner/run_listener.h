@@ -38,6 +38,7 @@ struct AttemptFailed {
   AttemptOutcome outcome = AttemptOutcome::crashed;
   std::string message;
   bool given_up = false;
+  bool blamed = true;  // it counts against the seed
 };
 
 struct StopTestMade {
@@ -71,6 +72,7 @@ struct RunReport {
   int cancelled = 0;                      // points cancelled before they were decided
   int seeds_ended = 0, seeds_wanted = 0;  // seeds of the next or the deciding stop tests
   int workers = 0, busy = 0;
+  int running = 0;     // realisations that workers have begun
   int results = 0;     // results in this run
   double elapsed = 0;  // time of this run [s]
   std::optional<TimeToGo> to_go;

@@ -55,15 +55,16 @@ Totals totals_of(const Plan& plan, const Target& target) {
   totals.cpu_seconds = sum_of([](const PointPlan& point, int stop) { return stop * point.cost.cpu_seconds; });
   totals.cpu_seconds_to_come =
       sum_of([](const PointPlan& point, int stop) { return (stop - point.ended) * point.cost.cpu_seconds; });
+  const int places = plan.workers * plan.capacity;
   totals.wall_seconds_to_come = expected([&](double quantile) {
     double work = 0, longest = 0;
     for (const PointPlan* const point : points) {
       const int stop = stop_of(*point, quantile);
-      const double rounds = rounds_until(point->ended, stop, rule.schedule(), plan.workers);
+      const double rounds = rounds_until(point->ended, stop, rule.schedule(), places);
       work += (stop - point->ended) * point->cost.wall_seconds;
       longest = std::max(longest, rounds * point->cost.wall_seconds);
     }
-    return std::max(work / plan.workers, longest);
+    return std::max(work / places, longest);
   });
   // The machine may become faster or slower than it was for the measured seeds.
   totals.wall_seconds_to_come.lower /= machine_allowance;
@@ -99,8 +100,8 @@ std::string PointPlan::obstacle() const {
 
 Plan make_plan(const Campaign& campaign, const std::vector<double>& particle_steps,
                const std::map<std::string, PointHistory>& known, int workers,
-               const std::optional<CostGuess>& guess) {
-  Plan plan{campaign.name, campaign.minimum_realisations, campaign.maximum_realisations, workers};
+               const std::optional<CostGuess>& guess, int capacity) {
+  Plan plan{campaign.name, campaign.minimum_realisations, campaign.maximum_realisations, workers, capacity};
   MeasuredCost all;  // summed over all ended realisations
   double known_steps = 0;
   for (std::size_t i = 0; i < campaign.points.size(); ++i) {
@@ -116,7 +117,7 @@ Plan make_plan(const Campaign& campaign, const std::vector<double>& particle_ste
   }
   if (known_steps == 0 && guess && plan.points.at(guess->point).particle_steps > 0) {
     known_steps = plan.points[guess->point].particle_steps;
-    all = {0, guess->seconds, guess->seconds};
+    all = {0, guess->seconds / capacity, guess->seconds};
     plan.guessed_from = plan.points[guess->point].label;
   }
   for (PointPlan& point : plan.points) {
@@ -260,8 +261,9 @@ std::string ending_text(const Plan& plan) {
                         plan.points.size(), totals.likely_capped == 1 ? "is" : "are", plan.maximum);
   }
   return text +
-         fmt::format("still to come: {} of processor time; with {} worker{} {}, until {:%Y-%m-%d %H:%M}\n",
+         fmt::format("still to come: {} of processor time; with {} worker{}{} {}, until {:%Y-%m-%d %H:%M}\n",
                      time_text(totals.cpu_seconds_to_come), plan.workers, plan.workers == 1 ? "" : "s",
+                     plan.capacity == 1 ? "" : fmt::format(" of {} realisations at once", plan.capacity),
                      time_text(totals.wall_seconds_to_come),
                      fmt::localtime(plan.made_at + std::llround(totals.wall_seconds_to_come.likely)));
 }
@@ -298,7 +300,7 @@ Json totals_json(const Plan& plan) {
   const Totals& totals = plan.totals;
   if (totals.predicted == 0) return nullptr;
   const double wall = totals.wall_seconds_to_come.likely;
-  return {
+  Json json = {
       {"points", totals.points},
       {"seeds", range_json(totals.seeds, 1)},
       {"cpu_hours", range_json(totals.cpu_seconds, seconds_per_hour)},
@@ -307,6 +309,8 @@ Json totals_json(const Plan& plan) {
       {"workers", plan.workers},
       {"finished_at", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(plan.made_at + std::llround(wall)))},
       {"likely_capped", totals.likely_capped}};
+  if (plan.capacity > 1) json["capacity"] = plan.capacity;
+  return json;
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ struct PointPlan {
 };
 
 /// The sums over the points that are predicted or decided. The wall time to come is
-///   max(sum over the points of (seeds to come * wall time of a seed) / workers,
+///   max(sum over the points of (seeds to come * wall time of a seed) / (workers * capacity),
 ///       max over the points of (rounds_until() the last stop test * wall time of a seed)),
 /// because a stop test waits for all its seeds. Its range includes machine_allowance.
 struct Totals {
@@ -54,13 +54,14 @@ struct Totals {
 // The guessed cost of a realisation of one point, if none has ended: see scene_check.h.
 struct CostGuess {
   std::size_t point = 0;  // place in the sweep
-  double seconds = 0;
+  double seconds = 0;     // wall time
 };
 
 struct Plan {
   std::string campaign;
   int minimum = 0, maximum = 0;  // seeds of a point
   int workers = 1;
+  int capacity = 1;  // realisations that each worker runs at once
   std::time_t made_at = 0;
   std::vector<PointPlan> points{};
   Totals totals{};
@@ -72,7 +73,7 @@ struct Plan {
 // or that of the guess if no point has any. `known` has the points by hash.
 Plan make_plan(const Campaign& campaign, const std::vector<double>& particle_steps,
                const std::map<std::string, PointHistory>& known, int workers,
-               const std::optional<CostGuess>& guess = {});
+               const std::optional<CostGuess>& guess = {}, int capacity = 1);
 
 std::string plan_text(const Plan& plan);
 Json plan_json(const Plan& plan);

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 
 #include "contract/errors.h"
 #include "runner/campaign/number_text.h"
@@ -87,9 +89,10 @@ CampaignStatus read_status(Database& database, std::optional<std::int64_t> owner
 
 CampaignTotals totals_of(const CampaignStatus& status) {
   CampaignTotals totals;
+  std::set<int> workers;
   for (const PointSummary& point : status.points) {
     totals.decided += point.decided ? 1 : 0;
-    totals.workers += static_cast<int>(point.leases.size());
+    for (const LeaseRecord& lease : point.leases) workers.insert(lease.worker);
     totals.ended += point.counts.terminal();
     totals.running += point.counts.running;
     totals.lost += point.lost();
@@ -98,6 +101,7 @@ CampaignTotals totals_of(const CampaignStatus& status) {
     ++totals.states[state_word(point)];
     for (const auto& [cause, count] : point.losses) totals.losses[cause] += count;
   }
+  totals.workers = static_cast<int>(workers.size());
   for (const HandedOver& bundle : status.handed_over) totals.handed_over += bundle.seeds;
   return totals;
 }
@@ -406,10 +410,20 @@ std::string workers_text(const CampaignStatus& status, std::size_t width) {
   table.add_column("phase", TextTable::Align::left, 3);
   table.add_column("done", TextTable::Align::right, 4);
   table.add_column("strain", TextTable::Align::right, 1);
+  // A worker has a seed and perhaps one that waits, or many at once.
+  constexpr int most_seeds = 2;
+  std::map<int, int> seeds;  // of each worker
+  for (const PointSummary& point : status.points) {
+    for (const LeaseRecord& lease : point.leases) ++seeds[lease.worker];
+  }
   std::size_t workers = 0;
+  for (const auto& [worker, count] : seeds) {
+    if (count <= most_seeds || ++workers > most_lines) continue;
+    table.add_row({fmt::format("{}", worker), fmt::format("{} realisations", count), "", "", ""});
+  }
   for (const PointSummary& point : status.points) {
     for (const LeaseRecord& lease : point.leases) {
-      if (++workers > most_lines) continue;
+      if (seeds[lease.worker] > most_seeds || ++workers > most_lines) continue;
       const double done =
           lease.steps > 0 ? static_cast<double>(lease.step) / static_cast<double>(lease.steps) : std::nan("");
       table.add_row({fmt::format("{}", lease.worker),

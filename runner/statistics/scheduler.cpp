@@ -114,14 +114,25 @@ bool Scheduler::is_open(const Point& point) const {
   return !point.cancelled && !decides(point.stop_tests) && point.closed < ceiling_;
 }
 
-std::optional<SeedId> Scheduler::next() const {
+std::optional<SeedId> Scheduler::next(const Allows& allows) const {
   constexpr double unlimited = std::numeric_limits<double>::infinity();
-  if (const std::optional<SeedId> needed = most_urgent(0, unlimited)) return needed;
-  return most_urgent(1, unlimited);
+  if (const std::optional<SeedId> needed = most_urgent(0, unlimited, allows)) return needed;
+  return most_urgent(1, unlimited, allows);
 }
 
-std::optional<SeedId> Scheduler::next_within(double seconds) const {
-  return seconds > 0 ? most_urgent(0, seconds) : std::nullopt;
+std::optional<SeedId> Scheduler::next_within(double seconds, const Allows& allows) const {
+  return seconds > 0 ? most_urgent(0, seconds, allows) : std::nullopt;
+}
+
+bool Scheduler::may_be_next(SeedId id, std::optional<double> budget) const {
+  const Point& point = point_at(id.point);
+  const auto [known, beyond] = still_open(point, budget ? 0 : 1);
+  const std::ptrdiff_t place = id.seed - point.closed, size = std::ssize(known);
+  if (!is_open(point) || place < 0 || place >= size + beyond) return false;
+  if (place < size && known[static_cast<std::size_t>(place)] != Phase::waiting) return false;
+  if (!budget) return true;
+  const std::optional<double> scale = seconds_per_work();
+  return *budget > 0 && (!scale || point.seconds.value_or(point.work * *scale) <= *budget);
 }
 
 std::optional<double> Scheduler::seconds_per_work() const {
@@ -184,14 +195,18 @@ int Scheduler::waiting(const Point& point) const {
   return static_cast<int>(std::count(known.begin(), known.end(), Phase::waiting)) + beyond;
 }
 
-std::optional<int> Scheduler::waiting_seed(const Point& point, int steps) const {
+std::optional<int> Scheduler::waiting_seed(int number, int steps, const Allows& allows) const {
+  const Point& point = point_at(number);
   const auto [known, beyond] = still_open(point, steps);
-  const auto found = std::find(known.begin(), known.end(), Phase::waiting);
-  if (found == known.end() && beyond == 0) return std::nullopt;
-  return point.closed + static_cast<int>(found - known.begin());
+  const auto size = static_cast<int>(known.size());
+  for (int i = 0; i < size + beyond; ++i) {
+    if (i < size && known[static_cast<std::size_t>(i)] != Phase::waiting) continue;
+    if (!allows || allows({number, point.closed + i})) return point.closed + i;
+  }
+  return std::nullopt;
 }
 
-std::optional<SeedId> Scheduler::most_urgent(int steps, double budget) const {
+std::optional<SeedId> Scheduler::most_urgent(int steps, double budget, const Allows& allows) const {
   constexpr double shortest = 1e-9;  // a clock may have measured 0 s
   const std::optional<double> known = seconds_per_work();
   const double scale = known.value_or(1);
@@ -205,7 +220,7 @@ std::optional<SeedId> Scheduler::most_urgent(int steps, double budget) const {
     const bool is_whole = !known || seconds * waiting(point) <= budget;
     const std::tuple<int, bool, Rank> own{point.priority, is_whole, rank(point, seconds)};
     if (best && own <= best_rank) continue;
-    if (const std::optional<int> seed = waiting_seed(point, steps)) {
+    if (const std::optional<int> seed = waiting_seed(number, steps, allows)) {
       best = SeedId{number, *seed};
       best_rank = own;
     }

@@ -11,6 +11,7 @@
 // Priorities, costs and the allocation decide when a seed runs. They never affect the stop tests.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -64,12 +65,16 @@ class Scheduler {
   // Restricts each point to the seeds 0 .. ceiling - 1.
   void set_ceiling(int ceiling) { ceiling_ = ceiling; }
 
-  // Returns the next seed for an idle worker; nothing if all seeds that may run now run or have ended.
-  std::optional<SeedId> next() const;
+  // Says whether a seed may run where a seed is looked for. An empty function allows all.
+  using Allows = std::function<bool(SeedId)>;
+  // Returns the next seed for a worker; nothing if all seeds that may run now run or have ended.
+  std::optional<SeedId> next(const Allows& allows = {}) const;
   // Returns the next seed under a budget with `seconds` left: one that the next stop test of its point needs
   // and that is expected to cost no more. Stop tests that the budget can pay as a whole go first. While no
   // cost is known, every seed is expected to cost nothing.
-  std::optional<SeedId> next_within(double seconds) const;
+  std::optional<SeedId> next_within(double seconds, const Allows& allows = {}) const;
+  // Returns true if next() could return the seed, or next_within() with this budget [s].
+  bool may_be_next(SeedId id, std::optional<double> budget) const;
   // Returns the expected cost of the running seeds [s], running[p] of each point p; 0 while no cost is known.
   double expected_seconds(const std::vector<int>& running) const;
 
@@ -145,14 +150,14 @@ class Scheduler {
   // Returns the number of waiting seeds of the next stop test.
   int waiting(const Point& point) const;
   // Returns the first waiting seed of the next stop test, or of the one `steps` after it.
-  std::optional<int> waiting_seed(const Point& point, int steps) const;
+  std::optional<int> waiting_seed(int number, int steps, const Allows& allows) const;
   // The seeds from Point::closed to a stop test: the known phases, and the number of seeds beyond them.
   struct Stretch {
     std::span<const Phase> known;
     int beyond = 0;
   };
   Stretch still_open(const Point& point, int steps) const;
-  std::optional<SeedId> most_urgent(int steps, double budget) const;
+  std::optional<SeedId> most_urgent(int steps, double budget, const Allows& allows) const;
 
   Target target_;
   int minimum_, maximum_, ceiling_;

@@ -53,15 +53,26 @@ AttemptOutcome outcome_of(const ExitStatus& ending) {
 
 SeedFate judge(std::span<const PastAttempt> attempts, int retries) {
   if (attempts.empty()) return {};
-  const auto blamed = std::count_if(attempts.begin(), attempts.end(),
-                                    [](const PastAttempt& past) { return is_blamed(past.outcome); });
+  const auto blamed =
+      std::count_if(attempts.begin(), attempts.end(), [](const PastAttempt& past) { return past.blamed(); });
   const AttemptOutcome last = attempts.back().outcome;
-  if (is_blamed(last) && blamed > retries) return {true, to_string(last), true};
+  const bool is_last_blamed = attempts.back().blamed();
+  if (is_last_blamed && blamed > retries) return {true, to_string(last), true};
   if (last == AttemptOutcome::killed && kills_without_progress(attempts) >= most_kills_in_a_row) {
     return {true, "killed repeatedly", true};
   }
-  const bool in_doubt = is_blamed(last) && (blamed > 1 || last == AttemptOutcome::refused);
+  const bool in_doubt = is_last_blamed && (blamed > 1 || last == AttemptOutcome::refused);
   return {false, "", in_doubt};
+}
+
+int halvings(std::span<const PastAttempt> attempts) {
+  constexpr int until_alone = 31;
+  int deaths = 0;
+  for (const PastAttempt& attempt : attempts) {
+    if (attempt.blamed() && attempt.outcome != AttemptOutcome::refused) return until_alone;
+    if (attempt.in_company) ++deaths;
+  }
+  return std::min(until_alone, deaths + kills_without_progress(attempts) / 2);
 }
 
 ExitStatus exit_status(int wait_status) {

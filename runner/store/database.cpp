@@ -465,9 +465,13 @@ std::map<std::int64_t, std::vector<Unfinished>> Database::unfinished() {
 
 int Database::last_workers() {
   return static_cast<int>(connection_->integer(
-      "WITH last AS (SELECT host, started_at FROM attempt ORDER BY attempt_id DESC LIMIT 1) "
-      "SELECT count(DISTINCT a.worker) FROM attempt a JOIN last l USING (host) "
-      "WHERE a.ended_at IS NULL OR a.ended_at >= l.started_at"));
+      "WITH last AS (SELECT host, started_at FROM attempt ORDER BY attempt_id DESC LIMIT 1), "
+      // A job without a step may have waited behind another one.
+      "jobs AS (SELECT a.worker, total((a.ended_at > l.started_at AND a.outcome != 'result' AND a.step > 0) "
+      "OR (a.ended_at IS NULL AND EXISTS "
+      "(SELECT 1 FROM lease WHERE attempt_id = a.attempt_id AND phase != 'starting'))) AS running "
+      "FROM attempt a JOIN last l USING (host) WHERE a.ended_at IS NULL OR a.ended_at >= l.started_at "
+      "GROUP BY a.worker) SELECT coalesce(sum(max(1, running)), 0) FROM jobs"));
 }
 
 std::map<std::int64_t, StoredPrediction> Database::predictions() {

@@ -220,7 +220,7 @@ class Database {
   std::vector<LeaseRecord> leases(std::int64_t point);
   // Returns the running seeds as of their workers' last news, by PointRecord::id.
   std::map<std::int64_t, std::vector<Unfinished>> unfinished();
-  // Returns how many workers had seeds when the last attempt began; 0 before the first.
+  // Returns how many seeds the workers ran when the last attempt began, at least one each; 0 before it.
   int last_workers();
   // Returns the predictions for the present target, by PointRecord::id.
   std::map<std::int64_t, StoredPrediction> predictions();

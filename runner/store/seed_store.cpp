@@ -69,19 +69,30 @@ void SeedStore::end_attempt(std::int64_t attempt, const AttemptEnd& end) {
   connection_.run(
       "UPDATE attempt SET outcome = ?, blamed = ?, ended_at = ?, step = ?, exit_status = ?, "
       "signal = ?, message = ? WHERE attempt_id = ?",
-      to_string(end.outcome), is_blamed(end.outcome), utc_now(), end.step, end.ending.status,
-      end.ending.signal, unless_empty(end.message), attempt);
+      to_string(end.outcome), end.blamed(), utc_now(), end.step, end.ending.status, end.ending.signal,
+      unless_empty(end.message), attempt);
   connection_.run("DELETE FROM lease WHERE attempt_id = ?", attempt);
 }
 
 std::vector<PastAttempt> SeedStore::history(std::int64_t point, int seed) {
-  Statement query(connection_,
-                  "SELECT outcome, step FROM attempt WHERE point_id = ? AND seed = ? AND pardoned = 0 "
-                  "ORDER BY attempt_id",
-                  point, seed);
+  Statement query(
+      connection_,
+      "SELECT outcome, step, blamed FROM attempt WHERE point_id = ? AND seed = ? AND pardoned = 0 "
+      "ORDER BY attempt_id",
+      point, seed);
   return query.rows([](const Statement& row) {
-    return PastAttempt{attempt_outcome(row.text(0)), row.integer(1)};
+    const AttemptOutcome outcome = attempt_outcome(row.text(0));
+    return PastAttempt{outcome, row.integer(1), is_blamed(outcome) && !row.flag(2)};
   });
+}
+
+std::vector<KnownSeed> SeedStore::seeds_with_deaths() {
+  Statement query(
+      connection_,
+      "SELECT DISTINCT a.point_id, a.seed FROM attempt a JOIN realisation r USING (point_id, seed) "
+      "WHERE a.outcome IN ('crashed', 'hung', 'garbled', 'killed') AND a.pardoned = 0 AND "
+      "r.state IN ('queued', 'running')");
+  return query.rows([](const Statement& row) { return KnownSeed{row.integer(0), row.number(1)}; });
 }
 
 bool SeedStore::has_ended(std::int64_t point, int seed) {

@@ -2,6 +2,7 @@
 // attempt ended.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -11,6 +12,12 @@
 #include "runner/store/point_store.h"
 
 namespace peclet::runner {
+
+struct KnownSeed {
+  std::int64_t point = 0;  // PointRecord::id
+  int seed = 0;
+  auto operator<=>(const KnownSeed&) const = default;
+};
 
 class SeedStore {
  public:
@@ -34,6 +41,8 @@ class SeedStore {
   void end_attempt(std::int64_t attempt, const AttemptEnd& end);
   // Returns the attempts that count, without those made before a retry.
   std::vector<PastAttempt> history(std::int64_t point, int seed);
+  // Returns the seeds that have not ended and were in an engine when it died or was killed.
+  std::vector<KnownSeed> seeds_with_deaths();
   bool has_ended(std::int64_t point, int seed);
   void requeue(std::int64_t point, int seed);
   void quarantine(std::int64_t point, int seed, const std::string& cause);

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -85,6 +86,65 @@ TEST_F(BatchTask, KilledInTheMiddleItIsCountedWithoutBlame) {
   ASSERT_EQ(ingest(), 0);
   EXPECT_EQ(count("SELECT count(*) FROM attempt WHERE outcome = 'killed' AND NOT blamed"), 1);
   EXPECT_EQ(seeds_out(), 0);
+}
+
+TEST_F(BatchTask, AnEngineThatRunsSeveralAtOnceIsFilled) {
+  set("PECLET_FAKE_CAPACITY", "3");
+  options.seeds_per_task = 5;
+  ASSERT_EQ(hand_over(), 0);
+  for (const int index : {0, 1}) EXPECT_EQ(run_task(1, index), 0);
+  ASSERT_EQ(ingest(), 0);
+  EXPECT_EQ(count("SELECT count(*) FROM realisation WHERE state = 'done'"), 10);
+  EXPECT_EQ(answer(), local_answer());
+}
+
+TEST_F(BatchTask, ASignalMakesAnEngineSaveAllItsSeeds) {
+  set("PECLET_FAKE_CAPACITY", "3");
+  set("PECLET_FAKE_STEP_MS", "10");
+  set("PECLET_FAKE_STEPS", "100000");
+  options.seeds_per_task = 5;
+  ASSERT_EQ(hand_over(), 0);
+  const TaskProcess task([&] { return run_task(1, 0); });
+  ASSERT_TRUE(appears(bundle(1) / "tasks" / "0" / "running-2.json"));
+  task.signal(SIGTERM);
+  EXPECT_EQ(task.finish(), 75);
+  for (const char* const name : {"running.json", "running-1.json", "running-2.json"}) {
+    EXPECT_EQ(read_json(bundle(1) / "tasks" / "0" / name)["outcome"], "drained");
+  }
+  EXPECT_EQ(std::distance(fs::directory_iterator(shared() / "checkpoints"), fs::directory_iterator()), 3);
+  ASSERT_EQ(ingest(), 0);
+  EXPECT_EQ(seeds_out(), 0);
+  EXPECT_EQ(count("SELECT count(*) FROM attempt"), 0);
+}
+
+TEST_F(BatchTask, APoisonousSeedIsFoundInSmallerAndSmallerGroups) {
+  set("PECLET_FAKE_CAPACITY", "4");
+  set("PECLET_FAKE_FAULTS", "crash:3");
+  options.seeds_per_task = 5;
+  for (int round = 1; round == 1 || count("SELECT count(*) FROM realisation WHERE state = 'queued'") > 0;
+       ++round) {
+    ASSERT_LE(round, 6);
+    ASSERT_EQ(hand_over(), 0);
+    const auto last = static_cast<int>(count("SELECT tasks FROM bundle ORDER BY bundle_id DESC LIMIT 1"));
+    for (int index = 0; index < last; ++index) ASSERT_EQ(run_task(round, index), 0);
+    ASSERT_EQ(ingest(), 0);
+  }
+  EXPECT_EQ(count("SELECT count(*) FROM realisation WHERE state = 'quarantined' AND seed = 3"), 2);
+  EXPECT_EQ(count("SELECT count(*) FROM realisation WHERE state = 'done'"), 8);
+  EXPECT_EQ(count("SELECT count(*) FROM attempt WHERE blamed AND seed = 3"), 6);
+  EXPECT_EQ(count("SELECT count(*) FROM attempt WHERE blamed AND seed != 3"), 0);
+}
+
+TEST_F(BatchTask, ADeviceIsAskedOfSlurmAndOfTheEngine) {
+  options.system = "slurm";
+  options.device = "cuda";
+  options.options = {"--partition=short"};
+  ASSERT_EQ(hand_over(), 0);
+  EXPECT_EQ(read_json(bundle(1) / "options.json"), Json({"--gres=gpu:1", "--partition=short"}));
+  unsetenv("PECLET_DEVICE");  // as on another machine
+  EXPECT_EQ(run_task(1, 0), 0);
+  EXPECT_STREQ(std::getenv("PECLET_DEVICE"), "cuda");
+  unsetenv("PECLET_DEVICE");
 }
 
 TEST_F(BatchTask, AnotherEngineThanTheOwnersRunsNothing) {

@@ -18,10 +18,10 @@ class FakeFaults {
   FakeFaults& operator=(const FakeFaults&) = delete;
 };
 
-CostTrial trial() {
+CostTrial trial(int seeds = 1) {
   const TemporaryFolder folder;
   return try_cost({{"fluid", {{"viscosity", 1}}}, {"peclet", 1}},
-                  {.program = FAKE_ENGINE, .arguments = {"serve"}, .folder = folder.path()});
+                  {.program = FAKE_ENGINE, .arguments = {"serve"}, .folder = folder.path()}, seeds);
 }
 
 TEST(CostTrial, ARealisationThatEndsWithinItTellsItsTime) {
@@ -29,6 +29,16 @@ TEST(CostTrial, ARealisationThatEndsWithinItTellsItsTime) {
   ASSERT_TRUE(seconds);
   EXPECT_GT(*seconds, 0);
   EXPECT_LT(*seconds, 10);
+}
+
+// Only the first seed counts, whatever becomes of those that share its engine.
+TEST(CostTrial, RunsAsManySideBySideAsTheEngineCan) {
+  const FakeFaults others_fail("overlap:1 refuse:2");
+  setenv("PECLET_FAKE_CAPACITY", "4", 1);
+  const CostTrial found = trial(3);
+  unsetenv("PECLET_FAKE_CAPACITY");
+  EXPECT_TRUE(found.seconds);
+  EXPECT_EQ(found.broke_off, "");
 }
 
 // A realisation that jams ends sooner than one that flows, and would make a campaign look cheap.

@@ -15,8 +15,8 @@ constexpr Awake lease{120};
 WorkerWatch busy_since(Awake now) {
   WorkerWatch watch;
   watch.start(now);
-  watch.rest(now);
-  watch.begin_job(now);
+  watch.greet();
+  watch.begin_job(1, now);
   return watch;
 }
 
@@ -42,7 +42,7 @@ TEST(WorkerWatch, AWorkerIsOverdueAMinuteAfterItWasStartedWithoutHello) {
   EXPECT_FALSE(watch.is_overdue(Awake(1060), lease));
   EXPECT_TRUE(watch.is_overdue(Awake(1061), lease));
   EXPECT_EQ(watch.overdue(lease, true).outcome, AttemptOutcome::hung);
-  watch.rest(Awake(1050));
+  watch.greet();
   EXPECT_FALSE(watch.is_overdue(Awake(9000), lease));  // an idle one waits for us
 }
 
@@ -81,10 +81,10 @@ TEST(WorkerWatch, TheFirstReasonForWhichItIsKilledStays) {
 TEST(WorkerWatch, AnIdleWorkerThatIsBeingKilledGetsNoJob) {
   WorkerWatch watch;
   watch.start(Awake(0));
-  watch.rest(Awake(1));
-  EXPECT_TRUE(watch.is_idle());
+  watch.greet();
+  EXPECT_TRUE(watch.takes_jobs());
   watch.condemn({AttemptOutcome::garbled, "rubbish after its result"});
-  EXPECT_FALSE(watch.is_idle());
+  EXPECT_FALSE(watch.takes_jobs());
   EXPECT_FALSE(watch.is_starting());
 }
 
@@ -107,14 +107,14 @@ TEST(WorkerWatch, AStartForgetsTheProcessBefore) {
   EXPECT_TRUE(watch.is_starting());
   EXPECT_FALSE(watch.is_recalled());
   EXPECT_FALSE(watch.condemned());
-  EXPECT_EQ(watch.progress().step, 0);
+  EXPECT_EQ(watch.jobs(), 0);
 }
 
 TEST(WorkerWatch, AJobBeginsWithANewLeaseAndNoSteps) {
   WorkerWatch watch = busy_since(Awake(0));
   watch.hear(at(2, 70), Awake(10));
-  watch.begin_job(Awake(100));  // the one that waited behind it
-  EXPECT_EQ(watch.progress().step, 0);
+  watch.begin_job(1, Awake(100));  // the one that waited behind it
+  EXPECT_EQ(watch.progress(1).step, 0);
   watch.hear(at(0, 1), Awake(200));
   EXPECT_FALSE(watch.is_overdue(Awake(320), lease));
 }

@@ -14,6 +14,11 @@
 //   PECLET_FAKE_IDENTITY ("fake")                       text whose hash is given as that of its binary
 //   PECLET_FAKE_DRIFT                                   if set, results differ from those without it
 //   PECLET_FAKE_AHEAD                                   if set, it takes a job ahead
+//   PECLET_FAKE_CAPACITY (1)                            number of jobs that it runs at once, each a step in
+//   turn;
+//                                                       above 1, jobs miss turns, so that later ones may end
+//                                                       first
+//   PECLET_FAKE_NO_DEVICE                               if set, it refuses PECLET_DEVICE=cuda
 //   PECLET_FAKE_STEPLESS                                if set, it says that it has no time step
 //   PECLET_FAKE_HOLD, PECLET_FAKE_HOLD_SEED (0)         a file: while it exists, this and later seeds stop at
 //                                                       half of their steps, but hear the owner
@@ -25,12 +30,13 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <deque>
 #include <exception>
 #include <filesystem>
 #include <fstream>
-#include <optional>
+#include <list>
+#include <stdexcept>
 #include <thread>
-#include <utility>
 
 #include "contract/durable_file.h"
 #include "contract/frames.h"
@@ -49,16 +55,29 @@ std::string text_setting(const char* name) {
   return text == nullptr ? "" : text;
 }
 
+// A job that runs.
+struct Running {
+  Json job;
+  std::filesystem::path checkpoint;
+  Fault fault;
+  State state;
+  steady_clock::time_point begun, saved, told;
+};
+
 class Engine {
  public:
   int run() {
+    if (std::getenv("PECLET_FAKE_NO_DEVICE") != nullptr && text_setting("PECLET_DEVICE") == "cuda") {
+      throw std::runtime_error("there is no device here");
+    }
     say_hello();
-    Json message;
-    while (!leave_ && next(message)) {
-      const std::string type = message.at("type");
-      if (type == "validate") validate(message);
-      if (type == "job") run_job(message);
-      if (type == "drain" || type == "stop") break;
+    while (!leave_) {
+      const bool is_idle = jobs_.empty() && waiting_.empty();
+      hear(is_idle ? milliseconds(-1) : milliseconds(0));
+      if (drained_ && jobs_.empty() && waiting_.empty()) break;
+      begin_jobs();
+      take_turn();
+      if (drained_) give_all_back();
     }
     return 0;
   }
@@ -67,28 +86,38 @@ class Engine {
   void say_hello() {
     Json hello{{"type", "hello"}, {"protocol", 1}, {"program", "fake-engine"}, {"engine", engine()}};
     if (takes_ahead_) hello["ahead"] = true;
+    if (capacity_ > 1) hello["capacity"] = capacity_;
     channel_.send(hello);
   }
 
-  // Returns false if the owner is gone.
-  bool next(Json& message) {
-    if (waiting_job_) {
-      message = *std::exchange(waiting_job_, std::nullopt);
-      return true;
+  // Hears what the owner says until the patience ends; at least all that has been said.
+  void hear(milliseconds patience) {
+    const auto end = steady_clock::now() + patience;
+    Json message;
+    while (!leave_ && !drained_) {
+      const auto left = std::chrono::ceil<milliseconds>(end - steady_clock::now());
+      const auto status =
+          channel_.receive(message, patience < milliseconds(0) ? patience : std::max(milliseconds(0), left));
+      if (status == FrameChannel::Status::nothing) return;
+      if (status == FrameChannel::Status::closed) {
+        leave_ = true;
+        for (const Running& one : jobs_) save(one);
+      } else {
+        handle(message);
+      }
+      patience = std::max(milliseconds(0), patience);
     }
-    return channel_.receive(message, milliseconds(-1)) == FrameChannel::Status::message;
   }
 
-  // Waits for what the owner says while a job runs. A further job is kept, and the wait continues.
-  FrameChannel::Status hear(Json& message, milliseconds patience) {
-    const auto end = steady_clock::now() + patience;
-    for (;;) {
-      const auto left = std::chrono::ceil<milliseconds>(end - steady_clock::now());
-      const FrameChannel::Status status = channel_.receive(message, std::max(milliseconds(0), left));
-      if (status != FrameChannel::Status::message || message.at("type") != "job") return status;
-      if (!takes_ahead_ || waiting_job_) throw FrameError("one job too many");
-      waiting_job_ = message;
-    }
+  void handle(const Json& message) {
+    const std::string type = message.at("type");
+    if (type == "validate") validate(message);
+    if (type == "stop") leave_ = true;
+    if (type == "drain") drained_ = true;
+    if (type != "job") return;
+    if (jobs_.size() + waiting_.size() >= capacity_ + (takes_ahead_ ? 1 : 0))
+      throw FrameError("one job too many");
+    waiting_.push_back(message);
   }
 
   void validate(const Json& message) {
@@ -113,8 +142,16 @@ class Engine {
                    {"warnings", Json::array()}});
   }
 
-  void run_job(const Json& job) {
-    const auto begun = steady_clock::now();
+  void begin_jobs() {
+    while (!leave_ && !waiting_.empty() && jobs_.size() < capacity_) {
+      const Json job = waiting_.front();
+      waiting_.pop_front();
+      begin(job);
+    }
+  }
+
+  void begin(const Json& job) {
+    const auto now = steady_clock::now();
     const std::string point = job.at("point");
     const int seed = job.at("seed");
     const std::filesystem::path checkpoint(job.at("checkpoint").get<std::string>());
@@ -125,24 +162,61 @@ class Engine {
       state = {saved.at("value").get<std::uint64_t>(), saved.at("step").get<int>()};
     }
     if (std::getenv("PECLET_FAKE_DRIFT") != nullptr) state.value = mix(state.value);
-    auto saved = begun, told = begun;
-    for (; state.step < steps_; ++state.step) {
-      if (state.step >= fault_step_) go_wrong(fault, job);
-      if (told_to_leave(job, state, checkpoint)) return;
-      state.value = mix(state.value + static_cast<std::uint64_t>(state.step));
-      std::fputs(printed_.c_str(), stderr);
-      const auto now = steady_clock::now();
-      if (std::chrono::duration<double>(now - told).count() >= job.at("progress_seconds").get<double>()) {
-        told = now;
-        progress(job, state.step + 1);
-      }
-      if (std::chrono::duration<double>(now - saved).count() >= job.at("checkpoint_seconds").get<double>()) {
-        saved = now;
-        save(job, {state.value, state.step + 1}, checkpoint);
+    jobs_.push_back({job, checkpoint, fault, state, now, now, now});
+  }
+
+  // Each job makes a step, or ends.
+  void take_turn() {
+    bool is_waited_for = false;  // the time of a step, which is that of all jobs
+    for (auto one = jobs_.begin(); one != jobs_.end() && !leave_ && !drained_;) {
+      if (one->state.step < steps_) {
+        if (one->state.step >= fault_step_) go_wrong(one->fault, one->job);
+        if (!is_waited_for) wait_for_a_step();
+        is_waited_for = true;
+        if (leave_ || drained_) return;
+        if (!misses_turn(*one)) advance(*one);
+        ++one;
+      } else {
+        if (!finish(*one)) return;
+        note_times(one->begun);
+        one = jobs_.erase(one);
       }
     }
-    finish(job, state, fault, begun);
-    note_times(begun);
+  }
+
+  // Waits for one step's time, or as long as all jobs are held, and hears the owner meanwhile.
+  void wait_for_a_step() {
+    const std::size_t known = waiting_.size();
+    hear(step_time_);
+    const auto held = [this](const Running& one) { return is_held(one); };
+    while (!leave_ && !drained_ && waiting_.size() == known &&
+           std::all_of(jobs_.begin(), jobs_.end(), held)) {
+      hear(milliseconds(5));
+    }
+  }
+
+  bool misses_turn(const Running& one) {
+    if (is_held(one)) return true;
+    return capacity_ > 1 && mix(one.state.value + ++turns_) % 2 == 0;
+  }
+
+  void advance(Running& one) {
+    State& state = one.state;
+    state.value = mix(state.value + static_cast<std::uint64_t>(state.step));
+    ++state.step;
+    std::fputs(printed_.c_str(), stderr);
+    const auto now = steady_clock::now();
+    const auto is_due = [&](steady_clock::time_point last, const char* interval) {
+      return std::chrono::duration<double>(now - last).count() >= one.job.at(interval).get<double>();
+    };
+    if (is_due(one.told, "progress_seconds")) {
+      one.told = now;
+      progress(one.job, state.step);
+    }
+    if (is_due(one.saved, "checkpoint_seconds")) {
+      one.saved = now;
+      save(one);
+    }
   }
 
   void go_wrong(Fault fault, const Json& job) {
@@ -168,41 +242,30 @@ class Engine {
                    {"strain", 0.1 * step}});
   }
 
-  bool is_held(const Json& job, const State& state) const {
-    return !hold_.empty() && job.at("seed").get<int>() >= hold_seed_ && state.step >= half_ &&
+  bool is_held(const Running& one) const {
+    return !hold_.empty() && one.job.at("seed").get<int>() >= hold_seed_ && one.state.step >= half_ &&
            std::filesystem::exists(hold_);
   }
 
-  // Waits for one step's time, or as long as the job is held, and hears the owner meanwhile.
-  bool told_to_leave(const Json& job, const State& state, const std::filesystem::path& checkpoint) {
-    Json message;
-    FrameChannel::Status status = hear(message, step_time_);
-    while (status == FrameChannel::Status::nothing && is_held(job, state)) {
-      status = hear(message, milliseconds(5));
-    }
-    if (status == FrameChannel::Status::nothing) return false;
-    leave_ = true;
-    if (status == FrameChannel::Status::message && message.at("type") == "stop") return true;
-    save(job, state, checkpoint);
-    if (status == FrameChannel::Status::message) {
-      leave_ = false;
-      give_back(job, state);
-    }
-    return true;
-  }
-
   // Becomes idle. Another drain follows, on which it leaves, or a job.
-  void give_back(const Json& job, const State& state) {
-    waiting_job_.reset();
-    channel_.send({{"type", "drained"}, {"job", job.at("job")}, {"step", state.step}});
+  void give_all_back() {
+    begin_jobs();  // a job that has a place is answered
+    waiting_.clear();
+    for (const Running& one : jobs_) {
+      if (one.state.step < steps_) save(one);
+      channel_.send({{"type", "drained"}, {"job", one.job.at("job")}, {"step", one.state.step}});
+    }
+    leave_ = jobs_.empty();  // the last one ended
+    jobs_.clear();
+    drained_ = false;
   }
 
   // If there is no room, the work continues and the last checkpoint stays.
-  void save(const Json& job, const State& state, const std::filesystem::path& checkpoint) {
+  void save(const Running& one) {
     try {
-      write_durably(checkpoint, Json{{"value", state.value}, {"step", state.step}}.dump());
+      write_durably(one.checkpoint, Json{{"value", one.state.value}, {"step", one.state.step}}.dump());
     } catch (const NoRoomError& error) {
-      if (!leave_) say_no_room(job, error);
+      if (!leave_) say_no_room(one.job, error);
     }
   }
 
@@ -229,7 +292,7 @@ class Engine {
     return true;
   }
 
-  // Keeps the text until there is room for it. Returns false if the engine has to leave before.
+  // Keeps the text until there is room for it. Returns false if the job is given up before.
   bool spool(const Json& job, const std::string& path, const std::string& text) {
     for (;;) {
       try {
@@ -237,11 +300,8 @@ class Engine {
         return true;
       } catch (const NoRoomError& error) {
         say_no_room(job, error);
-        Json message;
-        const FrameChannel::Status status = hear(message, milliseconds(200));
-        if (status == FrameChannel::Status::nothing) continue;
-        leave_ = status == FrameChannel::Status::closed || message.at("type") == "stop";
-        return false;
+        hear(milliseconds(200));
+        if (leave_ || drained_) return false;
       }
     }
   }
@@ -256,20 +316,21 @@ class Engine {
     std::ofstream(path, std::ios::app) << nanoseconds(begun) + ' ' + nanoseconds(steady_clock::now()) + '\n';
   }
 
-  void finish(const Json& job, const State& state, Fault fault, steady_clock::time_point begun) {
-    const double wall_seconds = std::chrono::duration<double>(steady_clock::now() - begun).count();
+  // Returns false if the job is given up before its result is on disk.
+  bool finish(const Running& one) {
+    const Json& job = one.job;
+    const State& state = one.state;
+    const Fault fault = one.fault;
+    const double wall_seconds = std::chrono::duration<double>(steady_clock::now() - one.begun).count();
     if (fault == Fault::refuse) {
       channel_.send(
           {{"type", "failed"}, {"job", job.at("job")}, {"message", "this engine does not want to"}});
-      return;
+      return true;
     }
     Json result = outcome(job, state, fault == Fault::overlap);
     result["cost"] = {{"cpu_seconds", wall_seconds}, {"wall_seconds", wall_seconds}};
     if (fault == Fault::swap) result["seed"] = job.at("seed").get<int>() + 1;
-    if (fault != Fault::overlap && !leave_files(job, state, fault, result)) {
-      if (!leave_) give_back(job, state);
-      return;
-    }
+    if (fault != Fault::overlap && !leave_files(job, state, fault, result)) return false;
     std::string text = result.dump();
     // JSON has no NaN; an engine that prints it all the same does not write JSON.
     if (fault == Fault::nan)
@@ -279,14 +340,12 @@ class Engine {
                      {"spool", job.at("spool")},
                      {"sha256", sha256(fault == Fault::lie ? "something else" : text)}};
     if (fault == Fault::early) announce(frame, fault);
-    if (!spool(job, job.at("spool"), text)) {
-      if (!leave_) give_back(job, state);
-      return;
-    }
+    if (!spool(job, job.at("spool"), text)) return false;
     if (fault == Fault::mute) std::abort();
     announce(frame, fault);
     if (fault == Fault::twice) channel_.send(frame);
     if (fault == Fault::late) progress(job, steps_);
+    return true;
   }
 
   void announce(const Json& frame, Fault fault) {
@@ -309,8 +368,11 @@ class Engine {
   const int hold_seed_ = static_cast<int>(setting("PECLET_FAKE_HOLD_SEED", 0));
   const std::string printed_ = std::string(static_cast<std::size_t>(setting("PECLET_FAKE_PRINTED", 0)), 'x');
   const bool takes_ahead_ = std::getenv("PECLET_FAKE_AHEAD") != nullptr;
-  std::optional<Json> waiting_job_;  // a job that came while another one ran
-  bool leave_ = false;
+  const std::size_t capacity_ = static_cast<std::size_t>(setting("PECLET_FAKE_CAPACITY", 1));
+  std::list<Running> jobs_;
+  std::deque<Json> waiting_;  // jobs that have not begun
+  std::uint64_t turns_ = 0;
+  bool leave_ = false, drained_ = false;
 };
 
 }  // namespace

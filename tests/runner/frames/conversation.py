@@ -4,8 +4,9 @@
 Plays the runner's part for one engine, in another language than both programs. It asks about a scene and about a bad
 one (SCENE with VALUE at POINTER; by default, a viscosity of -1). It runs one seed, runs it again and takes the job back
 after the first progress, and runs it once more and hangs up; each time a new process continues. An engine that takes a
-job ahead gets two at once, and a drain with two of them. Every frame and result is held to schema/frames.schema.json
-and schema/result.schema.json with an independent validator (Debian's python3-jsonschema), and results to each other.
+job ahead gets two at once, and a drain with two of them; one that runs several at once gets up to four, and a drain.
+Every frame and result is held to schema/frames.schema.json and schema/result.schema.json with an independent validator
+(Debian's python3-jsonschema), and results to each other.
 """
 import argparse
 import copy
@@ -46,6 +47,7 @@ class Engine:
         assert hello["type"] == "hello", hello
         self.identity = hello["engine"]
         self.takes_ahead = hello.get("ahead", False)
+        self.capacity = hello.get("capacity", 1)
 
     def send(self, message):
         self.frames.validate(message)
@@ -87,10 +89,10 @@ class Conversation:
     def start(self):
         return Engine(self.command, self.frames)
 
-    def takes_ahead(self):
+    def abilities(self):
         engine = self.start()
         engine.leave()
-        return engine.takes_ahead
+        return engine.takes_ahead, engine.capacity
 
     def ask(self, refused, value):
         engine = self.start()
@@ -102,7 +104,7 @@ class Conversation:
         assert answer["type"] == "refused" and answer["request"] == 8 and answer["pointer"] == refused, answer
         engine.leave("stop")
 
-    def give_job(self, engine, job):
+    def give_job(self, engine, job, checkpoint="checkpoint"):
         engine.send(
             {
                 "type": "job",
@@ -111,7 +113,7 @@ class Conversation:
                 "seed": 3,
                 "scene": self.scene,
                 "threads": 1,
-                "checkpoint": str(self.folder / "checkpoint"),
+                "checkpoint": str(self.folder / checkpoint),
                 "checkpoint_seconds": 0.01,
                 "progress_seconds": 0.01,
                 "spool": str(self.spool(job)),
@@ -212,6 +214,41 @@ class Conversation:
             engine.process.wait()
         return waits
 
+    def several(self, jobs):
+        """Gives these jobs at once; returns their results, which come in any order."""
+        engine = self.start()
+        for job in jobs:
+            self.give_job(engine, job, f"checkpoint-{job}")
+        results = {}
+        while len(results) < len(jobs):
+            answer = engine.receive()
+            assert answer["type"] in ("progress", "result") and answer["job"] in set(jobs) - set(results), answer
+            if answer["type"] == "result":
+                results[answer["job"]] = self.read_result(engine, answer["job"], answer["sha256"])
+        engine.leave()
+        return results.values()
+
+    def several_drained(self, jobs):
+        """Drains an engine with these jobs after the first progress; it answers each. Returns those taken back."""
+        engine = self.start()
+        for job in jobs:
+            self.give_job(engine, job, f"checkpoint-{job}")
+        open_jobs, back = set(jobs), []
+        told = False
+        while open_jobs:
+            answer = engine.receive()
+            assert answer["job"] in open_jobs, answer
+            if not told:
+                engine.send({"type": "drain"})
+                told = True
+            if answer["type"] != "progress":
+                assert answer["type"] in ("result", "drained"), answer
+                open_jobs.remove(answer["job"])
+            if answer["type"] == "drained":
+                back.append(answer["job"])
+        engine.leave("drain" if answer["type"] == "drained" else "asked")
+        return back
+
 
 def with_value(scene, pointer, value):
     changed = copy.deepcopy(scene)
@@ -249,11 +286,18 @@ def main():
             again, was_cut = conversation.disturbed(job, how)
             assert without_cost(again) == without_cost(result), f"{how}: another result: {again}"
             print(f"{how}: {'cut and resumed' if was_cut else 'too fast to be cut'}, the same result")
-        if conversation.takes_ahead():
+        takes_ahead, capacity = conversation.abilities()
+        if takes_ahead and capacity == 1:
             for again in conversation.ahead(6):
                 assert without_cost(again) == without_cost(result), f"ahead: another result: {again}"
             waited = conversation.ahead_and_drained(8)
             print(f"ahead: the same results; {'given up by a drain' if waited else 'too fast to be drained'}")
+        if capacity > 1:
+            jobs = list(range(20, 20 + min(capacity, 4)))
+            back = conversation.several_drained(jobs)
+            for again in conversation.several(jobs):
+                assert without_cost(again) == without_cost(result), f"several: another result: {again}"
+            print(f"{len(jobs)} at once: the same results; {len(back)} of them cut by a drain and resumed")
     return 0
 
 

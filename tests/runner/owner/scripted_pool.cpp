@@ -1,5 +1,6 @@
 #include "tests/runner/owner/scripted_pool.h"
 
+#include <algorithm>
 #include <csignal>
 #include <stdexcept>
 #include <utility>
@@ -11,23 +12,25 @@
 namespace peclet::runner {
 
 void ScriptedPool::start(int worker) {
-  at(worker) = Worker{true, std::nullopt, std::nullopt};
+  at(worker) = Worker{true};
   ++starts;
-  if (says_hello) say(Hello{worker, plain_engine(identity), takes_ahead});
+  if (says_hello) say(Hello{worker, plain_engine(identity), takes_ahead, static_cast<int>(capacity)});
 }
 
 void ScriptedPool::assign(int worker, const Job& job) {
   Worker& about = at(worker);
-  if (!about.alive || (about.job && (!takes_ahead || about.waiting))) {
+  if (!about.alive || about.jobs.size() >= capacity + (takes_ahead ? 1 : 0)) {
     throw std::logic_error("the worker is not free");
   }
-  (about.job ? about.waiting : about.job) = job;
+  about.jobs.push_back(job);
   assigned.push_back(job);
 }
 
 void ScriptedPool::drain(int worker) {
   if (!at(worker).alive || !leaves_when_drained) return;
-  if (at(worker).job) say(Drained{worker, at(worker).job->attempt, 5});
+  const std::vector<Job> jobs = at(worker).jobs;
+  for (std::size_t place = 0; place < std::min(capacity, jobs.size()); ++place)
+    say(Drained{worker, jobs[place].attempt, 5});
   at(worker) = Worker{};
   say(Exited{worker, {0, {}}});
 }
@@ -56,14 +59,15 @@ void ScriptedPool::spool(const Job& job, double viscosity) const {
   write_durably(job.spool, result.dump());
 }
 
-void ScriptedPool::begin_next(int worker) {
-  at(worker).job = std::exchange(at(worker).waiting, std::nullopt);
+void ScriptedPool::begin_next(int worker, std::size_t place) {
+  std::vector<Job>& jobs = at(worker).jobs;
+  jobs.erase(jobs.begin() + static_cast<std::ptrdiff_t>(place));
 }
 
-void ScriptedPool::finish(int worker, double viscosity) {
-  const Job about = job(worker);
+void ScriptedPool::finish(int worker, double viscosity, std::size_t place) {
+  const Job about = jobs(worker).at(place);
   spool(about, viscosity);
-  begin_next(worker);
+  begin_next(worker, place);
   say(ResultSpooled{worker, about.attempt, about.spool, sha256_of_file(about.spool)});
 }
 

@@ -4,8 +4,6 @@
 #include <chrono>
 #include <deque>
 #include <functional>
-#include <map>
-#include <optional>
 #include <vector>
 
 #include "runner/engines/worker_pool.h"
@@ -28,16 +26,18 @@ class ScriptedPool : public WorkerPool {
   std::vector<WorkerEvent> wait(std::chrono::milliseconds patience) override;
 
   void say(WorkerEvent event) { said_.push_back(std::move(event)); }
-  // The worker writes a result of its job, announces it and begins the waiting job.
-  void finish(int worker, double viscosity);
+  // The worker writes a result of its job at this place, announces it and begins the waiting job.
+  void finish(int worker, double viscosity, std::size_t place = 0);
   // Writes a result without announcing it.
   void spool(const Job& job, double viscosity) const;
-  // Begins the waiting job after another end of the present one.
-  void begin_next(int worker);
-  bool has_job(int worker) const { return at(worker).job.has_value(); }
-  const Job& job(int worker) const { return *at(worker).job; }
-  bool has_waiting(int worker) const { return at(worker).waiting.has_value(); }
-  const Job& waiting(int worker) const { return *at(worker).waiting; }
+  // Begins the waiting job after another end of one.
+  void begin_next(int worker, std::size_t place = 0);
+  bool has_job(int worker) const { return !at(worker).jobs.empty(); }
+  const Job& job(int worker) const { return at(worker).jobs.front(); }
+  bool has_waiting(int worker) const { return at(worker).jobs.size() > capacity; }
+  const Job& waiting(int worker) const { return at(worker).jobs.at(capacity); }
+  // All jobs of the worker; one that waits is the last.
+  const std::vector<Job>& jobs(int worker) const { return at(worker).jobs; }
   bool alive(int worker) const { return at(worker).alive; }
 
   // Called whenever the dispatcher waits and nothing has been said.
@@ -46,6 +46,7 @@ class ScriptedPool : public WorkerPool {
   std::string identity = "engine";
   bool says_hello = true;
   bool takes_ahead = false;
+  std::size_t capacity = 1;
   double wall_seconds = 4;  // wall time in its results [s]
   bool leaves_when_drained = true;
   std::size_t result_size = 0;  // letters beyond a plain result, others for each seed
@@ -58,7 +59,7 @@ class ScriptedPool : public WorkerPool {
  private:
   struct Worker {
     bool alive = false;
-    std::optional<Job> job, waiting;
+    std::vector<Job> jobs{};
   };
   const Worker& at(int worker) const { return workers_.at(static_cast<std::size_t>(worker)); }
   Worker& at(int worker) { return workers_.at(static_cast<std::size_t>(worker)); }

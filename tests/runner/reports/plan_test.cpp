@@ -48,6 +48,20 @@ TEST(Plan, AGuessIsCalledOne) {
       << "measured costs need no guess";
 }
 
+// Each of two workers does four realisations at once, which takes 3 s.
+TEST(Plan, RealisationsSideBySideShareTheTimeOfTheirWorker) {
+  Campaign campaign = plain_campaign(1, 16, 16, 0.05);
+  campaign.target.tolerance = Tolerance::none();
+  const CostGuess guess{0, 3};
+  const Plan plan = make_plan(campaign, {1e6}, {}, 2, guess, 4);
+  EXPECT_DOUBLE_EQ(plan.points[0].cost.wall_seconds, 3);
+  EXPECT_DOUBLE_EQ(plan.points[0].cost.cpu_seconds, 0.75);
+  EXPECT_DOUBLE_EQ(plan.totals.wall_seconds_to_come.likely, 2 * 3);
+  EXPECT_EQ(plan_json(plan)["prediction"]["capacity"], 4);
+  EXPECT_TRUE(says(plan_text(plan), "with 2 workers of 4 realisations at once")) << plan_text(plan);
+  EXPECT_DOUBLE_EQ(make_plan(campaign, {1e6}, {}, 2, guess).totals.wall_seconds_to_come.likely, 8 * 3);
+}
+
 TEST(Plan, APointWithoutASeedCostsWhatTheOthersDoForEachParticleStep) {
   const Campaign campaign = plain_campaign(3, 10, 100, 0.05);
   // 4 seeds of 36 s for 1e6 particle-steps and one of 216 s for 2e6 give 360 s for 6e6: 60 s per million.

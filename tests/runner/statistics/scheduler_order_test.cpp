@@ -136,6 +136,31 @@ TEST(Scheduler, UnderABudgetAStopTestThatItPaysForAsAWholeGoesFirst) {
       << "if it pays for no stop test, seeds of the wider one";
 }
 
+TEST(Scheduler, SeedsThatMayNotRunAreLeftOut) {
+  Scheduler scheduler = fresh(2);
+  scheduler.begin({0, 0});
+  const auto is_odd = [](SeedId id) { return id.seed % 2 == 1; };
+  EXPECT_EQ(scheduler.next(), (SeedId{1, 0}));
+  EXPECT_EQ(scheduler.next(is_odd), (SeedId{1, 1}));
+  EXPECT_EQ(scheduler.next([](SeedId id) { return id.point > 1; }), std::nullopt);
+  EXPECT_EQ(scheduler.next_within(1, is_odd), (SeedId{1, 1}));
+}
+
+TEST(Scheduler, KnowsWhetherASeedMayBeNext) {
+  Scheduler scheduler = fresh(2);  // the first stop test is at 4 seeds
+  scheduler.begin({0, 1});
+  scheduler.set_cancelled(1, true);
+  EXPECT_TRUE(scheduler.may_be_next({0, 0}, {}));
+  EXPECT_FALSE(scheduler.may_be_next({0, 1}, {})) << "it runs";
+  EXPECT_TRUE(scheduler.may_be_next({0, 4}, {})) << "ahead of the stop test";
+  EXPECT_FALSE(scheduler.may_be_next({0, 4}, 100)) << "a budget does not run ahead";
+  EXPECT_FALSE(scheduler.may_be_next({0, 39}, {}));
+  EXPECT_FALSE(scheduler.may_be_next({1, 0}, {})) << "cancelled";
+  scheduler.set_cost(0, 5);
+  EXPECT_TRUE(scheduler.may_be_next({0, 0}, 5));
+  EXPECT_FALSE(scheduler.may_be_next({0, 0}, 4.9));
+}
+
 TEST(Scheduler, CostsThatAreNotKnownFollowFromTheWork) {
   Scheduler scheduler = fresh(3);
   for (int point = 0; point < 3; ++point) scheduler.set_work(point, std::pow(10, point));

@@ -72,6 +72,31 @@ TEST(Blame, ACheckpointThatMayBeTheCauseIsDiscarded) {
   EXPECT_FALSE(after({{crashed, 5}, {crashed, 5}, {killed, 6}}).discard_checkpoint);
 }
 
+TEST(Blame, InCompanyNothingCountsButTheCompanyIsHalved) {
+  std::vector<PastAttempt> attempts;
+  for (int deaths = 1; deaths < 10; ++deaths) {
+    attempts.push_back({crashed, 5, true});
+    EXPECT_FALSE(after(attempts).quarantine);
+    EXPECT_FALSE(after(attempts).discard_checkpoint);
+    EXPECT_EQ(halvings(attempts), deaths);
+  }
+  EXPECT_EQ(largest_company(100, 0), 100);
+  EXPECT_EQ(largest_company(100, 3), 12);
+  EXPECT_EQ(largest_company(100, 6), 1);
+  EXPECT_EQ(largest_company(100'000, 31), 1);
+}
+
+TEST(Blame, EveryTwoKillsWithoutAStepForwardHalveTheCompany) {
+  EXPECT_EQ(halvings(std::vector<PastAttempt>{{killed, 5}}), 0);
+  EXPECT_EQ(halvings(std::vector<PastAttempt>{{killed, 5}, {drained, 5}, {killed, 5}}), 1);
+  EXPECT_EQ(halvings(std::vector<PastAttempt>{{killed, 5}, {killed, 5}, {killed, 6}}), 0);
+}
+
+TEST(Blame, ASeedThatEndedItsEngineOnItsOwnStaysAlone) {
+  EXPECT_EQ(largest_company(100'000, halvings(std::vector<PastAttempt>{{crashed, 5}})), 1);
+  EXPECT_EQ(halvings(std::vector<PastAttempt>{{refused, 5}}), 0);  // its engine lives on
+}
+
 TEST(Blame, NamesOfOutcomesSurviveTheDatabase) {
   for (const AttemptOutcome outcome :
        {running, result, crashed, hung, garbled, refused, drained, killed, abandoned}) {
