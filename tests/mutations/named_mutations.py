@@ -3,6 +3,7 @@
 Name; file, text in it that occurs once, its replacement; program and test.
 """
 
+from card_mutations import MUTATIONS as CARD
 from flow_mutations import FLOW
 from kinetic_mutations import KINETIC
 from oscillation_mutations import OSCILLATION
@@ -340,4 +341,4 @@ NAMED = [
     ),
 ]
 
-NAMED += FLOW + KINETIC + OSCILLATION + RESPONSE + STRAINED
+NAMED += CARD + FLOW + KINETIC + OSCILLATION + RESPONSE + STRAINED
