@@ -257,7 +257,7 @@ int main(int argc, char** argv) {
       omp_get_num_procs());
   fmt::print("{:12} {:>5} {:>6} {:>9} {:>6} {:>9} {:>6} {:>6}\n", "scene", "N", "places", "card", "", "cores",
              "", "ratio");
-  for (const std::size_t spheres : {1000, 250, 500, 2000, 4000}) {
+  for (const std::size_t spheres : std::initializer_list<std::size_t>{1000, 250, 500, 2000, 4000}) {
     for (std::size_t s = 0; s < timed_scenes && spheres <= largest; ++s) measure(scenes[s], spheres, seconds);
   }
   return is_right ? 0 : 1;
