@@ -196,7 +196,10 @@ class CardSolver {
       }
       const double beta = found.iterations == 0 ? 0 : along / last_along;
       const double curvature = curved - (found.iterations == 0 ? 0 : beta * along / last_alpha);
-      if (!(curvature > 0)) break;  // nothing but rounding errors is left
+      if (!(curvature > 0)) {  // rounding errors; the residual is what it is
+        found.squared = found.squared < along ? along : found.squared;
+        break;
+      }
       const double alpha = along / curvature;
       last_along = along;
       last_alpha = alpha;

@@ -89,9 +89,9 @@ constexpr int card_blocks = 32;
 // The numbers and arrays that all realisations of a scene share.
 struct CardScene {
   std::uint32_t particles, classes;
-  bool lubricated, touching, springs, rolls;  // the laws of the scene
-  std::uint32_t carried_term;   // the stress that moved forces add to (integrators/acted_stress.h)
-  double shell, per_structure;  // structural_shell, and the factor of the structural Brownian stress
+  bool lubricated, touching, springs;  // the laws of the scene
+  std::uint32_t carried_term;          // the stress that moved forces add to (integrators/acted_stress.h)
+  double shell, per_structure;         // structural_shell, and the factor of the structural Brownian stress
 
   // The flow (rate y, 0, 0) and the cell: edges (x, 0, 0), (start_tilt + strain y, y, 0), (0, 0, z).
   double rate;
@@ -102,7 +102,8 @@ struct CardScene {
   bool is_narrow;  // several images of a sphere may be near
 
   // The steps.
-  double tolerance, usual_tolerance, longest_way;
+  double tolerance, longest_way;
+  double tightness;  // of the tolerance, over the usual one: at most 1
   int most_divisions;
   double largest_displacement, largest_overlap, smallest_radius;  // of the guard
   std::uint64_t equilibration, total, sampling, comparison;       // [steps]; comparison 0: never

@@ -4,6 +4,7 @@
 
 #include "engine/card/card_forces.h"
 #include "engine/card/card_window.h"
+#include "engine/integrators/implicit_rules.h"
 
 namespace peclet::engine {
 
@@ -172,8 +173,6 @@ class CardSteps {
   }
 
   bool is_to_be_divided(const Report& report) const {
-    constexpr double unsolved = 0.1;  // integrators/implicit.cpp
-    constexpr int divisions_of_unsolved = 3;
     return report.broke_off || !report.finite || !(report.displacement <= scene_.longest_way) ||
            (report.residual > unsolved && static_cast<int>(level_) < divisions_of_unsolved);
   }
@@ -367,13 +366,10 @@ class CardSteps {
     });
   }
 
-  static constexpr int most_iterations = 1000;
-  static constexpr double no_motion = 1.17549435e-38;  // the smallest normal single number
-
   // Corrects the velocities, unless that is needless.
   CardSolution correct(const CardGoal& goal, Report& report) {
     spent_on(CardPhase::rest);
-    const CardSolution found = solver_.solve(goal, most_iterations);
+    const CardSolution found = solver_.solve(goal, most_solver_iterations);
     spent_on(CardPhase::solution);
     report.iterations += found.iterations;
     if (found.finite && !found.needless) add_solution();
@@ -382,9 +378,7 @@ class CardSteps {
 
   // integrators/midpoint.cpp
   bool find_without_noise(Report& report) {
-    constexpr int usual = terms.friction ? 3 : 6, most = terms.friction ? 8 : 6;
-    constexpr double first_forcing = terms.friction ? 0.3 : 0.2, forcing = terms.friction ? 0.2 : 0.05;
-    constexpr double far = 7;
+    constexpr NewtonIterations iterations = newton_iterations(terms.friction);
     team_.each(scene_.particles, [&](std::uint32_t i) {
       own_.velocity[i] = row(vector(own_.velocity[i]) + vector(own_.velocity_change[i]));
       own_.spin[i] = row(vector(own_.spin[i]) + vector(own_.spin_change[i]));
@@ -402,27 +396,25 @@ class CardSteps {
       // Only a solution tells the energy norm of the residual. It begins, and ends early if that is small.
       const double target =
           larger_of(scene_.tolerance * scene_.tolerance * residual.squared_motion, no_motion);
-      const double good = iteration < usual ? target : far * far * target;
+      const double good = iteration < iterations.usual ? target : far_residual * far_residual * target;
       // The system before may tell it as well, if the residual is small at a glance.
       constexpr double at_a_glance = 10;
-      const double motion_before = residual.squared_motion;
-      const bool is_last = iteration >= most;
+      const bool is_last = iteration >= iterations.most;
       if (iteration > 0 && (is_last || residual.own_squared < at_a_glance * good)) {
         spent_on(CardPhase::rest);
         const CardSolution seen = solver_.solve(
-            {.least = 0.5 * good, .fixed = 0, .relative = 0.1, .enough = good}, most_iterations);
+            {.least = 0.5 * good, .fixed = 0, .relative = 0.1, .enough = good}, most_solver_iterations);
         spent_on(CardPhase::solution);
         report.iterations += seen.iterations;
         if (seen.needless || !seen.finite || is_last) {
-          report.residual = motion_before > 0 ? __builtin_sqrt(seen.of_zero / motion_before) : 0;
+          report.residual =
+              residual.squared_motion > 0 ? __builtin_sqrt(seen.of_zero / residual.squared_motion) : 0;
           report.finite = report.finite && seen.finite;
           return true;
         }
       }
       if (iteration > 0) assemble(CardField::whole);
-      const double tightness =
-          scene_.tolerance < scene_.usual_tolerance ? scene_.tolerance / scene_.usual_tolerance : 1;
-      const double left = tightness * (iteration == 0 ? first_forcing : forcing);
+      const double left = scene_.tightness * (iteration == 0 ? iterations.first_forcing : iterations.forcing);
       const CardSolution found =
           correct({.least = 0.25 * target, .fixed = 0, .relative = left * left, .enough = good}, report);
       const double motion = residual.squared_motion + (iteration == 0 ? found.of_zero : 0);
@@ -462,7 +454,6 @@ class CardSteps {
 
   // integrators/noisy_midpoint.cpp
   bool find_with_noise(Report& report) {
-    constexpr double of_prediction = 5;
     constexpr Terms noise_terms = Forces::noise_terms;
     const double timestep = level().timestep;
     clear_part_sums();
@@ -489,7 +480,7 @@ class CardSteps {
     assemble(CardField::at_beginning);
     evaluate(CardField::at_beginning);
     gather();
-    const bool predicted = solve(of_prediction, report);
+    const bool predicted = solve(factor_of_prediction, report);
     if (!move_half_a_step()) return false;
 
     assemble(CardField::ahead);

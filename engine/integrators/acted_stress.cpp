@@ -14,13 +14,6 @@ std::size_t number_of(const System& system, const Pair& pair) {
   return static_cast<std::size_t>(&pair - system.list.pairs().data());
 }
 
-// Returns the term to which moving the forces to x_n + dt V / 2 adds.
-StressTerm carried_term(const Physics& physics) {
-  if (physics.lubrication) return StressTerm::lubrication;
-  if (physics.contact) return StressTerm::contact_normal;
-  return physics.repulsion ? StressTerm::repulsion : StressTerm::attraction;
-}
-
 }  // namespace
 
 void ActedStress::begin(const PairSums& sums, const VectorField& force) {

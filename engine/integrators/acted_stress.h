@@ -36,6 +36,13 @@ inline Vector3 relative_to_flow(const System& system, std::size_t i, const Vecto
   return velocity - system.box.velocity_gradient() * system.particles.position[i];
 }
 
+// Returns the term to which moving the forces to x_n + dt V / 2 adds.
+inline StressTerm carried_term(const Physics& physics) {
+  if (physics.lubrication) return StressTerm::lubrication;
+  if (physics.contact) return StressTerm::contact_normal;
+  return physics.repulsion ? StressTerm::repulsion : StressTerm::attraction;
+}
+
 class ActedStress {
  public:
   // Takes the sums and forces of the pairs at x_n.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/integrators/implicit_rules.h"
 #include "engine/integrators/integrator.h"
 #include "engine/integrators/midpoint.h"
 #include "engine/integrators/noisy_midpoint.h"
@@ -36,11 +37,6 @@ double largest_square(const Matrix3& gradient, const VectorField& position, cons
   }
   return std::isfinite(sum) ? largest : std::numeric_limits<double>::quiet_NaN();
 }
-
-// Steps with a larger relative residual are divided.
-constexpr double unsolved = 0.1;
-// Few divisions are made for this: where forces jump, as at a cut-off, smaller steps have no solution.
-constexpr int divisions_of_unsolved = 3;
 
 // Returns the report of two half steps: means over the time, sums and maxima.
 StepReport joined(const StepReport& first, const StepReport& second) {

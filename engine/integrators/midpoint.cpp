@@ -5,28 +5,11 @@
 #include <limits>
 
 #include "engine/integrators/acted_stress.h"
+#include "engine/integrators/implicit_rules.h"
 #include "engine/state/eigen_arrays.h"
 #include "engine/state/threads.h"
 
 namespace peclet::engine {
-namespace {
-
-// Numbers of Newton iterations, and the part of a residual that the solution of a linear system may leave in
-// the first and in later ones. The parts are for the default tolerance and shrink in proportion to a tighter
-// one: a solution need not be better than the next residual. Contacts open and close in the first iteration.
-// Springs that slide enter with their secant stiffness, which converges slowly: iterations beyond the usual
-// ones are made only if the residual is above `far` tolerances.
-struct Iterations {
-  int usual, most;
-  double first_forcing, forcing;
-};
-constexpr Iterations with_springs = {3, 8, 0.3, 0.2}, without_springs = {6, 6, 0.2, 0.05};
-constexpr double far = 7;
-
-// Squared residuals below it are rounding errors, as of spheres that follow the flow.
-constexpr double no_motion = std::numeric_limits<float>::min();
-
-}  // namespace
 
 Midpoint::Midpoint(const Physics& physics, const ParticleState& particles, double timestep, double tolerance,
                    std::uint64_t seed, int threads, InstructionSet set)
@@ -43,7 +26,7 @@ std::optional<StepReport> Midpoint::find_velocities(System& system) {
     particles.velocity.row(i) += velocity_change_.row(particles.id[i]);
     particles.angular_velocity.row(i) += spin_change_.row(particles.id[i]);
   });
-  const Iterations& iterations = system.springs.kinds() == SpringKinds::none ? without_springs : with_springs;
+  const NewtonIterations iterations = newton_iterations(system.springs.kinds() != SpringKinds::none);
   StepReport report;
   for (int iteration = 0;; ++iteration) {
     if (!move_half_a_step(system)) return std::nullopt;
@@ -55,7 +38,8 @@ std::optional<StepReport> Midpoint::find_velocities(System& system) {
     const double target = std::max(solver_.tolerance() * solver_.tolerance() * motion, no_motion);
     report.solver_residual = motion > 0 ? std::sqrt(residual.squared / motion) : 0;
     report.sums.finite = report.sums.finite && std::isfinite(residual.squared) && std::isfinite(motion);
-    const int most = residual.squared > far * far * target ? iterations.most : iterations.usual;
+    const int most =
+        residual.squared > far_residual * far_residual * target ? iterations.most : iterations.usual;
     if (!(residual.squared > target) || iteration >= most) {
       if (watches_motion()) report.motion = stress_of_motion(system);
       return report;

@@ -1,14 +1,12 @@
 #include "engine/integrators/noisy_midpoint.h"
 
+#include "engine/integrators/implicit_rules.h"
 #include "engine/state/threads.h"
 #include "engine/terms/drag.h"
 #include "engine/terms/lubrication.h"
 
 namespace peclet::engine {
 namespace {
-
-// Factor of the tolerance of the predicted velocities. They matter only by the place x' to which they lead.
-constexpr double of_prediction = 5;
 
 // Returns the physics that noise and the resistance beside it come from.
 Physics lubrication_alone(Physics physics) {
@@ -57,7 +55,7 @@ std::optional<StepReport> NoisyMidpoint::find_velocities(System& system) {
   for_each_range(system.particles.count(), field_.threads(), [&](std::size_t begin, std::size_t end) {
     with_noise_.add_drag_noise(system, begin, end, noise_.force, noise_.torque);
   });
-  const bool predicted = solve(system, of_prediction, report);
+  const bool predicted = solve(system, factor_of_prediction, report);
 
   if (!move_half_a_step(system)) return std::nullopt;
   stress_.predict(system, assemble(system, ahead_, loads_), loads_, field_.physics());

@@ -3,16 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/integrators/implicit_rules.h"
 #include "engine/state/threads.h"
 #include "engine/terms/drag.h"
 
 namespace peclet::engine {
-namespace {
-
-// A limit far above what any packing has needed.
-constexpr int most_iterations = 1000;
-
-}  // namespace
 
 VelocitySolver::VelocitySolver(const Physics& physics, const ParticleState& particles, double timestep,
                                double tolerance, int threads, InstructionSet set, double drag_share)
@@ -115,7 +110,7 @@ bool VelocitySolver::correct(System& system, double target, StepReport& report) 
   SolverReport solved;
   run_team(threads_, [&](Team& team) {
     const double squared = begun_ ? *begun_ : link_.begin(matrix, rows(), team);
-    const SolverReport found = link_.solve(matrix, rows(), squared, target, most_iterations, team);
+    const SolverReport found = link_.solve(matrix, rows(), squared, target, most_solver_iterations, team);
     link_.add_motion(matrix, solution_.data(), system.particles.velocity.data(),
                      system.particles.angular_velocity.data(), team);
     if (team.is_first()) solved = found;

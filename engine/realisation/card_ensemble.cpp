@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
-#include <new>
+#include <exception>
 #include <stdexcept>
 
 #include "engine/card/card_setup.h"
+#include "engine/integrators/acted_stress.h"
 #include "engine/integrators/implicit.h"
 #include "engine/kernels/pair_recipes.h"
 #include "engine/realisation/checkpoint.h"
@@ -56,12 +56,6 @@ void give_back(Integrator& integrator, const Kept& kept, bool noisy) {
   archive.put_all(kept.displacement_bound);
   ArchiveReader reader(archive.bytes());
   integrator.load(reader);
-}
-
-StressTerm carried_term_of(const Physics& physics) {
-  if (physics.lubrication) return StressTerm::lubrication;
-  if (physics.contact) return StressTerm::contact_normal;
-  return physics.repulsion ? StressTerm::repulsion : StressTerm::attraction;
 }
 
 }  // namespace
@@ -127,6 +121,9 @@ std::optional<InputError> CardEnsemble::refusal(const Scene& scene, const std::s
   }
   if (scene.start) return refuse("/start", "must be absent: spheres are packed");
   if (scene.height) return refuse("/box", "must be absent: a cube");
+  if (device_->places(card_variant_of(physics).number(), scene.particles.count) == 0) {
+    return refuse("/particles/count", "must fit into the shared memory of a thread block");
+  }
   return std::nullopt;
 }
 
@@ -167,7 +164,7 @@ std::shared_ptr<CardEnsemble::LoadedScene> CardEnsemble::load(const Simulation& 
   card.touching = physics.contact.has_value();
   const Terms terms = required_terms(physics);
   card.springs = terms.friction;
-  card.carried_term = static_cast<std::uint32_t>(carried_term_of(physics));
+  card.carried_term = static_cast<std::uint32_t>(carried_term(physics));
   const double volume = system.box.volume();
   card.shell = structural_shell;
   card.per_structure = -physics.thermal_energy / (structural_shell * volume);
@@ -195,7 +192,7 @@ std::shared_ptr<CardEnsemble::LoadedScene> CardEnsemble::load(const Simulation& 
   card.is_narrow = 2 * farthest >= narrowest;
 
   card.tolerance = scene.solver_tolerance * (physics.thermal_energy > 0 ? share_of_tolerance_with_noise : 1);
-  card.usual_tolerance = usual_tolerance;
+  card.tightness = std::min(card.tolerance / usual_tolerance, 1.0);
   const auto& steps = static_cast<const Implicit&>(*simulation.integrator_);
   card.longest_way = steps.longest_way();
   card.most_divisions = Implicit::deepest_division;
@@ -489,6 +486,27 @@ std::optional<Ending> CardEnsemble::serve(Slot& slot) {
   return Ending{Ending::Cause::completed, at.step, "the production window is complete"};
 }
 
+// Serves slots side by side, and takes out those that have ended.
+void CardEnsemble::serve_all(const std::vector<Slot*>& slots, std::vector<Ended>& ended) {
+  std::vector<std::optional<Ending>> endings(slots.size());
+  std::vector<std::exception_ptr> faults(slots.size());  // which must not leave a thread of the loop
+  for_each_index(slots.size(), omp_get_num_procs(), [&](std::size_t k) {
+    try {
+      endings[k] = serve(*slots[k]);
+    } catch (...) {
+      faults[k] = std::current_exception();
+    }
+  });
+  for (const std::exception_ptr& fault : faults) {
+    if (fault) std::rethrow_exception(fault);
+  }
+  for (std::size_t k = 0; k < slots.size(); ++k) {
+    if (!endings[k]) continue;
+    ended.push_back({slots[k]->simulation, *endings[k]});
+    std::erase_if(slots_, [&](const auto& slot) { return slot.get() == slots[k]; });
+  }
+}
+
 std::vector<Ensemble::Ended> CardEnsemble::advance(std::chrono::duration<double> time) {
   std::map<unsigned, std::vector<Slot*>> by_variant;
   std::vector<Slot*> waiting;  // for the host
@@ -514,10 +532,15 @@ std::vector<Ensemble::Ended> CardEnsemble::advance(std::chrono::duration<double>
     device_->begin(variant, particles, reinterpret_cast<const CardSlot*>(array), places.size(), bounds);
   }
   // Meanwhile the host serves those that wait for it.
-  std::vector<std::optional<Ending>> endings(waiting.size());
-  for_each_index(waiting.size(), omp_get_num_procs(),
-                 [&](std::size_t k) { endings[k] = serve(*waiting[k]); });
-  device_->finish();
+  std::vector<Ended> ended;
+  std::exception_ptr fault;
+  try {
+    serve_all(waiting, ended);
+  } catch (...) {
+    fault = std::current_exception();
+  }
+  device_->finish();  // before memory that the device reads is released
+  if (fault) std::rethrow_exception(fault);
   for (const auto& [variant, slots] : by_variant) {
     for (Slot* slot : slots) {
       device_->download(&slot->progress, slot->own.progress, sizeof(CardProgress));
@@ -527,19 +550,13 @@ std::vector<Ensemble::Ended> CardEnsemble::advance(std::chrono::duration<double>
     }
   }
   // An ended realisation leaves in the same call: a state without its ending could not be brought home.
+  waiting.clear();
   for (const auto& [variant, slots] : by_variant) {
     for (Slot* slot : slots) {
-      if (slot->progress.status != CardStatus::ended) continue;
-      waiting.push_back(slot);
-      endings.push_back(serve(*slot));
+      if (slot->progress.status == CardStatus::ended) waiting.push_back(slot);
     }
   }
-  std::vector<Ended> ended;
-  for (std::size_t k = 0; k < waiting.size(); ++k) {
-    if (!endings[k]) continue;
-    ended.push_back({waiting[k]->simulation, *endings[k]});
-    std::erase_if(slots_, [&](const auto& slot) { return slot.get() == waiting[k]; });
-  }
+  serve_all(waiting, ended);
   return ended;
 }
 

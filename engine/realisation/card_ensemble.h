@@ -46,6 +46,7 @@ class CardEnsemble final : public Ensemble {
   void settle(Slot& slot);
   // Does what the host has to do for a slot; returns the ending if it has one.
   std::optional<Ending> serve(Slot& slot);
+  void serve_all(const std::vector<Slot*>& slots, std::vector<Ended>& ended);
   Slot& slot_of(const Simulation& simulation);
 
   std::unique_ptr<CardDevice> device_;

@@ -252,7 +252,12 @@ CHANGES = [
         "own_.velocity_change[i] = row(vector(own_.velocity[i]) - vector(own_.begin_velocity[i]));",
         "own_.velocity_change[i] = row(vector(own_.velocity[i]));",
     ),
-    ("a tolerance that is not met", STEPS, "iteration < usual ? target : ", "iteration < usual ? 1e4 * target : "),
+    (
+        "a tolerance that is not met",
+        STEPS,
+        "iteration < iterations.usual ? target : ",
+        "iteration < iterations.usual ? 1e4 * target : ",
+    ),
     ("energies of the wrong mass", WINDOW, "sums.sum[0] += size.mass * dot(u, u).v;", "sums.sum[0] += dot(u, u).v;"),
 ]
 

@@ -46,9 +46,9 @@ NAMED = [
     (
         "predictor without noise",
         NOISY,
-        "  const bool predicted = solve(system, of_prediction, report);",
+        "  const bool predicted = solve(system, factor_of_prediction, report);",
         "  const Loads drawn = noise_;\n  noise_ = Loads(system.particles.count(), 1);\n"
-        "  const bool predicted = solve(system, of_prediction, report);\n  noise_ = drawn;",
+        "  const bool predicted = solve(system, factor_of_prediction, report);\n  noise_ = drawn;",
         "physics_tests:NoisyDrift.OfALubricatedPairIsTheDivergenceOfItsMobility",
     ),
     (

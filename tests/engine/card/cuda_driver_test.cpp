@@ -18,11 +18,11 @@ std::string refusal_of_card(int ordinal) {
 
 TEST(CudaDriver, SaysInOneSentenceWhyThereIsNoCard) {
   const std::optional<std::string> reason = why_no_card();
-  if (!reason) GTEST_SKIP() << "this machine has a card";
+  EXPECT_EQ(refusal_of_card(0), reason.value_or(""));
+  EXPECT_EQ(why_no_card(), reason);  // a second look finds the same
+  if (!reason) return;               // this machine has a card
   EXPECT_GT(reason->size(), 10u);
   EXPECT_EQ(reason->find('\n'), reason->npos);
-  EXPECT_EQ(refusal_of_card(0), *reason);
-  EXPECT_EQ(why_no_card(), reason);  // a second look finds the same
 }
 
 TEST(CudaDriver, RefusesACardThatThereIsNot) { EXPECT_NE(refusal_of_card(1000), ""); }
