@@ -111,7 +111,7 @@ TEST(Result, TheViscosityOfAUniaxialExtensionIsAThirdOfTheExtensionalOne) {
                                    {"integrator", {{"method", "implicit"}}},
                                    {"duration", {{"equilibration", {{"time", 0.02}}}}}});
     const Json &mean = result.at("mean"), &total = mean.at("stress").at("total");
-    const auto component = [&](int c) { return total[c].get<double>(); };
+    const auto component = [&](std::size_t c) { return total[c].get<double>(); };
     const double expected = (component(0) - (component(1) + component(2)) / 2) / std::sqrt(3.0) * rate;
     EXPECT_NEAR(mean.at("relative_viscosity"), expected, 1e-12 * std::abs(expected));
     // Solvent and stresslets contribute 1 + 2.5 phi.

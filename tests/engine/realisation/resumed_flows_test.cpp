@@ -38,7 +38,7 @@ TEST_P(ResumedFlow, EndsAsTheUncutOneWhereverItWasCut) {
                               {{0, 1}, {157, 1}, {251, 1}, {252, 1}, {450, 2}});
 }
 
-constexpr std::uint64_t three_cycles = 3 * 128;
+constexpr std::uint64_t three_cycles = std::uint64_t{3} * 128;
 
 class ResumedOscillation : public testing::TestWithParam<const char*> {
  protected:

@@ -61,7 +61,7 @@ TEST_F(ServingMany, GivesTheResultOfEachJobAlone) {
     Json result = Json::parse(read_file(spool(job)));
     EXPECT_EQ(result.at("engine").at("device"), "stand-in 1");
     EXPECT_EQ(result.at("engine").at("instruction_set"), hello_.at("engine").at("instruction_set"));
-    JobSpecification same = job_of(brief, "", static_cast<std::uint64_t>(100 + job));
+    JobSpecification same = job_of(brief, "", 100U + static_cast<std::uint64_t>(job));
     same.header.point = std::string(64, 'a');
     Json alone = run_job(same, {}).value();
     for (Json* const one : {&result, &alone}) one->erase("engine");
