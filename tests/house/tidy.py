@@ -27,6 +27,7 @@ def main():
     build, parts = sys.argv[1], sys.argv[2:]
     with open(os.path.join(build, "compile_commands.json"), encoding="utf-8") as commands:
         files = sorted({command["file"] for command in json.load(commands)})
+    files = [path for path in files if path.endswith((".cpp", ".cxx"))]
     if parts == ["--programs"]:
         files = [path for path in files if "/tests/" not in path]
     else:
