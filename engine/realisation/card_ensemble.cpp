@@ -567,13 +567,6 @@ CardEnsemble::Slot& CardEnsemble::slot_of(const Simulation& simulation) {
   return **found;
 }
 
-void CardEnsemble::bring_home(Simulation& simulation) {
-  Slot& slot = slot_of(simulation);
-  settle(slot);
-  bring_home(slot);
-  device_->upload(slot.own.progress, &slot.progress, sizeof slot.progress);  // builds have been counted
-}
-
 void CardEnsemble::remove(Simulation& simulation) {
   Slot& slot = slot_of(simulation);
   settle(slot);

@@ -27,7 +27,6 @@ class CardEnsemble final : public Ensemble {
   std::optional<InputError> refusal(const Scene& scene, const std::string& file) const override;
   void add(Simulation& simulation) override;
   std::vector<Ended> advance(std::chrono::duration<double> time) override;
-  void bring_home(Simulation& simulation) override;
   void remove(Simulation& simulation) override;
   std::uint64_t steps_made(const Simulation& simulation) const override;
   double net_strain(const Simulation& simulation) const override { return progress(simulation).strain; }

@@ -1,9 +1,8 @@
 // Ensemble advances many independent realisations side by side.
 //
-// Between add() and remove() a realisation belongs to the ensemble: its Simulation holds the state of the
-// last bring_home() only. A result depends on scene and seed alone, whatever else the ensemble computes. One
-// thread adds, advances and removes; functions that take no Simulation and change nothing may be called by
-// any.
+// Between add() and remove() a realisation belongs to the ensemble: its Simulation holds the state with which
+// it was added. A result depends on scene and seed alone, whatever else the ensemble computes. One thread
+// adds, advances and removes; functions that take no Simulation and change nothing may be called by any.
 #pragma once
 
 #include <chrono>
@@ -44,17 +43,14 @@ class Ensemble {
     Simulation* simulation;
     Ending ending;
   };
-  // Advances all realisations for about this time. Returns those that have ended; these are at home again,
-  // and no longer belong to the ensemble. After an exception the ensemble may only be destroyed.
+  // Advances all realisations for about this time. Returns those that have ended: they have been removed.
+  // After an exception the ensemble may only be destroyed.
   virtual std::vector<Ended> advance(std::chrono::duration<double> time) = 0;
 
-  // Brings the present state of a realisation into its Simulation, for a checkpoint; it stays in the
-  // ensemble.
-  virtual void bring_home(Simulation& simulation) = 0;
-  // Brings a realisation home and takes it out. It may be added again.
+  // Brings the present state of a realisation into its Simulation, and takes it out. It may be added again.
   virtual void remove(Simulation& simulation) = 0;
 
-  // Return the number of steps that a realisation has made, and its net strain, without bringing it home.
+  // Return the number of steps that a realisation has made, and its net strain.
   virtual std::uint64_t steps_made(const Simulation& simulation) const = 0;
   virtual double net_strain(const Simulation& simulation) const = 0;
 };

@@ -2,16 +2,20 @@
 // tables.
 //
 //   card_check [SECONDS [LARGEST]]      SECONDS of each measurement; LARGEST number of spheres
+//   card_check errors [SEEDS]           needs no card: errors of the solvers of processor and card, N = 1000
 //
 // CARD_PROGRAMS names a folder of PTX, 0.ptx and so on, to use in the place of that of this build. Exits with
 // 1 if the card is wrong.
 #include <fmt/format.h>
 #include <omp.h>
 
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "contract/sha256.h"
@@ -181,6 +185,58 @@ bool compare() {
   return is_right;
 }
 
+// Prints iterations of one step from the same states, and errors of its velocities, beside a tight tolerance.
+void compare_solvers(std::size_t seeds) {
+  constexpr std::size_t spheres = 1000;
+  constexpr std::uint64_t steps_before = 100;
+  constexpr double tight = 1e-7;
+  fmt::print("one step at the default tolerance, N = {}, {} states: iterations, and errors of velocities\n",
+             spheres, seeds);
+  fmt::print("{:12} {:>9} {:>9} {:>5} {:>9} {:>9} {:>5}\n", "scene", "processor", "card", "ratio",
+             "processor", "card", "ratio");
+  for (std::size_t k = 0; k < timed_scenes; ++k) {
+    Json json = document(scenes[k], spheres);
+    json["duration"]["equilibration"]["strain"] = 0.02;  // iterations are counted in the production window
+    const Case usual(json);
+    json["integrator"]["tolerance"] = tight;
+    const Case exact(json);
+    const Simulations states = usual.started(seeds);
+#pragma omp parallel for schedule(dynamic)
+    for (std::size_t s = 0; s < seeds; ++s) states[s]->advance(steps_before);
+    const auto from_states = [&](const Case& of) {
+      Simulations all(seeds);
+      for (std::size_t s = 0; s < seeds; ++s) {
+        all[s] = std::make_unique<Simulation>(of.scene, of.schedule, s, 1, "scene");
+        all[s]->start(states[s]->system());
+      }
+      return all;
+    };
+    const Simulations reference = from_states(exact), processor = from_states(usual),
+                      card = from_states(usual);
+#pragma omp parallel for schedule(dynamic)
+    for (std::size_t s = 0; s < seeds; ++s) {
+      reference[s]->advance(1);
+      processor[s]->advance(1);
+    }
+    CardEnsemble ensemble(emulated_card(seeds));
+    ensemble.limit_steps(1);
+    for (const auto& simulation : card) ensemble.add(*simulation);
+    ensemble.advance(std::chrono::duration<double>(0));
+    for (const auto& simulation : card) ensemble.remove(*simulation);
+    std::array<double, 2> iterations{}, errors{};
+    for (std::size_t s = 0; s < seeds; ++s) {
+      for (const auto& [i, one] : {std::pair(0U, &processor), std::pair(1U, &card)}) {
+        iterations.at(i) += static_cast<double>((*one)[s]->step_errors().solver_iterations);
+        errors.at(i) += difference(reference[s]->system(), (*one)[s]->system());
+      }
+    }
+    const auto mean = [&](double sum) { return sum / static_cast<double>(seeds); };
+    fmt::print("{:12} {:>9.1f} {:>9.1f} {:>5.1f} {:>9.4f} {:>9.4f} {:>5.1f}\n", scenes[k].name,
+               mean(iterations[0]), mean(iterations[1]), iterations[1] / iterations[0], mean(errors[0]),
+               mean(errors[1]), errors[1] / errors[0]);
+  }
+}
+
 double per_step(std::uint64_t number, const Simulation& simulation) {
   return static_cast<double>(number) /
          static_cast<double>(std::max<std::uint64_t>(1, sum_of(simulation.production().blocks()).steps));
@@ -211,7 +267,7 @@ void measure(const NamedScene& named, std::size_t spheres, double seconds) {
   for (const std::uint64_t part : ensemble.progress(*on_card.front()).cycles) {
     shares += fmt::format(" {:>3.0f}", 100 * static_cast<double>(part) / cycles);
   }
-  for (const auto& simulation : on_card) ensemble.bring_home(*simulation);
+  for (const auto& simulation : on_card) ensemble.remove(*simulation);
 
   // The processor goes on from states of the card.
   const auto threads = static_cast<std::size_t>(omp_get_num_procs());
@@ -240,6 +296,10 @@ void measure(const NamedScene& named, std::size_t spheres, double seconds) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc > 1 && argv[1] == std::string_view("errors")) {
+    compare_solvers(argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 6);
+    return 0;
+  }
   const double seconds = argc > 1 ? std::atof(argv[1]) : 1;
   const std::size_t largest = argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 4000;
   if (const std::optional<std::string> lack = why_no_card()) {

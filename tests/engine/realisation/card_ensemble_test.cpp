@@ -146,10 +146,6 @@ TEST(ACardEnsemble, HasTheSameBitsAfterInterruptions) {
       for (Job& job : all) {
         if (job.end || random() % (stride == 3 ? 20 : 2) != 0) continue;
         ++interruptions;
-        if (random() % 4 == 0) {
-          ensemble.bring_home(*job.simulation);  // for a checkpoint
-          continue;
-        }
         ensemble.remove(*job.simulation);
         const std::string checkpoint = bytes_of(*job.simulation);
         job.simulation = std::make_unique<Simulation>(simulation_of(job.scene, job.seed));

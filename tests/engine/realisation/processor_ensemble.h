@@ -56,12 +56,9 @@ class ProcessorEnsemble : public Ensemble {
     for (const Ended& one : ended) std::erase(members_, one.simulation);
     return ended;
   }
-  void bring_home(Simulation& simulation) override {
+  void remove(Simulation& simulation) override {
     expect_one_user();
     EXPECT_TRUE(holds(simulation));
-  }
-  void remove(Simulation& simulation) override {
-    bring_home(simulation);
     std::erase(members_, &simulation);
   }
   std::uint64_t steps_made(const Simulation& simulation) const override { return simulation.system().step; }

@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
 #include <sched.h>
 
+#include <cstdlib>
+
 #include "contract/durable_file.h"
+#include "runner/engines/engine_process.h"
 #include "runner/engines/worker_process.h"
 #include "tests/runner/runner_fixture.h"
 
@@ -55,6 +58,31 @@ TEST_F(CoreQuota, OfVersionOneIsThatOfItsController) {
   EXPECT_EQ(quota(groups), 2);
   write("cpu,cpuacct/job/cpu.cfs_quota_us", "-1\n");
   EXPECT_EQ(quota(groups), std::nullopt);
+}
+
+// The driver has a file for each card, and others for all cards together.
+TEST(VisibleCards, AreThoseThatHaveAFile) {
+  ::unsetenv("CUDA_VISIBLE_DEVICES");
+  const TemporaryFolder devices;
+  EXPECT_EQ(visible_cards(devices.path() / "absent"), 0);
+  for (const char* file : {"nvidiactl", "nvidia-uvm", "nvidia", "null"})
+    write_durably(devices.path() / file, "");
+  EXPECT_EQ(visible_cards(devices.path()), 0);
+  for (const char* file : {"nvidia0", "nvidia1", "nvidia10"}) write_durably(devices.path() / file, "");
+  EXPECT_EQ(visible_cards(devices.path()), 3);
+}
+
+// CUDA C++ Programming Guide, environment variables: an empty list and one that begins with an invalid number
+// hide all cards.
+TEST(VisibleCards, AreThoseThatTheEnvironmentNames) {
+  const TemporaryFolder devices;
+  write_durably(devices.path() / "nvidia0", "");
+  for (const auto& [names, cards] :
+       {std::pair{"", 0}, {"-1", 0}, {"2", 1}, {"0,3", 2}, {"GPU-4f,GPU-7a", 2}}) {
+    ASSERT_EQ(::setenv("CUDA_VISIBLE_DEVICES", names, 1), 0);
+    EXPECT_EQ(visible_cards(devices.path()), cards) << names;
+  }
+  ::unsetenv("CUDA_VISIBLE_DEVICES");
 }
 
 }  // namespace
