@@ -149,6 +149,13 @@ constexpr const char* frame_rows = R"(
 /steps | count | Estimated total number of steps; 0 while packing.
 /strain | number >= -{largest} and <= {largest}
 
+-- carrying | Engine: files of the job are coming from another machine, which renews the leases of its jobs. At most once
+    a second.
+{job}
+
+-- lost | Engine: its part on another machine is gone, or the link to it. Its jobs are queued again without blame.
+/message | string
+
 -- result | Engine: the result is on disk, in the file named spool.
 {job}
 /spool | string | Path of the result, as in the job.

@@ -79,7 +79,8 @@ bool wait_until_readable(int descriptor,
 
 std::string encode_frame(const Json& message) {
   if (!is_message(message)) throw FrameError("a message is a JSON object with a \"type\"");
-  const std::string payload = message.dump(-1, ' ', false, Json::error_handler_t::replace);
+  // Launchers (srun) hold a line back until it is whole.
+  const std::string payload = message.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
   if (payload.size() > largest_frame) {
     throw FrameError(fmt::format("a message of {} bytes is longer than {}", payload.size(), largest_frame));
   }

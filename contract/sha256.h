@@ -1,7 +1,9 @@
-// Computes SHA-256 hashes, as lower-case hexadecimal.
+// Computes SHA-256 hashes, as lower-case hexadecimal, and base64.
 #pragma once
 
 #include <filesystem>
+#include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -16,5 +18,26 @@ std::string sha256_of_open(int file, const std::filesystem::path& path);
 
 // Returns the SHA-256 of a file's content. Throws std::system_error naming the path.
 std::string sha256_of_file(const std::filesystem::path& path);
+
+// Hashes bytes as they come.
+class Sha256 {
+ public:
+  Sha256();
+  ~Sha256();
+  Sha256(Sha256&&) noexcept;
+  Sha256& operator=(Sha256&&) = delete;
+  void add(std::string_view bytes);
+  // Returns the hash of all bytes until now; more may be added.
+  std::string hash() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+// Returns the bytes in base64, with padding.
+std::string base64(std::string_view bytes);
+// Returns the bytes that a text in base64 stands for; nothing if it is not one.
+std::optional<std::string> bytes_of_base64(std::string_view text);
 
 }  // namespace peclet

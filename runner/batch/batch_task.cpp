@@ -43,7 +43,7 @@ class BatchTask {
         folder_(std::move(folder)),
         index_(index),
         run_(name_of_this_run()),
-        pool_(1, command(), CampaignDirectory(folder_.task(index)), signals),
+        pool_({command()}, CampaignDirectory(folder_.task(index)), signals),
         lease_(manifest_.lease_seconds),
         awake_(Clock::now(), lease_) {}
 
@@ -95,6 +95,8 @@ class BatchTask {
   void handle(const JobFailed& event);
   void handle(const Drained& event);
   void handle(const ShortOfRoom& event);
+  void handle(const Carrying&) { condemn({AttemptOutcome::garbled, "carries files on this machine"}); }
+  void handle(const Lost& event) { condemn({AttemptOutcome::garbled, event.message}); }
   void handle(const Garbled& event) { condemn({AttemptOutcome::garbled, event.message}); }
   void handle(const Exited& event);
   void handle(const StopSignal& event);

@@ -7,6 +7,7 @@
 #include "runner/command_line/run.h"
 #include "runner/command_line/validate.h"
 #include "runner/command_line/verb_set.h"
+#include "runner/launch/launched_worker.h"
 #include "runner/maintenance/backup.h"
 #include "runner/maintenance/doctor.h"
 
@@ -26,6 +27,13 @@ void add_team(CLI::App* verb, RunOptions& run) {
              "Engine processes; unless given, one for each card that --device finds, else cores / threads");
   add_number(verb, "--threads", run.threads, whole_number(1, 4096),
              "Threads of each; unless given, cores / workers if --workers is given, else 1");
+}
+
+void add_file_of_hosts(CLI::App* verb, std::filesystem::path& hosts) {
+  add_option(
+      verb, "--hosts FILE", hosts,
+      "File with a host on each line, as node1 slots=8: that many workers there, started by ssh or the "
+      "command of --launch");
 }
 
 void add_init(VerbSet& verbs) {
@@ -94,6 +102,10 @@ the exit code is 75 and the campaign can be resumed. Progress goes to standard e
 to standard output. With --jsonl, events are printed instead, which schema/README.md describes.
 
   peclet run flow-curve.json --workers 8
+  # 64 workers on the nodes of this Slurm job
+  peclet run flow-curve.json --launch 'srun --exact -N1 -n1 -c{threads}' --workers 64
+  # on other machines, by ssh
+  peclet run flow-curve.json --hosts hosts.txt
   # for eight hours; the same command resumes it tomorrow
   peclet run flow-curve.json --time-limit 28800
   # follow it with a program
@@ -103,6 +115,10 @@ to standard output. With --jsonl, events are printed instead, which schema/READM
 )");
   add_campaign_file(verb, *options);
   add_team(verb, *options);
+  add_option(verb, "--launch COMMAND", options->launch,
+             "Shell command that starts a program on another machine; each worker is started through it. "
+             "{threads} and {host} are replaced");
+  add_file_of_hosts(verb, options->hosts);
   add_number(verb, "--time-limit SECONDS", options->time_limit, number_above(0),
              "Seconds after which workers checkpoint and stop");
   add_number(
@@ -363,6 +379,24 @@ SIGUSR1 make the engine save a checkpoint and exit.
   add_number(verb, "index", options->index, whole_number(0, 1e9), "Number of the task, from 0")->required();
 }
 
+void add_worker(VerbSet& verbs) {
+  const auto [verb, options] = verbs.add<WorkerOptions>(
+      run_worker, "worker", "Be a worker of a campaign on another machine; what `peclet run --launch` calls",
+      {0, 1, 2}, R"(
+Without options it is the end on the other machine: it starts the engine that the frames on standard input
+name, and carries files in both directions. With --through it is the end beside the owner.
+
+  # whether a launcher works: this prints a frame that begins with PCF1
+  ssh node1 /usr/local/bin/peclet worker </dev/null | head -c 60
+)");
+  add_option(verb, "--through COMMAND", options->through, "Shell command that starts the other end");
+  add_number(verb, "--silence SECONDS", options->silence_seconds, number_above(0),
+             "Seconds without a frame after which the other end counts as lost")
+      ->capture_default_str();
+  add_option(verb, "engine", options->engine,
+             "Program of the engine and its arguments, on the other machine");
+}
+
 }  // namespace
 
 void add_changing_verbs(VerbSet& verbs) {
@@ -372,6 +406,7 @@ void add_changing_verbs(VerbSet& verbs) {
   add_hand_over(verbs);
   add_ingest(verbs);
   add_task(verbs);
+  add_worker(verbs);
   add_backup(verbs);
   add_restore(verbs);
   add_doctor(verbs);

@@ -18,6 +18,7 @@
 #include "runner/command_line/print.h"
 #include "runner/engines/engine_process.h"
 #include "runner/engines/worker_process.h"
+#include "runner/launch/launching.h"
 #include "runner/maintenance/backup.h"
 #include "runner/owner/dispatcher.h"
 #include "runner/owner/event_stream.h"
@@ -64,6 +65,22 @@ WorkerCount useful_worker_count(const RunOptions& options, const Campaign& campa
   const auto seeds = static_cast<std::int64_t>(campaign.points.size()) * campaign.maximum_realisations;
   size.workers = static_cast<int>(std::min<std::int64_t>(seeds, size.workers));
   return size;
+}
+
+bool is_launched(const RunOptions& options) { return !options.launch.empty() || !options.hosts.empty(); }
+
+// Returns the workers that are launched; none if they run on this machine.
+LaunchedWorkers workers_elsewhere(const RunOptions& options, const WorkerCount& size,
+                                  const EngineCommand& engine) {
+  if (!is_launched(options)) return {};
+  Launching launching;
+  launching.launcher = options.launch;
+  if (!options.hosts.empty()) launching.hosts = read_hosts(options.hosts);
+  launching.workers = size.workers;
+  launching.threads = size.threads;
+  // A lost link is noticed before a job counts as standing still.
+  launching.silence_seconds = options.lease_seconds / 2;
+  return launched_workers(engine, launching);
 }
 
 // Warns if the threads of all workers exceed the usable cores more than fourfold.
@@ -136,7 +153,7 @@ int dispatch(OpenedRun& opened, const RunOptions& options, const ClaimedCampaign
   using std::chrono::steady_clock;
   const CampaignDirectory& directory = claimed.directory;
   const WorkerCount size = useful_worker_count(options, claimed.campaign);
-  judge_worker_count(size, log);
+  if (!is_launched(options)) judge_worker_count(size, log);
   allow_open_files(size.workers);
   PeriodicBackup backup(directory, std::chrono::duration<double>(options.backup_seconds), log,
                         steady_clock::now());
@@ -156,7 +173,12 @@ int dispatch(OpenedRun& opened, const RunOptions& options, const ClaimedCampaign
   log.record(fmt::format("{} begins: process {}, {} workers of {} threads, engine {}",
                          directory.root().string(), getpid(), size.workers, size.threads,
                          claimed.command.program.string()));
-  ProcessPool pool(size.workers, claimed.command, directory, signals);
+  LaunchedWorkers launched = workers_elsewhere(options, size, claimed.command);
+  settings.hosts = launched.hosts;
+  ProcessPool pool(is_launched(options)
+                       ? std::move(launched.commands)
+                       : std::vector(static_cast<std::size_t>(size.workers), claimed.command),
+                   directory, signals);
   Dispatcher dispatcher(opened.database, opened.state, pool, log, settings, steady_clock::now);
   const bool finished = dispatcher.run() == Dispatcher::Ending::finished;
   backup.finish();
@@ -235,6 +257,16 @@ int workers_for_cards(const std::string& device) {
 }  // namespace
 
 WorkerCount worker_count(const RunOptions& options) {
+  if (is_launched(options)) {
+    int workers = options.workers;
+    if (!options.hosts.empty()) {
+      std::int64_t slots = 0;
+      for (const Host& host : read_hosts(options.hosts)) slots += host.slots;
+      workers = static_cast<int>(std::min<std::int64_t>(slots, workers > 0 ? workers : slots));
+    }
+    if (workers == 0) throw InputError("", "--workers", "absent", "must be given with --launch");
+    return {workers, std::max(1, options.threads)};
+  }
   const int cores = usable_cores();
   const int workers = options.workers == 0 ? workers_for_cards(options.device) : options.workers;
   if (workers > 0 && options.threads > 0) return {workers, options.threads};

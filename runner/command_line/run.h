@@ -28,6 +28,8 @@ struct RunOptions {
   std::string device;                  // as in choose_device()
   int workers = 0;                     // 0: one for each card of the device, else cores / threads
   int threads = 0;                     // for each worker; 0: 1, or cores / workers if workers are given
+  std::string launch;                  // shell command that starts workers elsewhere; "": none
+  std::filesystem::path hosts;         // file of hosts of workers; "": none
   bool quiet = false;                  // no progress
   bool jsonl = false;                  // events on standard output, instead of the table at the end
   std::optional<double> time_limit;    // seconds until the drain

@@ -334,6 +334,13 @@ CommandAnswer run_command(const std::vector<std::string>& words, std::chrono::se
   return answer;
 }
 
+PipedProgram start_piped(std::vector<std::string> words) {
+  Ends input = make_pipe(), output = make_pipe();
+  SpawnSettings settings(input.first.number(), output.second.number(), STDERR_FILENO);
+  const pid_t process = settings.spawn(std::move(words));
+  return {std::move(input.second), std::move(output.first), process};
+}
+
 StopSignals::StopSignals(int one_more) {
   sigemptyset(&stopping_);
   for (const int number : {SIGINT, SIGTERM, one_more}) sigaddset(&stopping_, number);

@@ -103,6 +103,15 @@ struct CommandAnswer {
 CommandAnswer run_command(const std::vector<std::string>& words, std::chrono::seconds patience,
                           const std::string& input = "");
 
+// A program that runs with a pipe to its standard input and one from its standard output, in a process group
+// of its own. It shares the standard error of this process.
+struct PipedProgram {
+  Descriptor input, output;  // this process's ends
+  pid_t process;
+};
+// Starts a program that is found on PATH. Throws std::system_error.
+PipedProgram start_piped(std::vector<std::string> words);
+
 // Receives SIGINT, SIGTERM, SIGHUP (the terminal or connection is gone) and `one_more` through a descriptor
 // that can be polled. While the object lives, they are blocked in this thread and in threads that it starts.
 // SIGHUP is left alone if it is ignored, as under nohup.

@@ -356,7 +356,7 @@ CostTrial try_cost(const Json& scene, const EngineCommand& command, int seeds) {
   const CampaignDirectory directory(folder.path());
   create_folders(directory);
   StopSignals signals;
-  ProcessPool pool(1, command, directory, signals);
+  ProcessPool pool({command}, directory, signals);
   Trial trial(scene, seeds);
   pool.start(0);
   bool goes_on = true;

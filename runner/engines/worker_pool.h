@@ -65,6 +65,14 @@ struct ShortOfRoom {  // it could not write a file of its job, keeps its work an
   fs::path path;
   std::uint64_t bytes;
 };
+struct Carrying {  // files of the job are coming from another machine
+  int worker;
+  std::int64_t job;
+};
+struct Lost {  // it or its link is gone, on the way to another machine
+  int worker;
+  std::string message;
+};
 struct Garbled {  // it sent something that is not a message and has been killed; Exited follows
   int worker;
   std::string message;
@@ -75,8 +83,8 @@ struct Exited {  // the last event of a process
 };
 struct StopSignal {};  // SIGINT or SIGTERM came
 
-using WorkerEvent = std::variant<Hello, Progressed, ResultSpooled, JobFailed, Drained, ShortOfRoom, Garbled,
-                                 Exited, StopSignal>;
+using WorkerEvent = std::variant<Hello, Progressed, ResultSpooled, JobFailed, Drained, ShortOfRoom, Carrying,
+                                 Lost, Garbled, Exited, StopSignal>;
 
 class WorkerPool {
  public:

@@ -67,7 +67,6 @@ std::optional<double> quota_of(const fs::path& group) {
 }
 
 constexpr Awake longest_turn{1};
-constexpr Awake hello_patience{60};
 
 using Time = std::chrono::steady_clock;
 
@@ -116,6 +115,8 @@ WorkerEvent as_event(int worker, Json given) {
   if (type == "result") return ResultSpooled{worker, count("job"), text("spool"), text("sha256")};
   if (type == "failed") return JobFailed{worker, count("job"), plain(text("message"))};
   if (type == "drained") return Drained{worker, count("job"), count("step")};
+  if (type == "carrying") return Carrying{worker, count("job")};
+  if (type == "lost") return Lost{worker, plain(text("message"))};
   if (type == "no-room")
     return ShortOfRoom{worker, count("job"), text("path"), static_cast<std::uint64_t>(count("bytes"))};
   throw FrameError("unexpected message: " + type);
@@ -163,8 +164,9 @@ void AwakeClock::end_turn(Time now) {
   heard_ = now;
 }
 
-void WorkerWatch::start(Awake now) {
+void WorkerWatch::start(Awake now, Awake hello_patience) {
   *this = {};
+  hello_patience_ = hello_patience;
   stage_ = Stage::starting;
   started_ = now;
 }
@@ -195,7 +197,7 @@ void WorkerWatch::condemn(AttemptReason reason) {
 
 bool WorkerWatch::is_overdue(Awake now, Awake lease) const {
   if (condemned_) return false;
-  return (stage_ == Stage::starting && now - started_ > hello_patience) ||
+  return (stage_ == Stage::starting && now - started_ > hello_patience_) ||
          (is_busy() && now - slowest().renewed > lease);
 }
 
@@ -257,16 +259,19 @@ void allow_open_files(int workers) {
     throw std::system_error(errno, std::generic_category(), "setrlimit");
 }
 
-ProcessPool::ProcessPool(int workers, EngineCommand command, CampaignDirectory directory,
+ProcessPool::ProcessPool(std::vector<EngineCommand> commands, CampaignDirectory directory,
                          StopSignals& signals)
-    : command_(std::move(command)), directory_(std::move(directory)), signals_(signals) {
-  workers_.resize(static_cast<std::size_t>(workers));
-  for (int worker = 0; worker < workers; ++worker) {
+    : commands_(std::move(commands)), directory_(std::move(directory)), signals_(signals) {
+  workers_.resize(commands_.size());
+  for (int worker = 0; worker < size(); ++worker) {
     logs_.push_back(std::make_unique<RotatingFile>(directory_.worker_log(worker), largest_log, older_logs));
+    // `peclet doctor` finds workers that outlived their owner by these variables.
+    EngineCommand& command = commands_[static_cast<std::size_t>(worker)];
+    command.environment.push_back("PECLET_CAMPAIGN=" + directory_.root().string());
+    command.environment.push_back(fmt::format("PECLET_OWNER={}", getpid()));
+    if (std::getenv("PECLET_DEVICE") != nullptr)
+      command.environment.push_back(fmt::format("PECLET_DEVICE_NUMBER={}", worker));
   }
-  // `peclet doctor` finds workers that outlived their owner by these variables.
-  command_.environment.push_back("PECLET_CAMPAIGN=" + directory_.root().string());
-  command_.environment.push_back(fmt::format("PECLET_OWNER={}", getpid()));
   std::signal(SIGPIPE, SIG_IGN);
 }
 
@@ -277,10 +282,8 @@ ProcessPool::~ProcessPool() {
 }
 
 void ProcessPool::start(int worker) {
-  EngineCommand command = command_;
-  if (std::getenv("PECLET_DEVICE") != nullptr)
-    command.environment.push_back(fmt::format("PECLET_DEVICE_NUMBER={}", worker));
-  workers_.at(static_cast<std::size_t>(worker)) = std::make_unique<Worker>(Worker{EngineProcess(command)});
+  workers_.at(static_cast<std::size_t>(worker)) =
+      std::make_unique<Worker>(Worker{EngineProcess(commands_.at(static_cast<std::size_t>(worker)))});
 }
 
 std::int64_t ProcessPool::process(int worker) const {

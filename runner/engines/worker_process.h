@@ -79,8 +79,8 @@ class WorkerWatch {
   // Returns the number of jobs that the worker runs.
   int jobs() const { return static_cast<int>(jobs_.size()); }
 
-  // Records that the process was started; forgets all about an earlier one.
-  void start(Awake now);
+  // Records that the process was started, and how long its hello may take; forgets all about an earlier one.
+  void start(Awake now, Awake hello_patience = Awake{60});
   // Records that the worker said hello.
   void greet() { stage_ = Stage::ready; }
   void begin_job(std::int64_t job, Awake now) { jobs_[job] = {now, {}}; }
@@ -100,7 +100,7 @@ class WorkerWatch {
   const std::optional<AttemptReason>& condemned() const { return condemned_; }
   const JobProgress& progress(std::int64_t job) const { return jobs_.at(job).progress; }
 
-  // True if a job made no new step for longer than `lease`, or no hello came for a minute.
+  // True if a job made no new step for longer than `lease`, or no hello came in time.
   bool is_overdue(Awake now, Awake lease) const;
   // Returns the reason to kill an overdue worker. One that is stopped (SIGSTOP) or recalled is not to blame.
   AttemptReason overdue(Awake lease, bool is_stopped) const;
@@ -117,7 +117,7 @@ class WorkerWatch {
   const Course& slowest() const;
 
   Stage stage_ = Stage::absent;
-  Awake started_{};
+  Awake started_{}, hello_patience_{};
   std::map<std::int64_t, Course> jobs_;
   bool is_recalled_ = false;
   std::optional<AttemptReason> condemned_;
@@ -135,8 +135,9 @@ void allow_open_files(int workers);
 
 class ProcessPool : public WorkerPool {
  public:
-  // `signals` must outlive the pool. From now on this process ignores SIGPIPE, and so do its engines.
-  ProcessPool(int workers, EngineCommand command, CampaignDirectory directory, StopSignals& signals);
+  // One worker for each command. `signals` must outlive the pool. From now on this process ignores SIGPIPE,
+  // and so do its engines.
+  ProcessPool(std::vector<EngineCommand> commands, CampaignDirectory directory, StopSignals& signals);
   // Hangs up on all workers: those that still run checkpoint and leave, or are killed after some seconds.
   ~ProcessPool() override;
 
@@ -165,7 +166,7 @@ class ProcessPool : public WorkerPool {
   void hear(int number, std::vector<WorkerEvent>& events);
   void reap(int number, std::vector<WorkerEvent>& events);
 
-  EngineCommand command_;
+  std::vector<EngineCommand> commands_;  // one for each worker
   CampaignDirectory directory_;
   StopSignals& signals_;
   std::vector<std::unique_ptr<Worker>> workers_;

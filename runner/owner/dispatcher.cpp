@@ -33,6 +33,9 @@ constexpr int most_early_kills = 100;
 // decision of its point although idle workers could run it.
 constexpr double longest_job_to_queue_behind = 1;
 
+// Time until the hello of a worker. A launcher may have to wait for a place.
+constexpr Awake hello_patience{60}, launch_patience{600};
+
 // Longest wait of a turn. Leases and the time limit are judged at least this often.
 constexpr std::chrono::milliseconds longest_wait{500};
 
@@ -72,7 +75,8 @@ Dispatcher::Dispatcher(Database& database, CampaignState& state, WorkerPool& poo
       listener_(listener),
       settings_(std::move(settings)),
       clock_(std::move(clock)),
-      now_{std::vector<Worker>(static_cast<std::size_t>(pool.size()))},
+      now_{.workers = std::vector<Worker>(static_cast<std::size_t>(pool.size())),
+           .starts = WorkerStarts(settings_.hosts)},
       awake_(clock_(), settings_.lease),
       started_(awake_.heard()),
       reported_(started_),
@@ -136,9 +140,10 @@ void Dispatcher::start_workers() {
   if (stopping_ != Stopping::no || unbooked_) return;
   for (int number = 0; number < pool_.size(); ++number) {
     if (at(number).watch.is_there()) continue;
+    if (are_launched() && !now_.starts.may_start(number, clock_())) continue;
     pool_.start(number);
     at(number) = Worker{};
-    at(number).watch.start(awake_.awake());
+    at(number).watch.start(awake_.awake(), are_launched() ? launch_patience : hello_patience);
   }
 }
 
@@ -214,6 +219,7 @@ void Dispatcher::handle(const Hello& event) {
     return;
   }
   worker.engine = state_.admit_engine(event.engine);
+  if (are_launched()) now_.starts.greet(event.worker);
   worker.takes_ahead = event.ahead;
   worker.capacity = capacity_ = event.capacity;
   worker.watch.greet();
@@ -223,6 +229,7 @@ void Dispatcher::handle(const Progressed& event) {
   Assignment* const about = running_job(event.worker, event.job);
   if (about == nullptr) return;
   at(event.worker).watch.hear(event, awake_.awake());
+  if (are_launched()) now_.starts.get_on(event.worker);
   about->shown = false;
 }
 
@@ -238,6 +245,7 @@ void Dispatcher::handle(const ResultSpooled& event) {
                                 processor_seconds_since(about->given), why)) {
     ++now_.results;
     now_.early_exits = 0;
+    if (are_launched()) now_.starts.get_on(event.worker);
     at(event.worker).end(event.job, awake_.awake(), clock_());
   } else if (lacked_room(*about)) {
     end_assignment(event.worker, *about, {AttemptOutcome::drained, 0, {}, why});
@@ -282,6 +290,18 @@ void Dispatcher::handle(const ShortOfRoom& event) {
   at(event.worker).watch.renew(awake_.awake());
 }
 
+void Dispatcher::handle(const Carrying& event) {
+  if (running_job(event.worker, event.job) == nullptr) return;
+  if (!are_launched()) {
+    return condemn(event.worker, {AttemptOutcome::garbled, "carries files on this machine", event.job});
+  }
+  at(event.worker).watch.renew(awake_.awake());
+}
+
+void Dispatcher::handle(const Lost& event) {
+  condemn(event.worker, {are_launched() ? AttemptOutcome::killed : AttemptOutcome::garbled, event.message});
+}
+
 void Dispatcher::handle(const Garbled& event) {
   condemn(event.worker, {AttemptOutcome::garbled, event.message});
 }
@@ -289,9 +309,10 @@ void Dispatcher::handle(const Garbled& event) {
 void Dispatcher::handle(const Exited& event) {
   Worker& worker = at(event.worker);
   const auto waiting = std::exchange(worker.waiting, std::nullopt);
+  if (are_launched()) launched_worker_ended(event.worker, event.ending);
   if (worker.watch.is_busy()) {
     exited_during_jobs(event.worker, event.ending);
-  } else {
+  } else if (!are_launched()) {
     exited_without_job(event.worker, event.ending);
   }
   if (waiting && !left_result(event.worker, *waiting, 0)) give_back(*waiting);
@@ -318,6 +339,15 @@ void Dispatcher::exited_during_jobs(int number, const ExitStatus& ending) {
         "worker {}: {} with {} realisations: {}; none is blamed, and they are tried again in smaller groups",
         number, to_string(how.outcome), jobs.size(), how.message));
   }
+}
+
+void Dispatcher::launched_worker_ended(int number, const ExitStatus& ending) {
+  const WorkerWatch& watch = at(number).watch;
+  if (stopping_ != Stopping::no || watch.is_recalled()) return;
+  const std::string how = watch.condemned() ? watch.condemned()->message : to_string(ending);
+  const std::string warning = now_.starts.end(number, how, clock_());
+  if (now_.starts.is_over()) throw EngineError(warning);
+  if (!warning.empty()) state_.warn(warning);
 }
 
 void Dispatcher::exited_without_job(int number, const ExitStatus& ending) {

@@ -26,6 +26,7 @@
 #include "runner/owner/booked_worker.h"
 #include "runner/owner/campaign_state.h"
 #include "runner/owner/pause.h"
+#include "runner/owner/worker_starts.h"
 
 namespace peclet::runner {
 
@@ -33,6 +34,8 @@ struct DispatchSettings {
   int threads = 1;  // per worker
   std::chrono::duration<double> lease{120};
   double checkpoint_seconds = 60;
+  std::vector<std::string>
+      hosts{};  // of each worker, if workers are launched; none: they run on this machine
   std::optional<std::chrono::duration<double>> time_limit{};
   // Called at every turn, about twice a second or more often. Returns true if folders into which engines
   // write had been deleted and were made anew.
@@ -64,6 +67,7 @@ class Dispatcher {
     int results = 0;
     int early_exits = 0;                         // workers that ended without a job, in a row
     std::vector<std::pair<int, Job>> to_send{};  // jobs to be sent after the commit
+    WorkerStarts starts{{}};                     // of launched workers
   };
   enum class Stopping { no, finished, draining, at_once };
 
@@ -73,6 +77,8 @@ class Dispatcher {
   void handle(const JobFailed& event);
   void handle(const Drained& event);
   void handle(const ShortOfRoom& event);
+  void handle(const Carrying& event);
+  void handle(const Lost& event);
   void handle(const Garbled& event);
   void handle(const Exited& event);
   void handle(const StopSignal&) {}  // listen() has acted on it
@@ -119,6 +125,8 @@ class Dispatcher {
   void give_back(const Assignment& waiting);
   void exited_during_jobs(int worker, const ExitStatus& ending);
   void exited_without_job(int worker, const ExitStatus& ending);
+  bool are_launched() const { return !settings_.hosts.empty(); }
+  void launched_worker_ended(int worker, const ExitStatus& ending);
   Worker& at(int worker) { return now_.workers.at(static_cast<std::size_t>(worker)); }
   bool anyone_there() const;
   bool has_nothing_to_do() const;

@@ -26,15 +26,6 @@ namespace {
 
 constexpr const char* letters_and_digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789";
 
-// True if the name is not hidden, an option, a path, or a temporary file's.
-bool is_plain_file_name(const std::string& name) {
-  const std::string allowed = std::string(letters_and_digits) + "._-";
-  return !name.empty() && name.size() <= longest_left_name &&
-         name.find_first_not_of(allowed) == std::string::npos &&
-         std::string_view(letters_and_digits).find(name.front()) != std::string_view::npos &&
-         name.find("..") == std::string::npos && !name.ends_with(".tmp");
-}
-
 // Checks a row that names a file to be read and written, because the database may come from anywhere.
 FileRecord checked(FileRecord record) {
   try {
@@ -71,6 +62,14 @@ std::optional<int> writer_of(const fs::path& temporary) {
 }
 
 }  // namespace
+
+bool is_plain_file_name(const std::string& name) {
+  const std::string allowed = std::string(letters_and_digits) + "._-";
+  return !name.empty() && name.size() <= longest_left_name &&
+         name.find_first_not_of(allowed) == std::string::npos &&
+         std::string_view(letters_and_digits).find(name.front()) != std::string_view::npos &&
+         name.find("..") == std::string::npos && !name.ends_with(".tmp");
+}
 
 void check_left_files(const Json& files) {
   std::set<std::string> names;

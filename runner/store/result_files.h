@@ -28,6 +28,10 @@ struct LeftFile {
 
 constexpr std::size_t longest_left_name = 64;
 
+// True if a file beside a result may have this name: it is not hidden, an option, a path, or that of a
+// temporary file.
+bool is_plain_file_name(const std::string& name);
+
 // Throws ResultError for the first invalid entry in the member "files" of a result.
 void check_left_files(const Json& files);
 

@@ -30,7 +30,7 @@ FrameDecoder fed(const std::string& bytes) {
 
 TEST(Frames, HeaderIsMagicAndLittleEndianLength) {
   const std::string frame = encode_frame({{"type", "stop"}});
-  EXPECT_EQ(frame, std::string("PCF1\x0f\0\0\0", 8) + R"({"type":"stop"})");
+  EXPECT_EQ(frame, std::string("PCF1\x10\0\0\0", 8) + "{\"type\":\"stop\"}\n");
 }
 
 TEST(Frames, ArriveWholeHoweverTheyAreCut) {

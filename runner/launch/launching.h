@@ -1,0 +1,37 @@
+// The commands of launched workers, from --launch and --hosts.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "runner/campaign/paths.h"
+#include "runner/engines/engine_process.h"
+
+namespace peclet::runner {
+
+// A line of a file of hosts, as MPI programs write it: "node1", "node1 slots=8" or "node1:8".
+struct Host {
+  std::string name;  // a name or address, or USER@NAME
+  int slots = 1;     // workers
+};
+
+// Reads a file of hosts. Empty lines and what follows a # are left out. Throws InputError, which names the
+// line.
+std::vector<Host> read_hosts(const fs::path& file);
+
+struct Launching {
+  std::string launcher;     // shell command, with {threads} and {host}; "": none, or ssh if there are hosts
+  std::vector<Host> hosts;  // empty: the launcher finds the hosts
+  int workers = 0, threads = 1;
+  double silence_seconds = 60;  // after which the other end of a worker counts as lost
+};
+
+struct LaunchedWorkers {
+  std::vector<EngineCommand> commands;
+  std::vector<std::string> hosts;  // of each, by their names for people
+};
+// Returns the near end of each worker. With hosts they are dealt out in turn, so that few workers use all
+// hosts.
+LaunchedWorkers launched_workers(const EngineCommand& engine, const Launching& launching);
+
+}  // namespace peclet::runner
