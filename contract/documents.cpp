@@ -153,8 +153,10 @@ constexpr const char* frame_rows = R"(
     a second.
 {job}
 
--- lost | Engine: its part on another machine is gone, or the link to it. Its jobs are queued again without blame.
+-- lost | Engine: its part on another machine is gone, or the link to it. Its jobs are queued again, without blame unless
+    that part sent nonsense.
 /message | string
+/nonsense | true or false; default false
 
 -- result | Engine: the result is on disk, in the file named spool.
 {job}

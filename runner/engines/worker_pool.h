@@ -69,9 +69,10 @@ struct Carrying {  // files of the job are coming from another machine
   int worker;
   std::int64_t job;
 };
-struct Lost {  // it or its link is gone, on the way to another machine
+struct Lost {  // its part on another machine, or the link to it, is gone or says nonsense
   int worker;
   std::string message;
+  bool is_nonsense;
 };
 struct Garbled {  // it sent something that is not a message and has been killed; Exited follows
   int worker;

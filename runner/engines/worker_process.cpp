@@ -15,6 +15,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <sstream>
 #include <system_error>
 #include <thread>
@@ -24,6 +25,7 @@
 
 #include "contract/documents.h"
 #include "contract/errors.h"
+#include "contract/text.h"
 #include "runner/campaign/quoting.h"
 #include "runner/store/disk_room.h"
 #include "runner/store/result_files.h"
@@ -116,7 +118,7 @@ WorkerEvent as_event(int worker, Json given) {
   if (type == "failed") return JobFailed{worker, count("job"), plain(text("message"))};
   if (type == "drained") return Drained{worker, count("job"), count("step")};
   if (type == "carrying") return Carrying{worker, count("job")};
-  if (type == "lost") return Lost{worker, plain(text("message"))};
+  if (type == "lost") return Lost{worker, plain(text("message")), message["nonsense"].get<bool>()};
   if (type == "no-room")
     return ShortOfRoom{worker, count("job"), text("path"), static_cast<std::uint64_t>(count("bytes"))};
   throw FrameError("unexpected message: " + type);
@@ -151,10 +153,27 @@ std::optional<double> core_quota(const fs::path& root, const std::string& groups
   return least;
 }
 
+std::optional<int> cores_of_job() {
+  struct System {
+    const char *job, *cores;
+  };
+  constexpr System systems[] = {{"SLURM_JOB_ID", "SLURM_CPUS_ON_NODE"},
+                                {"PBS_JOBID", "NCPUS"},
+                                {"LSB_JOBID", "LSB_DJOB_NUMPROC"},  // of all nodes
+                                {"SGE_TASK_ID", "NSLOTS"}};
+  for (const System& system : systems) {
+    const char* const cores = std::getenv(system.cores);
+    if (std::getenv(system.job) == nullptr || cores == nullptr) continue;
+    const std::optional<int> number = peclet::number_in<int>(cores);
+    if (number && *number > 0) return number;
+  }
+  return std::nullopt;
+}
+
 int usable_cores() {
   std::ifstream file("/proc/self/cgroup");
   const std::string groups{std::istreambuf_iterator<char>(file), {}};
-  const int cores = cores_of_affinity();
+  const int cores = std::min(cores_of_affinity(), cores_of_job().value_or(std::numeric_limits<int>::max()));
   const std::optional<double> quota = core_quota("/sys/fs/cgroup", groups);
   return std::max(1, quota ? std::min(cores, static_cast<int>(std::ceil(*quota))) : cores);
 }

@@ -19,9 +19,13 @@
 
 namespace peclet::runner {
 
-// Returns the number of cores in the affinity mask (taskset, Slurm's cpusets), or fewer if a control group
-// limits processor time to fewer; at least 1.
+// Returns the number of cores in the affinity mask (taskset, Slurm's cpusets), or fewer if a control group or
+// the job of a batch system has fewer; at least 1.
 int usable_cores();
+
+// Returns the cores on this node of the job of Slurm, PBS, LSF or Grid Engine in which this process runs, by
+// the variables of that system; nothing outside of a job.
+std::optional<int> cores_of_job();
 
 // Returns the limit of processor time by control groups [cores], if any. `groups` is the text of the
 // process's /proc/self/cgroup; `root` is where control groups are mounted (/sys/fs/cgroup).

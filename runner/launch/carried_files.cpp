@@ -164,9 +164,10 @@ void Outbox::fill(FrameLink& link) {
   }
 }
 
-Inbox::~Inbox() {
+void Inbox::discard() {
   std::error_code ignored;
   if (file_ && file_->written != file_->path) fs::remove(file_->written, ignored);
+  file_.reset();
 }
 
 void Inbox::begin(const Json& piece, const fs::path& path) {

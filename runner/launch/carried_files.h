@@ -80,7 +80,9 @@ class Inbox {
   // FrameError if the piece does not continue the file or its hash is wrong, NoRoomError if the same piece
   // shall be given again later, std::system_error.
   bool take(const Json& piece, const fs::path& path);
-  ~Inbox();
+  // Removes what has come of an unfinished file.
+  void discard();
+  ~Inbox() { discard(); }
   Inbox() = default;
   Inbox& operator=(Inbox&&) = delete;
 

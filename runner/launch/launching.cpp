@@ -8,7 +8,7 @@
 
 #include "contract/durable_file.h"
 #include "contract/errors.h"
-#include "runner/campaign/number_text.h"
+#include "contract/text.h"
 #include "runner/store/campaign_directory.h"
 
 namespace peclet::runner {

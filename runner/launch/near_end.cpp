@@ -15,6 +15,7 @@
 #include <system_error>
 #include <thread>
 
+#include "contract/documents.h"
 #include "runner/campaign/quoting.h"
 #include "runner/store/campaign_directory.h"
 
@@ -26,6 +27,8 @@ using std::chrono::seconds;
 
 // Length of the greeting that a machine may print before the far end speaks [bytes].
 constexpr std::size_t longest_greeting = std::size_t{64} << 10;
+// Result, checkpoint, growing file, state of a failure, and the files beside the result.
+constexpr std::size_t most_files = 4 + most_left_files;
 constexpr milliseconds longest_turn{500};
 constexpr seconds until_next_try{1}, carrying_interval{1};
 // Time for the last files after the owner has gone, and for the launcher to leave.
@@ -84,17 +87,23 @@ NearEnd::NearEnd(const WorkerOptions& options)
 }
 
 int NearEnd::run() {
-  while (true) {
-    outbox_.fill(far_);
-    if (left_ && outbox_.is_empty()) far_.finish();
-    const std::array links{&owner_, &far_};
-    FrameLink::exchange(links, -1, longest_turn);
-    hear_owner();
-    hear_far_end();
-    if (far_.has_ended() && !waiting_) leave();
-    if (left_ && Clock::now() - *left_ > parting) lose("the far end did not leave");
-    keep_in_touch();
+  try {
+    while (true) take_turn();
+  } catch (const FrameError& error) {
+    lose(error.what(), true);
   }
+}
+
+void NearEnd::take_turn() {
+  outbox_.fill(far_);
+  if (left_ && outbox_.is_empty()) far_.finish();
+  const std::array links{&owner_, &far_};
+  FrameLink::exchange(links, -1, longest_turn);
+  hear_owner();
+  hear_far_end();
+  if (far_.has_ended() && !waiting_) leave();
+  if (left_ && Clock::now() - *left_ > parting) lose("the far end did not leave");
+  keep_in_touch();
 }
 
 void NearEnd::hear_owner() {
@@ -110,7 +119,8 @@ void NearEnd::hear_owner() {
 
 void NearEnd::take_job(const Json& frame) {
   const std::int64_t job = job_number(frame);
-  const CarriedJob& carried = jobs_.insert_or_assign(job, CarriedJob::of_frame(frame)).first->second;
+  const CarriedJob& carried =
+      jobs_.insert_or_assign(job, NearJob{CarriedJob::of_frame(frame)}).first->second.paths;
   outbox_.add_checkpoint(job, carried.checkpoint);
   outbox_.add(frame);
 }
@@ -145,16 +155,22 @@ bool NearEnd::take(Json given) {
         frame.at("signal").is_null() ? std::nullopt : std::optional(frame.at("signal").get<int>())};
   } else if (type == "result") {
     Json result = frame;
-    result["spool"] = job_of(frame).spool.string();
+    result["spool"] = job_of(frame).paths.spool.string();
     owner_.send(result);
+    jobs_.erase(job_number(frame));
   } else if (type != "alive") {
     owner_.send(frame);
+    if (type == "failed" || type == "drained") jobs_.erase(job_number(frame));
   }
   return true;
 }
 
 bool NearEnd::take_piece(const Json& piece) {
-  const fs::path path = job_of(piece).path(piece);
+  NearJob& job = job_of(piece);
+  const fs::path path = job.paths.path(piece);
+  if (job.files.insert(path).second && job.files.size() > most_files) {
+    throw FrameError(fmt::format("sends more than {} files of a job", most_files));
+  }
   try {
     inbox_.take(piece, path);
     if (Clock::now() - said_carrying_ > carrying_interval) {
@@ -170,7 +186,7 @@ bool NearEnd::take_piece(const Json& piece) {
   }
 }
 
-const CarriedJob& NearEnd::job_of(const Json& frame) const {
+NearEnd::NearJob& NearEnd::job_of(const Json& frame) {
   const auto found = jobs_.find(job_number(frame));
   if (found == jobs_.end())
     throw FrameError(fmt::format("spoke of job {}, which it does not have", job_number(frame)));
@@ -208,10 +224,11 @@ void NearEnd::leave() {
   ::_exit(ended_->status.value_or(1));
 }
 
-void NearEnd::lose(const std::string& why) {
+void NearEnd::lose(const std::string& why, bool is_nonsense) {
   say_as_worker(why);
+  inbox_.discard();
   ::kill(-launcher_.process, SIGKILL);
-  owner_.send({{"type", "lost"}, {"message", why}});
+  owner_.send({{"type", "lost"}, {"message", why}, {"nonsense", is_nonsense}});
   tell_owner();
   die_of(SIGKILL);
 }

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 
 #include "runner/launch/carried_files.h"
 #include "runner/launch/launched_worker.h"
@@ -19,18 +20,24 @@ class NearEnd {
  private:
   using Clock = FrameLink::Clock;
 
+  struct NearJob {
+    CarriedJob paths;
+    std::set<fs::path> files{};  // that have come
+  };
+
+  void take_turn();
   void hear_owner();
   void take_job(const Json& frame);
   // Hears the far end until a piece of a file does not fit onto the disk.
   void hear_far_end();
   bool take(Json frame);
   bool take_piece(const Json& piece);
-  const CarriedJob& job_of(const Json& frame) const;
+  NearJob& job_of(const Json& frame);
   void keep_in_touch();
   // Sends the owner what is left for it, waits for the launcher, and ends this process as the engine ended.
   [[noreturn]] void leave();
   void tell_owner();
-  [[noreturn]] void lose(const std::string& why);
+  [[noreturn]] void lose(const std::string& why, bool is_nonsense = false);
 
   const WorkerOptions& options_;
   FrameLink owner_;
@@ -38,7 +45,7 @@ class NearEnd {
   FrameLink far_;
   Outbox outbox_;  // for the far end
   Inbox inbox_;
-  std::map<std::int64_t, CarriedJob> jobs_;
+  std::map<std::int64_t, NearJob> jobs_;
   std::optional<Json> waiting_;  // piece that did not fit onto the disk
   Clock::time_point retried_{}, said_carrying_ = Clock::now();
   std::optional<ExitStatus> ended_;        // the engine

@@ -299,7 +299,8 @@ void Dispatcher::handle(const Carrying& event) {
 }
 
 void Dispatcher::handle(const Lost& event) {
-  condemn(event.worker, {are_launched() ? AttemptOutcome::killed : AttemptOutcome::garbled, event.message});
+  const bool is_blamed = event.is_nonsense || !are_launched();
+  condemn(event.worker, {is_blamed ? AttemptOutcome::garbled : AttemptOutcome::killed, event.message});
 }
 
 void Dispatcher::handle(const Garbled& event) {

@@ -28,6 +28,30 @@ TEST(UsableCores, AreThoseOfTheAffinityMask) {
   ASSERT_EQ(sched_setaffinity(0, sizeof(before), &before), 0);
 }
 
+// Manuals: sbatch(1), PBS Professional's reference guide, LSF's list of variables, qsub(1).
+TEST(UsableCores, AreThoseOfAJob) {
+  const std::pair<const char*, const char*> systems[] = {{"SLURM_JOB_ID", "SLURM_CPUS_ON_NODE"},
+                                                         {"PBS_JOBID", "NCPUS"},
+                                                         {"LSB_JOBID", "LSB_DJOB_NUMPROC"},
+                                                         {"SGE_TASK_ID", "NSLOTS"}};
+  EXPECT_EQ(cores_of_job(), std::nullopt);
+  for (const auto& [job, cores] : systems) {
+    ASSERT_EQ(::setenv(cores, "1", 1), 0);
+    EXPECT_EQ(cores_of_job(), std::nullopt) << cores << " outside of a job";
+    ASSERT_EQ(::setenv(job, "7", 1), 0);
+    EXPECT_EQ(usable_cores(), 1);
+    ASSERT_EQ(::setenv(cores, "100000", 1), 0);
+    EXPECT_EQ(cores_of_job(), 100000);
+    EXPECT_LT(usable_cores(), 100000) << "a job has no more than the machine";
+    for (const char* nonsense : {"", "0", "-3", "4(x2)"}) {
+      ASSERT_EQ(::setenv(cores, nonsense, 1), 0);
+      EXPECT_EQ(cores_of_job(), std::nullopt) << nonsense;
+    }
+    ::unsetenv(job);
+    ::unsetenv(cores);
+  }
+}
+
 class CoreQuota : public testing::Test {
  protected:
   void write(const std::string& file, const std::string& text) {
