@@ -210,9 +210,9 @@ bool Inbox::take(const Json& piece, const fs::path& path) {
 
 void Inbox::add(const Json& piece, std::string_view bytes) {
   const fs::path& path = file_->path;
-  if (piece.at("offset").get<std::uint64_t>() != file_->place)
-    refuse(piece, fmt::format("begins at byte {} instead of {}", piece.at("offset").get<std::uint64_t>(),
-                              file_->place));
+  const auto offset = piece.at("offset").get<std::uint64_t>();
+  if (offset != file_->place)
+    refuse(piece, fmt::format("begins at byte {} instead of {}", offset, file_->place));
   if (bytes.size() > file_->end - std::min(file_->end, file_->place))
     refuse(piece, fmt::format("has more than {} bytes", file_->end));
   const int descriptor = file_->descriptor.number();

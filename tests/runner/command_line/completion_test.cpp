@@ -112,9 +112,10 @@ TEST(Manual, HasAPageForEveryVerbThatGroffTakes) {
     EXPECT_TRUE(says(text, "\n       " + name + " - ")) << text;
     for (const char* const section : {"SYNOPSIS", "DESCRIPTION", "OPTIONS", "EXIT STATUS", "FILES"})
       EXPECT_TRUE(says(text, std::string("\n") + section + '\n')) << name << ' ' << section;
-    for (const std::string& option : options_of_help(verb))
+    for (const std::string& option : options_of_help(verb)) {
       EXPECT_TRUE(std::regex_search(text, std::regex("\n       (-h,)?" + option + "[ \n]")))
           << name << option;
+    }
     EXPECT_TRUE(says(text, "\n       2      usage, or faulty input")) << name;
   }
 }
