@@ -1,5 +1,6 @@
 #include "runner/launch/near_end.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -35,7 +36,7 @@ constexpr seconds until_next_try{1}, carrying_interval{1};
 constexpr seconds parting{60}, leaving{5};
 
 Descriptor another(int descriptor) {
-  const int number = ::dup(descriptor);
+  const int number = fcntl(descriptor, F_DUPFD_CLOEXEC, 3);  // the launcher must not keep the socket open
   if (number < 0) throw std::system_error(errno, std::generic_category(), "dup");
   return Descriptor(number);
 }

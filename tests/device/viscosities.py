@@ -39,7 +39,15 @@ def viscosities(engine, device, scene, seeds, folder):
 
     def run(first, last):
         output = os.path.join(folder, f"{device}.{first}.json")
-        command = [engine, "run", scene, f"--seeds={first}..{last}", f"--device={device}", f"--output={output}", "--quiet"]
+        command = [
+            engine,
+            "run",
+            scene,
+            f"--seeds={first}..{last}",
+            f"--device={device}",
+            f"--output={output}",
+            "--quiet",
+        ]
         subprocess.run(command, check=True)
         values = []
         for seed in range(first, last + 1):

@@ -147,4 +147,5 @@ def main():
         print(f"{calm.ended()} results of launched workers: the same bytes, also after", done)
 
 
-main()
+if __name__ == "__main__":
+    main()
