@@ -117,7 +117,7 @@ to standard output. With --jsonl, events are printed instead, which schema/READM
   add_team(verb, *options);
   add_option(verb, "--launch COMMAND", options->launch,
              "Shell command that starts a program on another machine; each worker is started through it. "
-             "{threads} and {host} are replaced");
+             "{threads} and, with --hosts, {host} are replaced");
   add_file_of_hosts(verb, options->hosts);
   add_number(verb, "--time-limit SECONDS", options->time_limit, number_above(0),
              "Seconds after which workers checkpoint and stop");

@@ -59,28 +59,31 @@ std::string notify(const std::string& command, const RunOutcome& outcome) {
 
 namespace {
 
-// Returns the workers that are asked for, at most one for each seed that the campaign may run.
-WorkerCount useful_worker_count(const RunOptions& options, const Campaign& campaign) {
-  WorkerCount size = worker_count(options);
-  const auto seeds = static_cast<std::int64_t>(campaign.points.size()) * campaign.maximum_realisations;
-  size.workers = static_cast<int>(std::min<std::int64_t>(seeds, size.workers));
-  return size;
+// The workers of a run, and how they are launched on other machines; nothing if they run on this one.
+struct Team {
+  WorkerCount size;
+  std::optional<Launching> launching;
+};
+
+// Throws InputError for options of launched workers that are at fault.
+Team asked_team(const RunOptions& options) {
+  if (options.launch.empty() && options.hosts.empty()) return {worker_count(options), {}};
+  const Launching launching = read_launching(options.launch, options.hosts, options.workers);
+  return {{launching.workers, std::max(1, options.threads)}, launching};
 }
 
-bool is_launched(const RunOptions& options) { return !options.launch.empty() || !options.hosts.empty(); }
+// Leaves at most one worker for each seed that the campaign may run.
+void limit(WorkerCount& size, const Campaign& campaign) {
+  const auto seeds = static_cast<std::int64_t>(campaign.points.size()) * campaign.maximum_realisations;
+  size.workers = static_cast<int>(std::min<std::int64_t>(seeds, size.workers));
+}
 
-// Returns the workers that are launched; none if they run on this machine.
-LaunchedWorkers workers_elsewhere(const RunOptions& options, const WorkerCount& size,
-                                  const EngineCommand& engine) {
-  if (!is_launched(options)) return {};
-  Launching launching;
-  launching.launcher = options.launch;
-  if (!options.hosts.empty()) launching.hosts = read_hosts(options.hosts);
-  launching.workers = size.workers;
-  launching.threads = size.threads;
+// Returns the engines of the team, by the commands that start them.
+LaunchedWorkers commands_of(const Team& team, const RunOptions& options, const EngineCommand& engine) {
+  const auto [workers, threads] = team.size;
+  if (!team.launching) return {std::vector(static_cast<std::size_t>(workers), engine), {}};
   // A lost link is noticed before a job counts as standing still.
-  launching.silence_seconds = options.lease_seconds / 2;
-  return launched_workers(engine, launching);
+  return launched_workers(engine, *team.launching, workers, threads, options.lease_seconds / 2);
 }
 
 // Warns if the threads of all workers exceed the usable cores more than fourfold.
@@ -138,8 +141,7 @@ std::unique_ptr<OpenedRun> open_when_it_is_possible(const ClaimedCampaign& claim
   }
 }
 
-RunBegan beginning(const ClaimedCampaign& claimed, const RunOptions& options) {
-  const WorkerCount size = useful_worker_count(options, claimed.campaign);
+RunBegan beginning(const ClaimedCampaign& claimed, const WorkerCount& size) {
   return {claimed.campaign.name,
           claimed.directory.root(),
           getpid(),
@@ -148,12 +150,12 @@ RunBegan beginning(const ClaimedCampaign& claimed, const RunOptions& options) {
           size.threads};
 }
 
-int dispatch(OpenedRun& opened, const RunOptions& options, const ClaimedCampaign& claimed, RunLog& log,
-             StopSignals& signals) {
+int dispatch(OpenedRun& opened, const RunOptions& options, const ClaimedCampaign& claimed, const Team& team,
+             RunLog& log, StopSignals& signals) {
   using std::chrono::steady_clock;
   const CampaignDirectory& directory = claimed.directory;
-  const WorkerCount size = useful_worker_count(options, claimed.campaign);
-  if (!is_launched(options)) judge_worker_count(size, log);
+  const WorkerCount& size = team.size;
+  if (!team.launching) judge_worker_count(size, log);
   allow_open_files(size.workers);
   PeriodicBackup backup(directory, std::chrono::duration<double>(options.backup_seconds), log,
                         steady_clock::now());
@@ -173,12 +175,9 @@ int dispatch(OpenedRun& opened, const RunOptions& options, const ClaimedCampaign
   log.record(fmt::format("{} begins: process {}, {} workers of {} threads, engine {}",
                          directory.root().string(), getpid(), size.workers, size.threads,
                          claimed.command.program.string()));
-  LaunchedWorkers launched = workers_elsewhere(options, size, claimed.command);
-  settings.hosts = launched.hosts;
-  ProcessPool pool(is_launched(options)
-                       ? std::move(launched.commands)
-                       : std::vector(static_cast<std::size_t>(size.workers), claimed.command),
-                   directory, signals);
+  LaunchedWorkers workers = commands_of(team, options, claimed.command);
+  settings.hosts = std::move(workers.hosts);
+  ProcessPool pool(std::move(workers.commands), directory, signals);
   Dispatcher dispatcher(opened.database, opened.state, pool, log, settings, steady_clock::now);
   const bool finished = dispatcher.run() == Dispatcher::Ending::finished;
   backup.finish();
@@ -210,7 +209,9 @@ Bounds bounds_of(const RunOptions& options, const ClaimedCampaign& claimed, std:
 using Conclusion = std::function<void(const ClaimedCampaign&, OpenedRun&, int code)>;
 
 int run(const RunOptions& options, std::optional<int> ceiling, const Conclusion& conclude) {
+  Team team = asked_team(options);  // before anything is written
   const ClaimedCampaign claimed(options.campaign, options.directory, options.force, options.accept_engine);
+  limit(team.size, claimed.campaign);
   StopSignals signals;
   std::unique_ptr<OpenedRun> opened;
   int code = ExitCode::stopped;
@@ -219,7 +220,7 @@ int run(const RunOptions& options, std::optional<int> ceiling, const Conclusion&
     std::optional<EventStream> events;
     if (options.jsonl) events.emplace(STDOUT_FILENO, progress);
     RunLog log(claimed.directory.run_log(), events ? static_cast<RunListener&>(*events) : progress);
-    log.happened(beginning(claimed, options));
+    log.happened(beginning(claimed, team.size));
     if (const std::string doubt = doubt_about_file_system(claimed.directory.root()); !doubt.empty())
       log.warn(doubt);
     try {
@@ -227,7 +228,7 @@ int run(const RunOptions& options, std::optional<int> ceiling, const Conclusion&
       if (opened) {
         opened->state.set_bounds(bounds_of(options, claimed, ceiling));
         opened->before = summed_error(opened->state.scheduler());
-        code = dispatch(*opened, options, claimed, log, signals);
+        code = dispatch(*opened, options, claimed, team, log, signals);
       }
     } catch (const OtherEngine& error) {
       const OtherEngine advised(
@@ -257,16 +258,6 @@ int workers_for_cards(const std::string& device) {
 }  // namespace
 
 WorkerCount worker_count(const RunOptions& options) {
-  if (is_launched(options)) {
-    int workers = options.workers;
-    if (!options.hosts.empty()) {
-      std::int64_t slots = 0;
-      for (const Host& host : read_hosts(options.hosts)) slots += host.slots;
-      workers = static_cast<int>(std::min<std::int64_t>(slots, workers > 0 ? workers : slots));
-    }
-    if (workers == 0) throw InputError("", "--workers", "absent", "must be given with --launch");
-    return {workers, std::max(1, options.threads)};
-  }
   const int cores = usable_cores();
   const int workers = options.workers == 0 ? workers_for_cards(options.device) : options.workers;
   if (workers > 0 && options.threads > 0) return {workers, options.threads};

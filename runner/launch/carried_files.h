@@ -44,7 +44,10 @@ struct CarriedJob {
 // Frames and files to be sent in order. A file is read while it is sent, as it was when it was added.
 class Outbox {
  public:
-  void add(Json frame) { things_.emplace_back(std::move(frame)), ++frames_; }
+  void add(Json frame) {
+    things_.emplace_back(std::move(frame));
+    ++frames_;
+  }
   // Adds a file, unless it is not there. Throws std::system_error.
   void add(std::int64_t job, const char* role, const std::string& name, const fs::path& path);
   // Adds a checkpoint, unless it is not there; before it what its growing file has beside the first `sent`

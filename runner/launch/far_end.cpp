@@ -16,6 +16,7 @@
 #include <thread>
 #include <utility>
 
+#include "contract/documents.h"
 #include "contract/provenance.h"
 #include "contract/sha256.h"
 #include "runner/campaign/quoting.h"
@@ -51,10 +52,9 @@ void remove_forgotten(const fs::path& base) {
 }
 
 Descriptor taken(int descriptor, int in_its_place) {
-  const int number = fcntl(descriptor, F_DUPFD_CLOEXEC, 3);
-  if (number < 0 || ::dup2(in_its_place, descriptor) < 0)
-    throw std::system_error(errno, std::generic_category(), "dup");
-  return Descriptor(number);
+  Descriptor own = duplicate(descriptor);
+  if (::dup2(in_its_place, descriptor) < 0) throw std::system_error(errno, std::generic_category(), "dup");
+  return own;
 }
 
 // Takes standard input, which becomes empty.
@@ -155,10 +155,8 @@ void FarEnd::begin(const Json& frame) {
   command.environment = frame.at("environment");
   command.blocked_signals = {SIGINT, SIGTERM, SIGHUP};  // this process gets them, too
   silence_ = std::chrono::duration<double>(frame.at("silence_seconds").get<double>());
-  const Descriptor errors(::dup(STDERR_FILENO));
-  engine_.emplace(command, errors);
-  const auto copy = [this] { return Descriptor(fcntl(engine_->descriptor(), F_DUPFD_CLOEXEC, 3)); };
-  frames_.emplace(copy(), copy(), largest_answer);
+  engine_.emplace(command, duplicate(STDERR_FILENO));
+  frames_.emplace(duplicate(engine_->descriptor()), duplicate(engine_->descriptor()), largest_answer);
 }
 
 CarriedJob FarEnd::here(std::int64_t number) const {
@@ -186,10 +184,16 @@ void FarEnd::take_job(Json frame) {
 }
 
 void FarEnd::hear_engine() {
-  while (frames_) {
-    std::optional<Json> frame = frames_->next();
-    if (!frame) return;
-    pass_on(std::move(*frame));
+  try {
+    while (frames_) {
+      std::optional<Json> frame = frames_->next();
+      if (!frame) return;
+      pass_on(std::move(*frame));
+    }
+  } catch (const FrameError& error) {
+    outbox_.add({{"type", "lost"}, {"message", error.what()}, {"nonsense", true}});
+    engine_->kill();
+    hang_up();
   }
 }
 
@@ -232,21 +236,25 @@ void FarEnd::send_files(std::int64_t number) {
 }
 
 void FarEnd::send_result(const Json& given) {
-  Json frame = given;
+  Json frame = checked_frame(given);
   const std::int64_t number = frame.at("job");
   const CarriedJob paths = here(number);
   send_files(number);
-  // The state of a failure is in the owner's folder when the owner reads the result.
-  std::string text = read_file(paths.spool);
-  const std::string far = paths.failures.string() + "/", near = jobs_.at(number).near.failures.string() + "/";
-  if (const std::size_t place = text.find(far);
-      place != std::string::npos && frame.value("sha256", "") == sha256(text)) {
-    text.replace(place, far.size(), near);
-    write_durably(paths.spool, text);
-    frame["sha256"] = sha256(text);
-  }
+  if (is_there(paths.spool) && !fs::is_empty(paths.failures)) name_state_at_home(number, frame);
   outbox_.add(number, role::result, "", paths.spool);
   outbox_.add(std::move(frame));
+}
+
+// The state of a failure is in the owner's folder when the owner reads the result.
+void FarEnd::name_state_at_home(std::int64_t number, Json& frame) {
+  const CarriedJob paths = here(number);
+  const std::string far = paths.failures.string() + "/", near = jobs_.at(number).near.failures.string() + "/";
+  std::string text = read_file(paths.spool);
+  const std::size_t place = text.find(far);
+  if (place == std::string::npos || frame.at("sha256") != sha256(text)) return;
+  text.replace(place, far.size(), near);
+  write_durably(paths.spool, text);
+  frame["sha256"] = sha256(text);
 }
 
 void FarEnd::send_checkpoint(std::int64_t number, FarJob& job) {

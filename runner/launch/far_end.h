@@ -48,6 +48,7 @@ class FarEnd {
   void pass_on(Json frame);
   void send_result(const Json& frame);
   void send_files(std::int64_t number);
+  void name_state_at_home(std::int64_t number, Json& frame);
   // Returns the paths of a job here.
   CarriedJob here(std::int64_t number) const;
   // Sends the checkpoint if it is another one than last time.

@@ -24,6 +24,12 @@ void never_wait(const Descriptor& descriptor) {
 
 }  // namespace
 
+Descriptor duplicate(int descriptor) {
+  const int number = fcntl(descriptor, F_DUPFD_CLOEXEC, 3);
+  if (number < 0) throw std::system_error(errno, std::generic_category(), "dup");
+  return Descriptor(number);
+}
+
 FrameLink::FrameLink(Descriptor input, Descriptor output, std::size_t largest, std::size_t noise)
     : input_(std::move(input)),
       output_(std::move(output)),

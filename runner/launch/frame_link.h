@@ -12,6 +12,9 @@
 
 namespace peclet::runner {
 
+// Returns another descriptor of the same file, which programs that are started do not inherit.
+Descriptor duplicate(int descriptor);
+
 class FrameLink {
  public:
   using Clock = std::chrono::steady_clock;

@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <regex>
 #include <sstream>
+#include <system_error>
 
-#include "contract/durable_file.h"
 #include "contract/errors.h"
+#include "contract/guarded_file.h"
 #include "contract/text.h"
 #include "runner/store/campaign_directory.h"
 
@@ -19,6 +20,7 @@ constexpr const char* secure_shell =
     "ssh -T -o BatchMode=yes -o ConnectTimeout=20 -o ServerAliveInterval=15 -o ServerAliveCountMax=3 "
     "-o ControlMaster=auto -o ControlPersist=60 -o ControlPath=~/.ssh/peclet-%C {host}";
 constexpr int most_slots = 100'000;
+constexpr std::uint64_t largest_file_of_hosts = 1 << 20;
 
 std::string replaced(std::string text, std::string_view what, const std::string& by) {
   for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
@@ -40,7 +42,7 @@ EngineCommand near_end(const EngineCommand& engine, const std::string& launcher,
   return command;
 }
 
-// Returns host and slot of each worker, slot by slot.
+// Returns host and slot of each worker, slot by slot. The hosts have as many slots at least.
 std::vector<std::pair<std::string, int>> dealt_out(const std::vector<Host>& hosts, int workers) {
   std::vector<std::pair<std::string, int>> places;
   for (int slot = 0; std::ssize(places) < workers; ++slot) {
@@ -57,7 +59,13 @@ std::vector<Host> read_hosts(const fs::path& file) {
   static const std::regex form(
       R"(([A-Za-z0-9_][A-Za-z0-9._@-]*)(?::([0-9]+)|[ \t]+slots=([0-9]+)(?:[ \t].*)?)?)");
   std::vector<Host> hosts;
-  std::istringstream lines(read_file(file));
+  std::string text;
+  try {
+    text = read_regular(file, largest_file_of_hosts);
+  } catch (const std::system_error& error) {
+    throw InputError(file.string(), "", error.code().message(), "must be a file with a host on each line");
+  }
+  std::istringstream lines(text);
   int number = 0;
   for (std::string line; std::getline(lines, line);) {
     ++number;
@@ -84,23 +92,40 @@ std::vector<Host> read_hosts(const fs::path& file) {
   return hosts;
 }
 
-LaunchedWorkers launched_workers(const EngineCommand& engine, const Launching& launching) {
-  const std::string launcher = replaced(launching.launcher.empty() ? secure_shell : launching.launcher,
-                                        "{threads}", std::to_string(launching.threads));
-  LaunchedWorkers workers;
+Launching read_launching(const std::string& launcher, const fs::path& hosts, int workers) {
+  const bool names_host = launcher.find("{host}") != std::string::npos;
+  if (hosts.empty() && names_host)
+    throw InputError("", "--hosts", "absent", "must be given: --launch has {host}");
+  if (!hosts.empty() && !launcher.empty() && !names_host)
+    throw InputError("", "--launch", launcher, "must have {host}: --hosts is given");
+  if (hosts.empty() && workers == 0)
+    throw InputError("", "--workers", "absent", "must be given with --launch");
+  Launching launching{launcher.empty() ? secure_shell : launcher, {}, workers};
+  if (hosts.empty()) return launching;
+  launching.hosts = read_hosts(hosts);
+  std::int64_t slots = 0;
+  for (const Host& host : launching.hosts) slots += host.slots;
+  launching.workers =
+      static_cast<int>(std::min<std::int64_t>({slots, most_slots, workers == 0 ? slots : workers}));
+  return launching;
+}
+
+LaunchedWorkers launched_workers(const EngineCommand& engine, const Launching& launching, int workers,
+                                 int threads, double silence_seconds) {
+  const std::string launcher = replaced(launching.launcher, "{threads}", std::to_string(threads));
+  LaunchedWorkers launched;
   const auto add = [&](const std::string& host, const std::string& name, int slot) {
-    workers.commands.push_back(
-        near_end(engine, replaced(launcher, "{host}", host), launching.silence_seconds));
+    launched.commands.push_back(near_end(engine, replaced(launcher, "{host}", host), silence_seconds));
     // Cards are counted on each host.
-    workers.commands.back().environment.push_back(fmt::format("PECLET_DEVICE_NUMBER={}", slot));
-    workers.hosts.push_back(name);
+    launched.commands.back().environment.push_back(fmt::format("PECLET_DEVICE_NUMBER={}", slot));
+    launched.hosts.push_back(name);
   };
   if (launching.hosts.empty()) {
-    for (int worker = 0; worker < launching.workers; ++worker) add("", "--launch", 0);
+    for (int worker = 0; worker < workers; ++worker) add("", "--launch", 0);
   } else {
-    for (const auto& [host, slot] : dealt_out(launching.hosts, launching.workers)) add(host, host, slot);
+    for (const auto& [host, slot] : dealt_out(launching.hosts, workers)) add(host, host, slot);
   }
-  return workers;
+  return launched;
 }
 
 }  // namespace peclet::runner

@@ -20,18 +20,22 @@ struct Host {
 std::vector<Host> read_hosts(const fs::path& file);
 
 struct Launching {
-  std::string launcher;     // shell command, with {threads} and {host}; "": none, or ssh if there are hosts
+  std::string launcher;     // shell command, with {threads} and, if there are hosts, {host}
   std::vector<Host> hosts;  // empty: the launcher finds the hosts
-  int workers = 0, threads = 1;
-  double silence_seconds = 60;  // after which the other end of a worker counts as lost
+  int workers = 0;
 };
+// Returns what --launch ("": ssh), --hosts ("": none) and --workers (0: all slots of the hosts) ask for.
+// Throws InputError if they do not fit together.
+Launching read_launching(const std::string& launcher, const fs::path& hosts, int workers);
 
 struct LaunchedWorkers {
   std::vector<EngineCommand> commands;
   std::vector<std::string> hosts;  // of each, by their names for people
 };
-// Returns the near end of each worker. With hosts they are dealt out in turn, so that few workers use all
-// hosts.
-LaunchedWorkers launched_workers(const EngineCommand& engine, const Launching& launching);
+// Returns the near ends of as many workers, at most launching.workers. They are dealt out to the hosts in
+// turn, so that few workers use all hosts. The other end of a worker counts as lost after this time of
+// silence.
+LaunchedWorkers launched_workers(const EngineCommand& engine, const Launching& launching, int workers,
+                                 int threads, double silence_seconds);
 
 }  // namespace peclet::runner

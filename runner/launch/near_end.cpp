@@ -1,6 +1,5 @@
 #include "runner/launch/near_end.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -35,12 +34,6 @@ constexpr seconds until_next_try{1}, carrying_interval{1};
 // Time for the last files after the owner has gone, and for the launcher to leave.
 constexpr seconds parting{60}, leaving{5};
 
-Descriptor another(int descriptor) {
-  const int number = fcntl(descriptor, F_DUPFD_CLOEXEC, 3);  // the launcher must not keep the socket open
-  if (number < 0) throw std::system_error(errno, std::generic_category(), "dup");
-  return Descriptor(number);
-}
-
 // Returns the variables that concern the engine.
 Json own_variables() {
   Json variables = Json::array();
@@ -72,7 +65,7 @@ std::int64_t job_number(const Json& frame) {
 
 NearEnd::NearEnd(const WorkerOptions& options)
     : options_(options),
-      owner_(another(STDIN_FILENO), another(STDIN_FILENO), largest_frame),
+      owner_(duplicate(STDIN_FILENO), duplicate(STDIN_FILENO), largest_frame),
       launcher_(
           start_piped({"/bin/sh", "-c",
                        options.through + " " + shell_word((own_folder() / "peclet").string()) + " worker"})),
@@ -159,6 +152,8 @@ bool NearEnd::take(Json given) {
     result["spool"] = job_of(frame).paths.spool.string();
     owner_.send(result);
     jobs_.erase(job_number(frame));
+  } else if (type == "carrying") {
+    throw FrameError("only the near end knows what is carried");
   } else if (type != "alive") {
     owner_.send(frame);
     if (type == "failed" || type == "drained") jobs_.erase(job_number(frame));
@@ -174,7 +169,9 @@ bool NearEnd::take_piece(const Json& piece) {
   }
   try {
     inbox_.take(piece, path);
-    if (Clock::now() - said_carrying_ > carrying_interval) {
+    // While the job runs its progress renews its lease.
+    const bool is_of_end = piece.at("role") != role::checkpoint && piece.at("role") != role::growing;
+    if (is_of_end && Clock::now() - said_carrying_ > carrying_interval) {
       said_carrying_ = Clock::now();
       owner_.send({{"type", "carrying"}, {"job", piece.at("job")}});
     }

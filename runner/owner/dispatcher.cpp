@@ -39,30 +39,6 @@ constexpr Awake hello_patience{60}, launch_patience{600};
 // Longest wait of a turn. Leases and the time limit are judged at least this often.
 constexpr std::chrono::milliseconds longest_wait{500};
 
-int worker_of(const WorkerEvent& event) {
-  return std::visit(
-      [](const auto& happened) {
-        if constexpr (requires { happened.worker; }) {
-          return happened.worker;
-        } else {
-          return -1;
-        }
-      },
-      event);
-}
-
-// Returns the unbooked progress that `later` replaces, if its worker has said nothing since but the progress
-// of other jobs; otherwise null.
-Progressed* superseded(std::vector<WorkerEvent>& news, const Progressed& later) {
-  const auto last = std::find_if(news.rbegin(), news.rend(), [&](const WorkerEvent& event) {
-    const auto* const progress = std::get_if<Progressed>(&event);
-    return worker_of(event) == later.worker && (progress == nullptr || progress->job == later.job);
-  });
-  auto* const progress = last == news.rend() ? nullptr : std::get_if<Progressed>(&*last);
-  return progress != nullptr && progress->job == later.job && progress->phase == later.phase ? progress
-                                                                                             : nullptr;
-}
-
 constexpr std::chrono::seconds request_interval{1};
 
 }  // namespace
@@ -102,10 +78,7 @@ Dispatcher::Ending Dispatcher::run() {
 bool Dispatcher::anyone_there() const {
   const auto present = std::count_if(now_.workers.begin(), now_.workers.end(),
                                      [](const Worker& worker) { return worker.watch.is_there(); });
-  const auto ended = std::count_if(news_.begin(), news_.end(), [](const WorkerEvent& event) {
-    return std::holds_alternative<Exited>(event);
-  });
-  return present > ended;
+  return present > news_.exits();
 }
 
 // True if no worker is busy, no seed is available, and a point is undecided.
@@ -140,7 +113,7 @@ void Dispatcher::start_workers() {
   if (stopping_ != Stopping::no || unbooked_) return;
   for (int number = 0; number < pool_.size(); ++number) {
     if (at(number).watch.is_there()) continue;
-    if (are_launched() && !now_.starts.may_start(number, clock_())) continue;
+    if (!now_.starts.may_start(number, clock_())) continue;
     pool_.start(number);
     at(number) = Worker{};
     at(number).watch.start(awake_.awake(), are_launched() ? launch_patience : hello_patience);
@@ -219,7 +192,7 @@ void Dispatcher::handle(const Hello& event) {
     return;
   }
   worker.engine = state_.admit_engine(event.engine);
-  if (are_launched()) now_.starts.greet(event.worker);
+  now_.starts.greet(event.worker);
   worker.takes_ahead = event.ahead;
   worker.capacity = capacity_ = event.capacity;
   worker.watch.greet();
@@ -229,7 +202,7 @@ void Dispatcher::handle(const Progressed& event) {
   Assignment* const about = running_job(event.worker, event.job);
   if (about == nullptr) return;
   at(event.worker).watch.hear(event, awake_.awake());
-  if (are_launched()) now_.starts.get_on(event.worker);
+  now_.starts.get_on(event.worker);
   about->shown = false;
 }
 
@@ -245,7 +218,7 @@ void Dispatcher::handle(const ResultSpooled& event) {
                                 processor_seconds_since(about->given), why)) {
     ++now_.results;
     now_.early_exits = 0;
-    if (are_launched()) now_.starts.get_on(event.worker);
+    now_.starts.get_on(event.worker);
     at(event.worker).end(event.job, awake_.awake(), clock_());
   } else if (lacked_room(*about)) {
     end_assignment(event.worker, *about, {AttemptOutcome::drained, 0, {}, why});
@@ -476,13 +449,7 @@ void Dispatcher::listen() {
     if (const auto* const drained = std::get_if<Drained>(&event); unbooked_ && drained != nullptr) {
       pool_.drain(drained->worker);
     }
-    // Keeps the list of events short while nothing can be booked.
-    const auto* const progress = std::get_if<Progressed>(&event);
-    if (Progressed* const before = progress != nullptr ? superseded(news_, *progress) : nullptr) {
-      *before = *progress;
-    } else {
-      news_.push_back(std::move(event));
-    }
+    news_.add(std::move(event));
   }
   awake_.end_turn(clock_());
 }
@@ -491,14 +458,14 @@ bool Dispatcher::book() {
   Snapshot before = now_;
   try {
     Transaction booking(database_.connection());
-    for (const WorkerEvent& event : news_) {
+    for (const WorkerEvent& event : news_.events()) {
       std::visit([this](const auto& happened) { handle(happened); }, event);
     }
     give_out_seeds();
     show_leases();
     booking.commit();
   } catch (const std::exception& error) {
-    const std::optional<Hindrance> hindrance = hindrance_in(error, root(), bytes_of_news());
+    const std::optional<Hindrance> hindrance = hindrance_in(error, root(), news_.bytes());
     if (!hindrance) throw;
     now_ = std::move(before);
     state_.roll_back();
@@ -525,19 +492,6 @@ bool Dispatcher::follow_up() {
   for (const auto& [worker, job] : std::exchange(now_.to_send, {})) pool_.assign(worker, job);
   if (!told_of_.empty() && !pause_.lasts() && !request_waits_) end_pause();
   return true;
-}
-
-// Returns the room [bytes] that booking needs: each result takes about the size of its file in the database,
-// and as much again in the write-ahead log.
-std::uint64_t Dispatcher::bytes_of_news() const {
-  std::uint64_t bytes = 1 << 20;
-  for (const WorkerEvent& event : news_) {
-    const auto* const result = std::get_if<ResultSpooled>(&event);
-    std::error_code absent;
-    const std::uintmax_t size = result == nullptr ? 0 : fs::file_size(result->spool, absent);
-    if (result != nullptr && !absent) bytes += 2 * size;
-  }
-  return bytes;
 }
 
 fs::path Dispatcher::root() const { return fs::path(database_.connection().path()).parent_path(); }

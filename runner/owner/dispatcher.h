@@ -26,6 +26,7 @@
 #include "runner/owner/booked_worker.h"
 #include "runner/owner/campaign_state.h"
 #include "runner/owner/pause.h"
+#include "runner/owner/worker_news.h"
 #include "runner/owner/worker_starts.h"
 
 namespace peclet::runner {
@@ -34,8 +35,7 @@ struct DispatchSettings {
   int threads = 1;  // per worker
   std::chrono::duration<double> lease{120};
   double checkpoint_seconds = 60;
-  std::vector<std::string>
-      hosts{};  // of each worker, if workers are launched; none: they run on this machine
+  std::vector<std::string> hosts{};  // of launched workers; empty: workers run on this machine
   std::optional<std::chrono::duration<double>> time_limit{};
   // Called at every turn, about twice a second or more often. Returns true if folders into which engines
   // write had been deleted and were made anew.
@@ -89,7 +89,6 @@ class Dispatcher {
   bool book();
   // Does what follows the commit. Returns false if something is in the way of the rest.
   bool follow_up();
-  std::uint64_t bytes_of_news() const;
   fs::path root() const;
   void begin_pause(const Hindrance& hindrance);
   void look_whether_it_is_over();
@@ -142,7 +141,7 @@ class Dispatcher {
   DispatchSettings settings_;
   Clock clock_;
   Snapshot now_;
-  std::vector<WorkerEvent> news_;  // events not booked yet
+  WorkerNews news_;  // events not booked yet
   Pause pause_;
   bool unbooked_ = false;          // booking is blocked
   bool uncarried_ = false;         // effects of the last commit are not carried out yet

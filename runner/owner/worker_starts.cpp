@@ -21,15 +21,18 @@ WorkerStarts::WorkerStarts(std::vector<std::string> hosts) {
 }
 
 bool WorkerStarts::may_start(int worker, Time now) const {
+  if (starts_.empty()) return true;
   const Start& start = starts_.at(static_cast<std::size_t>(worker));
   return !hosts_[start.host].is_left && now >= start.earliest;
 }
 
 void WorkerStarts::greet(int worker) {
-  hosts_[starts_.at(static_cast<std::size_t>(worker)).host].has_worked = true;
+  if (!starts_.empty()) hosts_[starts_.at(static_cast<std::size_t>(worker)).host].has_worked = true;
 }
 
-void WorkerStarts::get_on(int worker) { starts_.at(static_cast<std::size_t>(worker)).ends = 0; }
+void WorkerStarts::get_on(int worker) {
+  if (!starts_.empty()) starts_.at(static_cast<std::size_t>(worker)).ends = 0;
+}
 
 std::string WorkerStarts::end(int worker, const std::string& how, Time now) {
   Start& start = starts_.at(static_cast<std::size_t>(worker));

@@ -1,4 +1,5 @@
-// WorkerStarts decides when launched workers are started again, and which hosts are left.
+// WorkerStarts decides when launched workers are started again, and which hosts are left. Workers of this
+// machine are always started.
 #pragma once
 
 #include <chrono>
@@ -11,7 +12,8 @@ class WorkerStarts {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  // The host of each worker, by its name for people; workers with the same name share a host.
+  // The host of each launched worker, by its name for people; workers with the same name share a host. Empty:
+  // workers run on this machine.
   explicit WorkerStarts(std::vector<std::string> hosts);
 
   // True if the worker may be started now: its host is not left, and its pause is over.

@@ -2,9 +2,9 @@
 """viscosities.py ENGINE [DEVICE [SEEDS [SPHERES [SCENE...]]]]
 
 Prints the relative viscosity of scenes by the steps of the processor and by those of DEVICE (emulated, or cuda), each
-the mean over SEEDS (32) with its standard error, and the difference in combined standard errors. ENGINE is
-peclet-engine. With SPHERES (200) the emulation takes half an hour of two cores. The exit code is 1 if a difference is
-above three errors.
+the mean over SEEDS (32) with its standard error, and the difference in combined standard errors. ENGINE is peclet-
+engine. With SPHERES (200), 128 seeds took some forty minutes of two cores beside other work. The exit code is 1 if a
+difference is above three errors.
 """
 import concurrent.futures
 import json

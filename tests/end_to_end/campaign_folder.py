@@ -10,6 +10,22 @@ ENDED = "SELECT count(*) FROM realisation WHERE state = 'done'"
 RESULTS = "SELECT count(*) FROM result"
 BLAMED = "SELECT total(blamed) FROM attempt"
 
+# Sixty spheres in shear, with implicit steps: a realisation takes some tenths of a second.
+SMALL_SCENE = {
+    "particles": {
+        "count": 60,
+        "density": 0.01,
+        "species": [{"radius": 1, "number_share": 1}, {"radius": 1.4, "number_share": 1}],
+    },
+    "volume_fraction": 0.4,
+    "fluid": {"viscosity": 0.1},
+    "flow": {"shear_rate": 2},
+    "contact": {"normal_stiffness": 1e4},
+    "lubrication": {"form": "kim-karrila", "inner_gap": 0.03, "outer_gap": 0.1},
+    "integrator": {"method": "implicit"},
+    "duration": {"equilibration": {"strain": 0.3}, "production": {"strain": 3}},
+}
+
 
 class CampaignFolder:
     """The file NAME.json of a document, the programs that run it, and their output in the file `log`."""

@@ -13,22 +13,8 @@ import sys
 import tempfile
 import time
 
-from campaign_folder import CampaignFolder, children
+from campaign_folder import SMALL_SCENE, CampaignFolder, children
 
-SCENE = {
-    "particles": {
-        "count": 60,
-        "density": 0.01,
-        "species": [{"radius": 1, "number_share": 1}, {"radius": 1.4, "number_share": 1}],
-    },
-    "volume_fraction": 0.4,
-    "fluid": {"viscosity": 0.1},
-    "flow": {"shear_rate": 2},
-    "contact": {"normal_stiffness": 1e4},
-    "lubrication": {"form": "kim-karrila", "inner_gap": 0.03, "outer_gap": 0.1},
-    "integrator": {"method": "implicit"},
-    "duration": {"equilibration": {"strain": 0.3}, "production": {"strain": 3}},
-}
 POINTS = [[0, 0], [0.5, 0], [0.5, 0.02]]  # friction, k_B T
 SEEDS = 8
 
@@ -41,7 +27,7 @@ def check(holds, *what):
 class Campaign(CampaignFolder):
     def __init__(self, programs, folder):
         keys = ["/contact/friction", "/fluid/thermal_energy"]
-        document = {"name": "cards", "scene": SCENE, "sweep": [{"set": keys, "values": POINTS}]}
+        document = {"name": "cards", "scene": SMALL_SCENE, "sweep": [{"set": keys, "values": POINTS}]}
         document |= {"target": {"observable": "pressure", "absolute_tolerance": 1e9}}
         document |= {"realisations": {"minimum": SEEDS, "maximum": SEEDS}}
         super().__init__(programs, folder, document, {"PECLET_DEVICE": "emulated"})

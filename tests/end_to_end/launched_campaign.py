@@ -14,20 +14,9 @@ import sys
 import tempfile
 import time
 
-from campaign_folder import CampaignFolder, comes_true, processes_with
+from campaign_folder import SMALL_SCENE, CampaignFolder, comes_true, processes_with
 
-SCENE = {
-    "particles": {
-        "count": 60,
-        "density": 0.01,
-        "species": [{"radius": 1, "number_share": 1}, {"radius": 1.4, "number_share": 1}],
-    },
-    "volume_fraction": 0.4,
-    "fluid": {"viscosity": 0.1},
-    "flow": {"shear_rate": 2},
-    "contact": {"normal_stiffness": 1e4},
-    "lubrication": {"form": "kim-karrila", "inner_gap": 0.03, "outer_gap": 0.1},
-    "integrator": {"method": "implicit"},
+SCENE = SMALL_SCENE | {
     "duration": {"equilibration": {"strain": 0.3}, "production": {"strain": 20}},
     "observables": ["stress", "trajectory"],
     "trajectory": {"interval": {"strain": 0.02}},

@@ -34,6 +34,10 @@ TEST(UsableCores, AreThoseOfAJob) {
                                                          {"PBS_JOBID", "NCPUS"},
                                                          {"LSB_JOBID", "LSB_DJOB_NUMPROC"},
                                                          {"SGE_TASK_ID", "NSLOTS"}};
+  for (const auto& [job, cores] : systems) {  // the tests themselves may run in a job
+    ::unsetenv(job);
+    ::unsetenv(cores);
+  }
   EXPECT_EQ(cores_of_job(), std::nullopt);
   for (const auto& [job, cores] : systems) {
     ASSERT_EQ(::setenv(cores, "1", 1), 0);

@@ -56,11 +56,8 @@ EngineCommand engine() {
 }
 
 TEST(LaunchedWorkers, GetTheCommandOfTheLauncher) {
-  Launching launching;
-  launching.launcher = "srun --exact -n1 -c{threads}";
-  launching.workers = 2;
-  launching.threads = 4;
-  const LaunchedWorkers workers = launched_workers(engine(), launching);
+  const Launching launching = read_launching("srun --exact -n1 -c{threads}", "", 2);
+  const LaunchedWorkers workers = launched_workers(engine(), launching, 2, 4, 60);
   ASSERT_EQ(workers.commands.size(), 2U);
   const std::vector<std::string> expected{"worker", "--through", "srun --exact -n1 -c4", "--silence",
                                           "60",     "--",        "/opt/engine",          "serve"};
@@ -68,15 +65,34 @@ TEST(LaunchedWorkers, GetTheCommandOfTheLauncher) {
   EXPECT_EQ(workers.hosts, (std::vector<std::string>{"--launch", "--launch"}));
 }
 
-TEST(LaunchedWorkers, AreDealtOutToHostsInTurn) {
-  Launching launching;
-  launching.hosts = {{"a", 1}, {"b", 3}, {"c", 2}};
-  launching.workers = 5;
-  const LaunchedWorkers workers = launched_workers(engine(), launching);
+TEST_F(Hosts, GetWorkersInTurn) {
+  write_durably(file_, "a\nb:3\nc:2\n");
+  EXPECT_EQ(read_launching("", file_, 0).workers, 6);
+  EXPECT_EQ(read_launching("", file_, 100).workers, 6);
+  const Launching launching = read_launching("", file_, 5);
+  const LaunchedWorkers workers = launched_workers(engine(), launching, launching.workers, 1, 60);
   EXPECT_EQ(workers.hosts, (std::vector<std::string>{"a", "b", "c", "b", "c"}));
   EXPECT_TRUE(workers.commands[1].arguments[2].starts_with("ssh "));
   EXPECT_TRUE(workers.commands[1].arguments[2].ends_with(" b"));
   EXPECT_EQ(workers.commands[3].environment, std::vector<std::string>{"PECLET_DEVICE_NUMBER=1"});
+}
+
+TEST_F(Hosts, FitTheLauncher) {
+  write_durably(file_, "a\n");
+  const auto why_refused = [](const std::string& launcher, const fs::path& hosts, int workers) {
+    try {
+      read_launching(launcher, hosts, workers);
+    } catch (const InputError& error) {
+      return error.pointer();
+    }
+    return std::string();
+  };
+  EXPECT_EQ(why_refused("mpiexec -host {host}", file_, 0), "");
+  EXPECT_EQ(why_refused("srun", "", 3), "");
+  EXPECT_EQ(why_refused("srun", "", 0), "--workers");
+  EXPECT_EQ(why_refused("srun", file_, 0), "--launch");
+  EXPECT_EQ(why_refused("mpiexec -host {host}", "", 3), "--hosts");
+  EXPECT_THROW(read_launching("", folder_.path() / "absent", 0), InputError);
 }
 
 }  // namespace

@@ -42,6 +42,50 @@ TEST_F(Dispatching, AWorkerThatWasStoppedIsReplacedWithoutBlame) {
   EXPECT_EQ(database_.connection().integer("SELECT total(blamed) FROM attempt"), 0);
 }
 
+TEST_F(Dispatching, FilesOnTheirWayRenewTheLeaseOfALaunchedWorker) {
+  settings_.hosts = {"a", "a"};
+  pool_.script = [&, this] {
+    if (pool_.now.time_since_epoch() > std::chrono::seconds(400)) return finish_all();
+    pool_.now += std::chrono::milliseconds(900);
+    for (const int worker : {0, 1}) {
+      if (pool_.has_job(worker)) pool_.say(Carrying{worker, pool_.job(worker).attempt});
+    }
+  };
+  EXPECT_EQ(run(), Dispatcher::Ending::finished);
+  EXPECT_EQ(attempts_of(0).size(), 1U);
+  EXPECT_EQ(attempts_of(1).size(), 1U);
+}
+
+TEST_F(Dispatching, AWorkerOfThisMachineCarriesNoFiles) {
+  bool first = true;
+  pool_.script = [&, this] {
+    if (std::exchange(first, false)) return pool_.say(Carrying{0, pool_.job(0).attempt});
+    finish_all();
+  };
+  EXPECT_EQ(run(), Dispatcher::Ending::finished);
+  EXPECT_EQ(attempts_of(0).at(0).outcome, "garbled");
+  EXPECT_TRUE(attempts_of(0).at(0).blamed);
+}
+
+TEST_F(Dispatching, ALostLinkIsNotBlamedAndNonsenseIs) {
+  settings_.hosts = {"a", "b"};
+  bool first = true;
+  pool_.script = [&, this] {
+    if (std::exchange(first, false)) {
+      pool_.say(Lost{0, "the launcher ended", false});
+      return pool_.say(Lost{1, "sent nonsense", true});
+    }
+    pool_.now += std::chrono::milliseconds(900);  // the pause before they are started again
+    finish_all();
+  };
+  EXPECT_EQ(run(), Dispatcher::Ending::finished);
+  EXPECT_EQ(attempts_of(0).at(0).outcome, "killed");
+  EXPECT_FALSE(attempts_of(0).at(0).blamed);
+  EXPECT_EQ(attempts_of(1).at(0).outcome, "garbled");
+  EXPECT_TRUE(attempts_of(1).at(0).blamed);
+  EXPECT_TRUE(was_warned_of("worker 0 of a ended: the launcher ended"));
+}
+
 TEST_F(Dispatching, AnOwnerThatWasStoppedBlamesNobody) {
   int stops = 0;
   pool_.script = [&, this] {
