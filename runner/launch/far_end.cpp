@@ -130,9 +130,7 @@ void FarEnd::hear_near_end() {
     if (type == "begin") {
       begin(frame);
     } else if (type == "piece") {
-      const std::int64_t job = frame.at("job");
-      fs::create_directories(folder_.path() / std::to_string(job));
-      inbox_.take(frame, here(job).path(frame));
+      inbox_.take(frame, here(frame.at("job")).path(frame));
     } else if (type == "job") {
       take_job(std::move(frame));
     } else if (type != "alive" && frames_) {
@@ -159,17 +157,23 @@ void FarEnd::begin(const Json& frame) {
   frames_.emplace(duplicate(engine_->descriptor()), duplicate(engine_->descriptor()), largest_answer);
 }
 
-CarriedJob FarEnd::here(std::int64_t number) const {
-  const fs::path folder = folder_.path() / std::to_string(number);
-  return {folder / "result.json", folder / "checkpoint", folder / "failures",
-          (folder / "files" / "").string()};
+CarriedJob FarEnd::here(std::int64_t number) {
+  const auto [known, is_new] = places_.try_emplace(number);
+  fs::path& place = known->second;
+  if (is_new && !free_places_.empty()) {
+    place = free_places_.back();
+    free_places_.pop_back();
+  } else if (is_new) {
+    place = folder_.path() / std::to_string(number);
+    for (const char* const folder : {"failures", "files"}) fs::create_directories(place / folder);
+  }
+  return {place / "result.json", place / "checkpoint", place / "failures", (place / "files" / "").string()};
 }
 
 void FarEnd::take_job(Json frame) {
   if (!frames_) throw FrameError("a job came before the engine was named");
   const std::int64_t number = frame.at("job");
   const CarriedJob paths = here(number);
-  for (const fs::path& folder : {paths.failures, fs::path(paths.files)}) fs::create_directories(folder);
   FarJob job{CarriedJob::of_frame(frame)};
   std::error_code absent;
   job.checkpoint_time = fs::last_write_time(paths.checkpoint, absent);
@@ -275,8 +279,13 @@ void FarEnd::send_checkpoints() {
 
 void FarEnd::end_job(std::int64_t number) {
   jobs_.erase(number);
-  std::error_code ignored;
-  fs::remove_all(folder_.path() / std::to_string(number), ignored);
+  fs::path place = std::move(places_.extract(number).mapped());
+  for (const fs::path& folder : {place / "failures", place / "files", place}) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+      if (folder != place || !entry.is_directory()) fs::remove_all(entry.path());
+    }
+  }
+  free_places_.push_back(std::move(place));
 }
 
 void FarEnd::hang_up() {

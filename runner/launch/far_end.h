@@ -49,8 +49,8 @@ class FarEnd {
   void send_result(const Json& frame);
   void send_files(std::int64_t number);
   void name_state_at_home(std::int64_t number, Json& frame);
-  // Returns the paths of a job here.
-  CarriedJob here(std::int64_t number) const;
+  // Returns the paths of a job here; its folders exist.
+  CarriedJob here(std::int64_t number);
   // Sends the checkpoint if it is another one than last time.
   void send_checkpoint(std::int64_t number, FarJob& job);
   void send_checkpoints();
@@ -69,6 +69,8 @@ class FarEnd {
   Outbox outbox_;
   Inbox inbox_;
   std::map<std::int64_t, FarJob> jobs_;
+  std::map<std::int64_t, fs::path> places_;  // folder of each job
+  std::vector<fs::path> free_places_;        // empty folders, for the next jobs
   std::chrono::duration<double> silence_{60};
   Clock::time_point checkpoints_seen_{};
   std::optional<int> stopped_by_;  // signal

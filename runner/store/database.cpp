@@ -262,6 +262,8 @@ Database Database::open_owner(const fs::path& path) {
   if (!fresh) check_kind(connection);
   // Results take some 2 kB, and pages of 4 kB would hold one each. Ignored if tables exist.
   connection.execute("PRAGMA page_size = 16384");
+  // Journals of statements are a few pages; a file for each would cost as much as the commit.
+  connection.execute("PRAGMA temp_store = MEMORY");
   connection.execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON");
   connection.execute(fmt::format("PRAGMA wal_autocheckpoint = {}", pages_of_log(path)));
   // The log grows while a reader does not finish; afterwards the file shrinks again.

@@ -47,6 +47,8 @@ std::uint64_t first_bits(const std::string& text) {
 }
 
 int count_try(const std::filesystem::path& folder, const std::string& point, int seed) {
+  const auto is_set = [](const char* name) { return std::getenv(name) != nullptr; };
+  if (!is_set("PECLET_FAKE_FAULTS") && !is_set("PECLET_FAKE_CRASH_PROBABILITY")) return 1;
   const std::filesystem::path file = folder / ("tries-" + point.substr(0, 16) + "-" + std::to_string(seed));
   int tried = 0;
   std::ifstream(file) >> tried;
