@@ -164,13 +164,14 @@ bool NearEnd::take(Json given) {
 bool NearEnd::take_piece(const Json& piece) {
   NearJob& job = job_of(piece);
   const fs::path path = job.paths.path(piece);
-  if (job.files.insert(path).second && job.files.size() > most_files) {
+  // While the job runs its progress renews its lease, and checkpoints replace one another.
+  const bool is_of_end = piece.at("role") != role::checkpoint && piece.at("role") != role::growing;
+  bool& has_come = job.files[path];
+  if (job.files.size() > most_files)
     throw FrameError(fmt::format("sends more than {} files of a job", most_files));
-  }
+  if (has_come && is_of_end) throw FrameError("sends a file of a job twice");
   try {
-    inbox_.take(piece, path);
-    // While the job runs its progress renews its lease.
-    const bool is_of_end = piece.at("role") != role::checkpoint && piece.at("role") != role::growing;
+    has_come = inbox_.take(piece, path);
     if (is_of_end && Clock::now() - said_carrying_ > carrying_interval) {
       said_carrying_ = Clock::now();
       owner_.send({{"type", "carrying"}, {"job", piece.at("job")}});

@@ -3,7 +3,6 @@
 
 #include <map>
 #include <optional>
-#include <set>
 
 #include "runner/launch/carried_files.h"
 #include "runner/launch/launched_worker.h"
@@ -22,7 +21,7 @@ class NearEnd {
 
   struct NearJob {
     CarriedJob paths;
-    std::set<fs::path> files{};  // that have come
+    std::map<fs::path, bool> files{};  // those that were begun; true: the last one has come as a whole
   };
 
   void take_turn();

@@ -3,7 +3,7 @@
 
 Tests campaigns whose workers are launched (peclet run --launch). Their far ends have folders of their own; only
 the frames connect them with the owner. Checkpoints, trajectories and results come home in pieces. Undisturbed, with
-a launcher that prints a greeting, and with KILLS (12) random SIGKILL and SIGTERM of engines, far ends, launchers, near
+a launcher that prints a greeting, with an engine that fails in several ways, and with KILLS (12) random SIGKILL and SIGTERM of engines, far ends, launchers, near
 ends and the owner, the canonical export must be that of one local worker. Orphans must end by themselves.
 """
 import os
@@ -15,14 +15,18 @@ import tempfile
 import time
 
 from campaign_folder import SMALL_SCENE, CampaignFolder, comes_true, processes_with
+from drill.campaign import FAKE
 
 SCENE = SMALL_SCENE | {
+    "contact": {"normal_stiffness": 5e4},
     "duration": {"equilibration": {"strain": 0.3}, "production": {"strain": 20}},
     "observables": ["stress", "trajectory"],
     "trajectory": {"interval": {"strain": 0.02}},
     "files": {"final_configuration": True},
 }
 SEEDS = 6
+# The fake engine counts its tries in the folder of failures, which stays on this machine.
+FAULTS = "crash:1 exit:2 garble:3 refuse:4 overlap:5 mute:6 truncate:7"
 GREETING = """sh -c 'echo "Welcome to node7. PCF"; exec "$0" "$@"'"""
 PARTS = {  # words of the command lines of what is killed
     "engine": ("peclet-engine", "serve"),
@@ -53,10 +57,10 @@ def is_part(words, part):
 
 
 class Campaign(CampaignFolder):
-    def __init__(self, programs, folder):
+    def __init__(self, programs, folder, seeds=SEEDS):
         document = {"name": "far", "scene": SCENE, "sweep": [{"set": "/contact/friction", "values": [0, 0.5]}]}
         document |= {"target": {"observable": "pressure", "absolute_tolerance": 1e9}}
-        document |= {"realisations": {"minimum": SEEDS, "maximum": SEEDS}}
+        document |= {"realisations": {"minimum": seeds, "maximum": seeds}}
         self.far = os.path.join(folder, "far folders")
         super().__init__(programs, folder, document, {"TMPDIR": self.far})
         os.makedirs(self.far)
@@ -111,6 +115,21 @@ def disturbed(campaign, kills, generator):
     return process, done
 
 
+def blame_of_engine(folder, how):
+    """Runs a campaign of the fake engine, whose faults are its own; returns the export and what is blamed."""
+    document = FAKE | {"engine": [os.path.join(os.path.abspath(sys.argv[1]), "fake_engine")]}
+    campaign = CampaignFolder(
+        sys.argv[1], os.path.join(folder, "faults" + how), document, {"PECLET_FAKE_FAULTS": FAULTS}
+    )
+    process = campaign.start("run", campaign.file, "--quiet", "--workers=2", how)
+    check(
+        process.wait(timeout=100) == 3, "with faults of the engine, it ended with", process.returncode, campaign.log()
+    )
+    blamed = campaign.query("SELECT seed, outcome, count(*) FROM attempt WHERE blamed GROUP BY seed, outcome")
+    check(len(blamed) >= 4, "too few faults:", blamed)
+    return campaign.export(), blamed
+
+
 def main():
     kills = int(sys.argv[2]) if len(sys.argv) > 2 else 12
     with tempfile.TemporaryDirectory() as folder:
@@ -122,6 +141,8 @@ def main():
         for campaign, launcher in ((far, "env"), (greeted, GREETING)):
             campaign.completed(campaign.run(f"--launch={launcher}", "--workers=2"), f"launched by {launcher}, it")
             check(campaign.export() == expected, "launched by", launcher, "it gives other results")
+        near, far = (blame_of_engine(folder, how) for how in ("--threads=1", "--launch=env"))
+        check(near == far, "faults of the engine are blamed otherwise when it is launched:", near[1], far[1])
         process, done = disturbed(wild, kills, random.Random(42))
         wild.completed(process, f"after {done}, it")
         check(wild.export() == expected, "after", done, "it gives other results")

@@ -43,6 +43,7 @@ def many_files(piece):
 
 LIES = {  # what is sent in the place of a piece of a result, and what the owner says
     "repeated": (lambda piece: [without_hash(piece), piece], "begins at byte 0 instead of"),
+    "twice": (lambda piece: [piece, piece], "a file of a job twice"),
     "later": (changed(offset=5), "does not begin at byte 0"),
     "hash": (changed(sha256="0" * 64), "does not have its hash"),
     "role": (changed(role="database"), "/role"),

@@ -7,6 +7,7 @@ and beyond the time after which a host counts as lost; slow (10 Mbit/s, 200 ms);
 canonical export must be that of one local worker, with trajectories and final configurations, and no seed is blamed.
 Needs Debian's packages openssh-server, openssh-client and iproute2.
 """
+import contextlib
 import os
 import random
 import signal
@@ -20,6 +21,8 @@ from launched_campaign import PARTS, Campaign, check, is_part, words_of
 
 PARTS["launcher"] = ("ssh", "-T")
 HOSTS = 3
+SEEDS = 20
+KILLS = 200
 BRIDGE = "pecletbr"
 CASES = ("calm", "cut 1", "cut 10", "cut 40", "slow", "kills")
 LEASE = 40  # s; half of it is the silence after which a host counts as lost
@@ -142,49 +145,73 @@ def slowly(command):
     return process.wait()
 
 
-def disturb(case, campaign, hosts, process, generator):
-    """Disturbs a running campaign until it ends; returns what was done."""
-    done = 0
-    while process.poll() is None and case not in ("calm", "slow"):
+def cut_links(campaign, hosts, seconds, generator):
+    """Runs the campaign; meanwhile each of three times a link is cut. Returns the process and what was done."""
+    process, done = campaign.run(*hosts.words()), 0
+    while process.poll() is None and done < 3:
         time.sleep(generator.uniform(0.2, 0.8))
-        if case.startswith("cut"):
-            if done == 3:
-                continue
-            hosts.cut(generator.randrange(HOSTS), float(case.split()[1]))
-        elif case == "kills":
-            part = generator.choice(["engine", "near end", "launcher"])
-            found = [p for p in campaign.processes() if is_part(words_of(p), part)]
-            if not found or done >= 60:
-                continue
-            try:
-                os.kill(generator.choice(found), signal.SIGKILL)
-            except ProcessLookupError:
-                continue
+        hosts.cut(generator.randrange(HOSTS), seconds)
         done += 1
-    process.wait(timeout=600)
-    return done
+    return process, f"{done} cuts of {seconds} s"
+
+
+def processes_of(campaign, part):
+    if part == "far end":  # ssh passes no environment on
+        return [parent_of(process) for process in processes_of(campaign, "engine")]
+    return [process for process in campaign.processes() if is_part(words_of(process), part)]
+
+
+def parent_of(process):
+    with contextlib.suppress(OSError):
+        with open(f"/proc/{process}/stat") as f:
+            return int(f.read().rsplit(")", 1)[1].split()[1])
+    return 0
+
+
+def kill_parts(campaign, hosts, kills, generator):
+    """Runs the campaign, killing its parts. Returns the last owner's process and how often each part was killed."""
+    process, done = campaign.run(*hosts.words()), dict.fromkeys([*PARTS, "owner"], 0)
+    while process.poll() is None and sum(done.values()) < kills:
+        time.sleep(generator.uniform(0.05, 0.4))
+        part = generator.choice(list(done))
+        found = [process.pid] if part == "owner" else processes_of(campaign, part)
+        found = [one for one in found if one > 1]
+        if not found:
+            continue
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(generator.choice(found), signal.SIGKILL)
+            done[part] += 1
+        if part == "owner":
+            process.wait()
+            process = campaign.run(*hosts.words())
+    return process, done
 
 
 def main():
     chosen = sys.argv[2:] or CASES
     with tempfile.TemporaryDirectory(dir="/var/tmp") as keys, tempfile.TemporaryDirectory() as folder:
-        calm = Campaign(sys.argv[1], os.path.join(folder, "local"))
+        calm = Campaign(sys.argv[1], os.path.join(folder, "local"), SEEDS)
         calm.completed(calm.run("--workers=1"), "the local run")
         with Hosts(keys, folder) as hosts:
             time.sleep(1)
             for case in chosen:
                 begun = time.monotonic()
-                campaign = Campaign(sys.argv[1], os.path.join(folder, case))
-                through = f"/usr/bin/python3 {os.path.abspath(__file__)} --slowly" if case == "slow" else ""
-                process = campaign.run(*hosts.words(through))
-                done = disturb(case, campaign, hosts, process, random.Random(7))
+                campaign = Campaign(sys.argv[1], os.path.join(folder, case), SEEDS)
+                generator, done = random.Random(7), ""
+                if case.startswith("cut"):
+                    process, done = cut_links(campaign, hosts, float(case.split()[1]), generator)
+                elif case == "kills":
+                    process, done = kill_parts(campaign, hosts, KILLS, generator)
+                else:
+                    slowly = f"/usr/bin/python3 {os.path.abspath(__file__)} --slowly" if case == "slow" else ""
+                    process = campaign.run(*hosts.words(slowly))
                 campaign.completed(process, case)
                 check(campaign.export() == calm.export(), case, "gives other results")
                 blamed = campaign.ask("SELECT total(blamed) FROM attempt")
                 check(blamed == 0, case, "blamed", campaign.query("SELECT * FROM attempt WHERE blamed"))
                 attempts = campaign.ask("SELECT count(*) FROM attempt")
                 seconds = time.monotonic() - begun
-                print(f"{case}: {seconds:.0f} s, {attempts} attempts, {done} disturbances: the same bytes", flush=True)
+                print(f"{case}: {seconds:.0f} s, {attempts} attempts, {done}: the same bytes", flush=True)
 
 
 if __name__ == "__main__":

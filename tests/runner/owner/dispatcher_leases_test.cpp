@@ -86,6 +86,18 @@ TEST_F(Dispatching, ALostLinkIsNotBlamedAndNonsenseIs) {
   EXPECT_TRUE(was_warned_of("worker 0 of a ended: the launcher ended"));
 }
 
+TEST_F(Dispatching, AnEngineThatCrashesIsLaunchedAgainWithoutAPause) {
+  settings_.hosts = {"a", "b"};
+  int turns = 0;
+  pool_.script = [&, this] {
+    if (++turns == 1) return pool_.say(Exited{0, {{}, SIGSEGV}});
+    EXPECT_TRUE(turns == 2 || pool_.has_job(0)) << turns;
+    if (turns > 2) finish_all();
+  };
+  EXPECT_EQ(run(), Dispatcher::Ending::finished);
+  EXPECT_EQ(database_.connection().integer("SELECT total(blamed) FROM attempt"), 1);
+}
+
 TEST_F(Dispatching, AnOwnerThatWasStoppedBlamesNobody) {
   int stops = 0;
   pool_.script = [&, this] {
