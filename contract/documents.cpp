@@ -156,7 +156,7 @@ constexpr const char* frame_rows = R"(
 -- lost | Engine: its part on another machine is gone, or the link to it. Its jobs are queued again, without blame unless
     that part sent nonsense.
 /message | string
-/nonsense | true or false; default false
+/cause | one of link, nonsense, no-room; default "link"
 
 -- result | Engine: the result is on disk, in the file named spool.
 {job}

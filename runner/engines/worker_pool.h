@@ -69,10 +69,10 @@ struct Carrying {  // files of the job are coming from another machine
   int worker;
   std::int64_t job;
 };
-struct Lost {  // its part on another machine, or the link to it, is gone or says nonsense
+struct Lost {  // its part on another machine, or the link to it, is gone
   int worker;
   std::string message;
-  bool is_nonsense;
+  std::string cause;  // link, nonsense, no-room
 };
 struct Garbled {  // it sent something that is not a message and has been killed; Exited follows
   int worker;

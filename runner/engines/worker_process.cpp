@@ -118,7 +118,7 @@ WorkerEvent as_event(int worker, Json given) {
   if (type == "failed") return JobFailed{worker, count("job"), plain(text("message"))};
   if (type == "drained") return Drained{worker, count("job"), count("step")};
   if (type == "carrying") return Carrying{worker, count("job")};
-  if (type == "lost") return Lost{worker, plain(text("message")), message["nonsense"].get<bool>()};
+  if (type == "lost") return Lost{worker, plain(text("message")), text("cause")};
   if (type == "no-room")
     return ShortOfRoom{worker, count("job"), text("path"), static_cast<std::uint64_t>(count("bytes"))};
   throw FrameError("unexpected message: " + type);

@@ -195,7 +195,7 @@ void FarEnd::hear_engine() {
       pass_on(std::move(*frame));
     }
   } catch (const FrameError& error) {
-    outbox_.add({{"type", "lost"}, {"message", error.what()}, {"nonsense", true}});
+    outbox_.add({{"type", "lost"}, {"message", error.what()}, {"cause", "nonsense"}});
     engine_->kill();
     hang_up();
   }
@@ -212,8 +212,10 @@ void FarEnd::pass_on(Json frame) {
     // It need not wait for a checkpoint, and is left out behind the end of another job.
     if (!outbox_.has_frames()) near_.send(frame);
   } else if (type == "no-room") {
-    say_as_worker(fmt::format("no room on this machine: {} bytes for {}",
-                              frame.value("bytes", Json(0)).dump(), frame.value("path", Json("")).dump()));
+    const std::string why =
+        fmt::format("no room on the other machine: {} bytes for {}", frame.value("bytes", Json(0)).dump(),
+                    frame.value("path", Json("")).dump());
+    outbox_.add({{"type", "lost"}, {"message", why}, {"cause", "no-room"}});
     stopped_by_ = SIGKILL;
     engine_->kill();
     hang_up();

@@ -227,7 +227,7 @@ void NearEnd::lose(const std::string& why, bool is_nonsense) {
   say_as_worker(why);
   inbox_.discard();
   ::kill(-launcher_.process, SIGKILL);
-  owner_.send({{"type", "lost"}, {"message", why}, {"nonsense", is_nonsense}});
+  owner_.send({{"type", "lost"}, {"message", why}, {"cause", is_nonsense ? "nonsense" : "link"}});
   tell_owner();
   die_of(SIGKILL);
 }

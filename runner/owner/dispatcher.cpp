@@ -202,7 +202,6 @@ void Dispatcher::handle(const Progressed& event) {
   Assignment* const about = running_job(event.worker, event.job);
   if (about == nullptr) return;
   at(event.worker).watch.hear(event, awake_.awake());
-  now_.starts.get_on(event.worker);
   about->shown = false;
 }
 
@@ -272,8 +271,10 @@ void Dispatcher::handle(const Carrying& event) {
 }
 
 void Dispatcher::handle(const Lost& event) {
-  const bool is_blamed = event.is_nonsense || !are_launched();
-  condemn(event.worker, {is_blamed ? AttemptOutcome::garbled : AttemptOutcome::killed, event.message});
+  const AttemptOutcome outcome = event.cause == "nonsense" || !are_launched() ? AttemptOutcome::garbled
+                                 : event.cause == "no-room"                   ? AttemptOutcome::drained
+                                                                              : AttemptOutcome::killed;
+  condemn(event.worker, {outcome, event.message});
 }
 
 void Dispatcher::handle(const Garbled& event) {

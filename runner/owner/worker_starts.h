@@ -20,10 +20,10 @@ class WorkerStarts {
   bool may_start(int worker, Time now) const;
   // Records that the worker said hello.
   void greet(int worker);
-  // Records that the worker got on with a job.
+  // Records that the worker gave a result.
   void get_on(int worker);
-  // Records that a worker ended by itself, and how. It is started again after 1, 2, 4 ... 64 seconds, from
-  // its last progress on. A host of which no worker has ever said hello is left after five ends. Returns a
+  // Records that a worker ended by itself, and how. It is started again after 1, 2, 4 ... 64 seconds, counted
+  // from its last result on. A host of which no worker has ever said hello is left after five ends. Returns a
   // warning at the first end in a row and when a host is left; otherwise "".
   std::string end(int worker, const std::string& how, Time now);
   // True if every host is left.

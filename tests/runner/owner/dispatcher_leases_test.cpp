@@ -72,8 +72,8 @@ TEST_F(Dispatching, ALostLinkIsNotBlamedAndNonsenseIs) {
   bool first = true;
   pool_.script = [&, this] {
     if (std::exchange(first, false)) {
-      pool_.say(Lost{0, "the launcher ended", false});
-      return pool_.say(Lost{1, "sent nonsense", true});
+      pool_.say(Lost{0, "the launcher ended", "link"});
+      return pool_.say(Lost{1, "sent nonsense", "nonsense"});
     }
     pool_.now += std::chrono::milliseconds(900);  // the pause before they are started again
     finish_all();
@@ -84,6 +84,19 @@ TEST_F(Dispatching, ALostLinkIsNotBlamedAndNonsenseIs) {
   EXPECT_EQ(attempts_of(1).at(0).outcome, "garbled");
   EXPECT_TRUE(attempts_of(1).at(0).blamed);
   EXPECT_TRUE(was_warned_of("worker 0 of a ended: the launcher ended"));
+}
+
+TEST_F(Dispatching, AFullDiskOfAnotherMachineCostsNoSeed) {
+  settings_.hosts = {"a", "b"};
+  int losses = 0;
+  pool_.script = [&, this] {
+    pool_.now += std::chrono::seconds(64);  // the longest pause
+    if (losses == 30) return finish_all();
+    if (pool_.has_job(0) && ++losses <= 30) pool_.say(Lost{0, "no room", "no-room"});
+  };
+  EXPECT_EQ(run(), Dispatcher::Ending::finished);
+  EXPECT_EQ(database_.connection().integer("SELECT count(*) FROM attempt WHERE outcome = 'drained'"), 30);
+  EXPECT_EQ(database_.connection().integer("SELECT count(*) FROM realisation WHERE state != 'done'"), 0);
 }
 
 TEST_F(Dispatching, AnEngineThatCrashesIsLaunchedAgainWithoutAPause) {
