@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """large_campaign.py BIN [--points 125] [--seeds 800] [--workers 64] [--milliseconds 100] [--block-numbers 475]
+                       [--launch FOLDER]
 
 Runs a campaign of 100 000 realisations with the fake engine, every point up to its maximum. Its results are
 as large as those of peclet-engine (--block-numbers), its jobs sleep 100 ms, and it takes a job ahead. Prints
@@ -11,6 +12,9 @@ the owner's costs:
   and announced, without the wait for the next job;
 - commits per second and results per commit, by the transaction counter in the write-ahead log's index;
 - the time of `peclet status` during the run (median and largest) and after it, and the size of the database.
+
+With --launch workers are launched through the program `env`, and their far ends keep files in FOLDER, which is best on
+another disk, or in memory. The time of both ends is counted with that of the engines.
 
 On a quiet machine with two cores it takes about four minutes; --points 5 makes a short test. It fails if a
 result is missing or the median of `status` reaches 0.3 s. With --claims it also fails if the load is below
@@ -110,6 +114,7 @@ def main():
         default=475,
         help="in a result; 475 make 2.0 kB stored, as those of peclet-engine with friction and noise",
     )
+    parser.add_argument("--launch", metavar="FOLDER")
     parser.add_argument("--claims", action="store_true", help="fail unless every claim holds")
     arguments = parser.parse_args()
     engine = os.path.abspath(os.path.join(arguments.bin, "fake_engine"))
@@ -117,9 +122,13 @@ def main():
         times = os.path.join(folder, "times")
         fake = {"STEPS": 1, "STEP_MS": arguments.milliseconds, "PADDING": arguments.block_numbers, "TIMES": times}
         environment = {f"PECLET_FAKE_{name}": str(value) for name, value in (fake | {"AHEAD": 1}).items()}
+        if arguments.launch:
+            environment["TMPDIR"] = arguments.launch
         campaign = CampaignFolder(arguments.bin, folder, campaign_of(arguments, engine), environment)
         started = time.monotonic()
-        words = f"run large.json --quiet --threads 1 --workers {arguments.workers}".split()
+        words = f"run large.json --quiet --threads 1 --workers {arguments.workers}".split() + ["--launch=env"] * bool(
+            arguments.launch
+        )
         run = campaign.start(*words, stdout=subprocess.DEVNULL, stderr=None)
         owner, statuses = Owner(run, campaign), Statuses(campaign)
         owner.start()

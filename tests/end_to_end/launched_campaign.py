@@ -2,9 +2,10 @@
 """launched_campaign.py PROGRAMS [KILLS]
 
 Tests campaigns whose workers are launched (peclet run --launch). Their far ends have folders of their own; only
-the frames connect them with the owner. Checkpoints, trajectories and results come home in pieces. Undisturbed, with
-a launcher that prints a greeting, with an engine that fails in several ways, and with KILLS (12) random SIGKILL and SIGTERM of engines, far ends, launchers, near
-ends and the owner, the canonical export must be that of one local worker. Orphans must end by themselves.
+the frames connect them with the owner. Checkpoints, trajectories and results come home in pieces. The canonical export
+must be that of one local worker: undisturbed, with a launcher that prints a greeting, with an engine that fails in
+several ways, and with KILLS (12) random SIGKILL and SIGTERM of engines, far ends, launchers, near ends and the owner.
+Orphans must end by themselves.
 """
 import os
 import random

@@ -49,7 +49,8 @@ enum class Fault {
   escape
 };
 
-// Returns the number of this try of a seed, from 1, which it counts in a file of `folder` if there are faults.
+// Returns the number of this try of a seed, from 1, which it counts in a file of `folder` if there are
+// faults.
 int count_try(const std::filesystem::path& folder, const std::string& point, int seed);
 
 // Returns the fault of this try. Throws std::runtime_error for an environment that makes no sense.
