@@ -14,13 +14,17 @@ function(add_rooms prefix libraries)
 endfunction()
 
 # embed(LIBRARY TEMPLATE FILE...): adds TEMPLATE.cpp.in to the library, with the text of the file name.ending in the
-# place of @NAME_ENDING@.
+# place of @NAME_ENDING@. @TEXT_BY_NAME@ is all of them, each as {"folder-name", R"text(...)text"},.
 function(embed library template)
   foreach(path ${ARGN})
     cmake_path(GET path FILENAME name)
     string(MAKE_C_IDENTIFIER ${name} variable)
     string(TOUPPER ${variable} variable)
     file(READ ${path} ${variable})
+    cmake_path(GET path PARENT_PATH folder)
+    cmake_path(GET folder FILENAME folder)
+    cmake_path(GET path STEM LAST_ONLY stem)
+    string(APPEND TEXT_BY_NAME "{\"${folder}-${stem}\", R\"text(${${variable}})text\"},\n")
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${path})
   endforeach()
   cmake_path(GET template FILENAME name)

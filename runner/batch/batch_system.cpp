@@ -81,20 +81,34 @@ std::string quoted_for(const std::string& before, const std::string& name, const
 }  // namespace
 
 BatchTemplate batch_template(const std::string& system, const fs::path& folder) {
-  if (folder.empty()) {
-    if (system == "slurm") return slurm_template();
-    throw InputError(
-        "", "", system,
-        "is not a batch system that peclet knows; slurm is, and --template FOLDER describes another");
-  }
   BatchTemplate scripts;
-  for (const auto& [name, text] : slurm_template()) {
-    if (!fs::is_regular_file(folder / name)) {
-      throw InputError((folder / name).string(), "", "", "is missing from the template");
+  for (const std::string name : {"job", "submit", "query", "cancel", "largest"}) {
+    const std::string file = name + ".sh";
+    const auto built_in = built_in_templates().find(system + '-' + name);
+    if (!folder.empty() && fs::is_regular_file(folder / file)) {
+      scripts[file] = read_file(folder / file);
+    } else if (built_in != built_in_templates().end()) {
+      scripts[file] = built_in->second;
+    } else if (folder.empty()) {
+      throw InputError(
+          "", "", system,
+          "is not a batch system that peclet knows; slurm, pbs and lsf are, and --template FOLDER "
+          "describes another");
+    } else {
+      throw InputError((folder / file).string(), "", "", "is missing from the template");
     }
-    scripts[name] = read_file(folder / name);
   }
   return scripts;
+}
+
+std::string template_text(const std::string& name) {
+  std::string names;
+  for (const auto& [known, text] : built_in_templates()) {
+    if (known == name) return text;
+    names += known + '\n';
+  }
+  if (name.empty()) return names;
+  throw InputError("", "", name, "is not a template; `peclet template` lists them");
 }
 
 std::string fill_in(const std::string& text, const std::map<std::string, std::string>& values,

@@ -26,8 +26,8 @@ namespace peclet::runner {
 
 using BatchTemplate = std::map<std::string, std::string>;  // text by file name
 
-// Returns the template in `folder`, or the built-in one of that name if `folder` is "". Throws InputError if
-// the name is unknown or a file is missing.
+// Returns the files in `folder` (none if it is ""), and the built-in ones of `system` in the place of those
+// that are not there. Throws InputError if one is in neither.
 BatchTemplate batch_template(const std::string& system, const fs::path& folder);
 
 // Replaces the names between @ by `values`, each quoted for its place: for the shell, or for sbatch in a line
@@ -68,7 +68,10 @@ bool cancel_job(const fs::path& folder, const std::string& name, std::string& wh
 // Returns how many tasks a job may have; `otherwise` if the batch system does not say.
 int largest_array(const BatchTemplate& scripts, int otherwise);
 
-// Returns the template in templates/, which is compiled in.
-BatchTemplate slurm_template();
+// The files in templates/, which are compiled in: templates/slurm/job.sh is "slurm-job".
+const std::map<std::string, std::string>& built_in_templates();
+// Returns the text of a built-in file, or the list of their names for "". Throws InputError for any other
+// name.
+std::string template_text(const std::string& name);
 
 }  // namespace peclet::runner

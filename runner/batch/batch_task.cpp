@@ -67,8 +67,8 @@ class BatchTask {
     Campaign named;
     named.engine = manifest_.engine;
     EngineCommand command = resolve_engine(named, folder_.manifest());
-    // A batch system sends these signals to every process of a job.
-    command.blocked_signals = {SIGTERM, SIGINT, SIGUSR1};
+    // A batch system sends these signals to every process of a job; LSF the last two at limits.
+    command.blocked_signals = {SIGTERM, SIGINT, SIGUSR1, SIGUSR2, SIGXCPU};
     // An engine that needs files in its folder says so if they are absent; ours needs none.
     command.folder = fs::is_directory(manifest_.engine_folder) ? manifest_.engine_folder : fs::path();
     return command;

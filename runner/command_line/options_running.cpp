@@ -307,7 +307,8 @@ seeds count as handed over until a job of that name has been looked for.
   peclet hand-over slurm flow-curve.json --shared /scratch/me/flow-curve --follow \
            --option=--partition=short --option=--time=4:00:00
 )");
-  add_option(verb, "system SYSTEM", options->system, "slurm; with --template any name")->required();
+  add_option(verb, "system SYSTEM", options->system, "slurm, pbs or lsf; with --template any name")
+      ->required();
   add_campaign_file(verb, *options);
   add_option(verb, "--shared FOLDER", options->shared,
              "Folder that this machine and the nodes see in the same place; the one used last unless given");
@@ -318,10 +319,10 @@ seeds count as handed over until a job of that name has been looked for.
              "Tasks of one job at most; what the batch system allows unless given");
   add_number(verb, "--threads", options->threads, whole_number(1, 4096), "Threads of each engine")
       ->capture_default_str();
-  add_option(verb, "--option WORD", options->options, "Word for the submit command (sbatch)");
+  add_option(verb, "--option WORD", options->options, "Word for the submit command (sbatch, qsub, bsub)");
   add_device(verb, options->device);
   add_option(verb, "--template FOLDER", options->template_folder,
-             "Folder with job.sh and the commands, for other sites")
+             "Folder with other scripts: job.sh, submit.sh, query.sh, cancel.sh, largest.sh, or some of them")
       ->check(CLI::ExistingDirectory);
   verb->add_flag("--ahead", options->ahead, "Hand over the seeds of the stop test after the next one, too");
   verb->add_flag("--follow", options->follow,
@@ -379,6 +380,22 @@ SIGUSR1 make the engine save a checkpoint and exit.
   add_number(verb, "index", options->index, whole_number(0, 1e9), "Number of the task, from 0")->required();
 }
 
+void add_template(VerbSet& verbs) {
+  const auto [verb, name] = verbs.add<std::string>(
+      template_text, "template", "Print a script for a batch system, to be used or changed", {0, 2}, R"(
+Without a name it lists the scripts. `slurm-nodes` runs a campaign in one job of Slurm, on one node or several.
+The others, as `slurm-job` and `slurm-submit`, are those of hand-over; a folder with changed ones goes behind
+its option --template.
+
+  peclet template slurm-nodes > nodes.sh
+  sbatch --job-name=friction --nodes=3 nodes.sh friction.json
+  # hand-over with another job script
+  peclet template pbs-job > my-site/job.sh
+  peclet hand-over pbs friction.json --template my-site --shared /scratch/me/friction
+)");
+  add_option(verb, "name NAME", *name, "Name of a script");
+}
+
 void add_worker(VerbSet& verbs) {
   const auto [verb, options] = verbs.add<WorkerOptions>(
       run_worker, "worker", "Be a worker of a campaign on another machine; what `peclet run --launch` calls",
@@ -406,6 +423,7 @@ void add_changing_verbs(VerbSet& verbs) {
   add_hand_over(verbs);
   add_ingest(verbs);
   add_task(verbs);
+  add_template(verbs);
   add_worker(verbs);
   add_backup(verbs);
   add_restore(verbs);

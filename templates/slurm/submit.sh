@@ -3,10 +3,10 @@
 # failed on the way, so that nobody knows whether the job was taken; any other but 0 when it was not.
 script=$2
 shift 2
-unset SBATCH_JOB_NAME SBATCH_ARRAY_INX  # sbatch would put them above the script's
+unset SBATCH_JOB_NAME SBATCH_ARRAY_INX SBATCH_WAIT  # sbatch would put them above the script's
 # The clusters in which the job may be are kept for query.sh and cancel.sh, which ask this one otherwise. sbatch takes
 # those of its options, else of its environment, else of the script.
-clusters=${SBATCH_CLUSTERS:-$(sed -n 's/^#SBATCH[[:space:]]\{1,\}\(--clusters[= ]\|-M *\)\([^[:space:]]*\).*/\2/p' "$script" | tail -n 1)}
+clusters=${SBATCH_CLUSTERS:-${SLURM_CLUSTERS:-$(sed -n 's/^#SBATCH[[:space:]]\{1,\}\(--clusters[= ]\|-M *\)\([^[:space:]]*\).*/\2/p' "$script" | tail -n 1)}}
 before=
 for word; do
   case $before in
@@ -17,6 +17,9 @@ for word; do
     -M?*) clusters=${word#-M} ;;
     -J* | --job | --job-* | --job=* | -a* | --ar | --arr* | --ar=*)
       printf '%s: the name and the array of a job are how it is found again\n' "$word" >&2
+      exit 2 ;;
+    -W | --wait | -Q | --qui* | --test* | --wrap*)
+      printf '%s: sbatch would not submit the script at once, or not say its number\n' "$word" >&2
       exit 2 ;;
   esac
   before=$word

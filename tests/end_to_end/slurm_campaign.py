@@ -1,9 +1,8 @@
-"""A campaign of the Slurm drill: run locally or through Slurm, and counted afterwards."""
+"""A campaign that is run locally or through a batch system, and counted afterwards."""
 import os
-import shutil
+import subprocess
 
 from campaign_folder import BLAMED, CampaignFolder
-from drill.campaign import REAL
 from slurm_cluster import CPUS
 
 # Seeds of about a second with several checkpoints, and a few stop tests per point.
@@ -18,11 +17,13 @@ CAMPAIGN = {
 
 
 class Campaign(CampaignFolder):
-    """A campaign in a folder of its own, run locally or through Slurm."""
+    """A campaign in a folder of its own, run locally or through a batch system."""
+
+    system = "slurm"
 
     def __init__(self, binaries, folder, document=None, environment=None):
         document = document or CAMPAIGN
-        engine = "peclet-engine" if document.get("scene") == REAL["scene"] else "fake_engine"
+        engine = "peclet-engine" if document["scene"].get("particles") else "fake_engine"
         document = {**document, "engine": [os.path.join(binaries, engine), "serve"]}
         super().__init__(binaries, folder, document, {**ENVIRONMENT, **(environment or {})})
         self.shared, self.hold = self.place("shared"), self.place("hold")
@@ -63,18 +64,30 @@ class Campaign(CampaignFolder):
         return self
 
     def hand_over(self, *words):
-        return ("hand-over", "slurm", "drill.json", "--shared", self.shared, "--checkpoint", "0.1", *words)
+        return ("hand-over", self.system, "drill.json", "--shared", self.shared, "--checkpoint", "0.1", *words)
 
     def follow(self, *words):
         return self.hand_over("--follow", "--interval", "0.3", *words)
 
     def printed(self):
-        """Returns the output of the job with the script of docs/clusters.md."""
+        """Returns the output of the job of start_job()."""
         path = self.place("friction.log")
         if not os.path.exists(path):
             return ""
-        with open(path) as f:
+        with open(path, errors="replace") as f:
             return "--- friction.log\n" + f.read()
+
+    def start_job(self, *options):
+        """Submits the script that `peclet template slurm-nodes` prints; its backup is drill.saved."""
+        with open(self.place("nodes.sh"), "wb") as script:
+            script.write(self.say("template", "slurm-nodes").stdout)
+        subprocess.run(
+            ["sbatch", "--job-name=friction", *options, "nodes.sh", "drill.json", "--checkpoint=0.1"],
+            cwd=self.folder,
+            check=True,
+            capture_output=True,
+            env={**os.environ, **self.environment, "PATH": self.programs + ":" + os.environ["PATH"]},
+        )
 
     def spooled(self):
         spool = os.path.join(self.shared, "spool")
@@ -118,23 +131,9 @@ class Campaign(CampaignFolder):
 
 
 def template_of(campaign, submission):
-    """Returns a copy of the Slurm template with another submit.sh."""
-    source = os.path.join(os.path.dirname(__file__), "..", "..", "templates", "slurm")
+    """Returns a template with another submit.sh."""
     template = campaign.place("template")
-    shutil.copytree(source, template)
+    os.makedirs(template)
     with open(os.path.join(template, "submit.sh"), "w") as f:
         f.write(f"script=$2\nshift 2\nHOME_OF_DRILL='{campaign.folder}'\n{submission}\n")
     return template
-
-
-def script_of_the_page(campaign, saved):
-    """Returns the script of docs/clusters.md for this campaign."""
-    with open(os.path.join(os.path.dirname(__file__), "..", "..", "docs", "clusters.md")) as f:
-        script = f.read().split("```bash\n")[1].split("```")[0]
-    for line, mine in (
-        ("campaign=$HOME/suspensions/friction.json\n", f"campaign='{campaign.folder}/drill.json'\n"),
-        ("saved=$HOME/suspensions/friction.saved ", f"saved='{saved}' "),
-    ):
-        assert script.count(line) == 1, line
-        script = script.replace(line, mine)
-    return script

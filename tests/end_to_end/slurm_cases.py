@@ -2,11 +2,10 @@
 import os
 import random
 import signal
-import subprocess
 import time
 
 from campaign_folder import processes_with
-from slurm_campaign import Campaign, script_of_the_page, template_of
+from slurm_campaign import Campaign, template_of
 from slurm_cluster import CPUS
 
 # Takes the node from other jobs.
@@ -19,6 +18,9 @@ URGENT = (
     "--wrap",
     "sleep 2",
 )
+DRAINED = "SELECT count(*) FROM attempt WHERE outcome = 'drained'"
+# As Slurm does before a time limit.
+WARNING = ("scancel", "--batch", "--signal=USR1", "--me")
 
 
 class Drill:
@@ -37,6 +39,7 @@ class Drill:
     # The cases: each runs a campaign to its end and returns what happened.
 
     def arrays(self, campaign):
+        campaign.environment["SQUEUE_PARTITION"] = "urgent"  # would hide all jobs
         campaign.do(*campaign.follow("--seeds-per-task", "2", "--largest-array", "4"))
         arrays = campaign.ask("SELECT count(*) FROM bundle")
         largest = campaign.ask("SELECT max(tasks) FROM bundle")
@@ -119,7 +122,7 @@ class Drill:
         resumed = 0
         end = time.monotonic() + 240
         while owner.poll() is None and time.monotonic() < end:
-            resumed += self.cluster.resume_node()
+            resumed += self.cluster.resume_nodes()
             time.sleep(1)
         assert owner.wait(60) == 0, campaign.log()
         return f"slurmctld stopped and killed under running tasks, and started again; node resumed {resumed} times"
@@ -208,31 +211,51 @@ class Drill:
         return f"forgotten while its tasks ran and nobody answered; {late} late results, none counted twice"
 
     def one_job(self, campaign):
-        """Runs the script of docs/clusters.md, warned as at its time limit, and preempted."""
-        saved, script = campaign.place("saved"), campaign.place("one_job.sh")
-        with open(script, "w") as f:
-            f.write(script_of_the_page(campaign, saved))
-        subprocess.run(
-            ["sbatch", "--parsable", script],
-            cwd=campaign.folder,
-            check=True,
-            capture_output=True,
-            env={**os.environ, **campaign.environment, "PATH": campaign.programs + ":" + os.environ["PATH"]},
-        )
-        interruptions = (("scancel", "--batch", "--signal=USR1", "--me"), URGENT)
-        for count, interruption in enumerate(interruptions, 1):
-            self.cluster.wait_until(
-                lambda: self.cluster.say("squeue", "-h", "--me", "--states=RUNNING", "-o", "%j") == "friction",
-                "the job",
-            )
-            time.sleep(1.5)
-            self.cluster.say(*interruption)
-            self.cluster.wait_until(lambda: self.cluster.restarts() >= count, "the job to be queued again", 120)
-        self.cluster.wait_until(lambda: not self.cluster.say("squeue", "-h", "--me"), "the last job", 240)
-        campaign.do("restore", saved, "drill.json")
-        attempts = campaign.ask("SELECT count(*) FROM attempt WHERE outcome = 'drained'")
-        node = "one job, the database on its node"
-        return f"{node}: warned, preempted, queued again; {attempts} seeds went on from checkpoints"
+        campaign.start_job()
+        for interruption in (WARNING, URGENT):
+            self.interrupt(interruption)
+        return f"one job, the database on its node: warned, preempted; {self.end_job(campaign)}"
+
+    def three_nodes(self, campaign):
+        # Slurm gives --mem to the first step of a node, unless the script prevents that.
+        campaign.start_job("--nodes=3", f"--ntasks-per-node={CPUS}", "--mem=800")
+        self.wait_for_job()
+        first = self.cluster.say("squeue", "-h", "--me", "-o", "%B")
+        node = next(name for name in self.cluster.nodes if name != first)
+        self.cluster.wait_until(lambda: len(engines_on(node)) == CPUS, f"engines on {node}")
+        time.sleep(1.5)
+        self.cluster.kill_node(node)
+        self.cluster.wait_until(lambda: self.cluster.say("sinfo", "-h", "-n", node, "-o", "%T") == "down*", "its end")
+        time.sleep(2)  # the others go on
+        self.cluster.start_node(node)
+        job = self.cluster.say("squeue", "-h", "--me", "--states=RUNNING", "-o", "%A")
+        for interruption in (WARNING, URGENT, ("scontrol", "requeue", job)):
+            self.interrupt(interruption)
+        return f"one job of three nodes: one died; warned, preempted, requeued; {self.end_job(campaign)}"
+
+    def nodes_at_limit(self, campaign):
+        campaign.start_job("--nodes=3", f"--ntasks-per-node={CPUS}", "--time=1", "--signal=B:USR1@30")
+        self.cluster.wait_until(lambda: self.cluster.restarts() > 0, "the time limit", 120)
+        return f"one job of three nodes at a real time limit of a minute; {self.end_job(campaign)}"
+
+    def wait_for_job(self):
+        running = ("squeue", "-h", "--me", "--states=RUNNING", "-o", "%j")
+        self.cluster.wait_until(lambda: self.cluster.say(*running) == "friction", "the job", 120)
+
+    def interrupt(self, words):
+        """Does what makes Slurm queue the running job again."""
+        self.wait_for_job()
+        time.sleep(2)
+        before = self.cluster.restarts()
+        self.cluster.say(*words)
+        self.cluster.wait_until(lambda: self.cluster.restarts() > before, "the job to be queued again", 120)
+
+    def end_job(self, campaign):
+        """Waits for the end of the job of start_job(), and takes in its backup."""
+        self.cluster.wait_until(lambda: not self.cluster.say("squeue", "-h", "--me"), "the end of the job", 300)
+        campaign.do("restore", campaign.place("drill.saved"), "drill.json")
+        assert campaign.blamed() == 0, campaign.printed()
+        return f"{campaign.ask(DRAINED)} seeds went on from checkpoints"
 
     def owner_killed(self, campaign):
         kills = 0
@@ -272,15 +295,22 @@ class Drill:
         return f"peclet-engine, {min(2, len(element))} running tasks queued again"
 
 
+def command_of(process):
+    try:
+        with open(f"/proc/{process}/cmdline", "rb") as f:
+            return f.read().replace(b"\0", b" ")
+    except OSError:
+        return b""
+
+
+def engines_on(node):
+    return [process for process in processes_with("SLURMD_NODENAME", node) if b" serve" in command_of(process)]
+
+
 def kill_one(what, folder):
     """Kills a process with `what` in its command, and the folder in its environment or command."""
     for process in processes_with("SLURM_SUBMIT_DIR", folder):
-        try:
-            with open(f"/proc/{process}/cmdline", "rb") as f:
-                command = f.read().replace(b"\0", b" ").decode(errors="replace")
-        except OSError:
-            continue
-        if what in command:
+        if what in command_of(process).decode(errors="replace"):
             os.kill(process, signal.SIGKILL)
             return 1
     return 0

@@ -1,7 +1,8 @@
-"""A private Slurm on one machine: munged, slurmctld and slurmd from Debian's packages, run by the test's user
-with files in a temporary folder. One node has CPUS processors, for any machine. Jobs of the partition
-`urgent` preempt those of `usual`, which are queued again.
+"""A private Slurm on one machine: munged, slurmctld and a slurmd for each node from Debian's packages, run by the
+test's user with files in a temporary folder. Each node claims CPUS processors, whatever the machine has. Jobs of the
+partition `urgent` preempt those of `usual`, which are queued again.
 """
+import contextlib
 import os
 import pwd
 import signal
@@ -9,7 +10,7 @@ import socket
 import subprocess
 import time
 
-from campaign_folder import comes_true
+from campaign_folder import comes_true, processes_with
 
 CPUS = 4
 
@@ -19,14 +20,13 @@ SlurmctldHost={host}(127.0.0.1)
 SlurmUser={user}
 SlurmdUser={user}
 SlurmctldPort={controller_port}
-SlurmdPort={node_port}
 AuthType=auth/munge
 AuthInfo=socket={folder}/munge.socket,cred_expire=5
 CredType=cred/munge
 StateSaveLocation={folder}/state
-SlurmdSpoolDir={folder}/node
+SlurmdSpoolDir={folder}/node-%n
 SlurmctldPidFile={folder}/slurmctld.pid
-SlurmdPidFile={folder}/slurmd.pid
+SlurmdPidFile={folder}/slurmd-%n.pid
 ProctrackType=proctrack/linuxproc
 TaskPlugin=task/none
 SwitchType=switch/none
@@ -34,22 +34,25 @@ MpiDefault=none
 JobAcctGatherType=jobacct_gather/none
 AccountingStorageType=accounting_storage/none
 SelectType=select/cons_tres
-SelectTypeParameters=CR_CPU
+SelectTypeParameters=CR_CPU_Memory
+DefMemPerCPU=200
 SchedulerType=sched/backfill
 SchedulerParameters=sched_interval=1,batch_sched_delay=0,sched_min_interval=0,bf_interval=1
 PreemptType=preempt/partition_prio
 PreemptMode=REQUEUE
 SlurmdParameters=config_overrides
 ReturnToService=2
+SlurmdTimeout=5
 KillWait=5
 MessageTimeout=5
 # Jobs that have ended are forgotten soon, as on a busy cluster.
 MinJobAge=2
 MaxArraySize=101
-NodeName={host} NodeAddr=127.0.0.1 CPUs={cpus} RealMemory=1000 State=UNKNOWN
-PartitionName=usual Nodes={host} Default=YES MaxTime=INFINITE PriorityTier=1 PreemptMode=REQUEUE State=UP
-PartitionName=urgent Nodes={host} Default=NO MaxTime=INFINITE PriorityTier=10 PreemptMode=OFF State=UP
+{nodes}
+PartitionName=usual Nodes=ALL Default=YES MaxTime=INFINITE PriorityTier=1 PreemptMode=REQUEUE State=UP
+PartitionName=urgent Nodes=ALL Default=NO MaxTime=INFINITE PriorityTier=10 PreemptMode=OFF State=UP
 """
+NODE = "NodeName={name} NodeHostname={host} NodeAddr=127.0.0.1 Port={port} CPUs={cpus} RealMemory=1000 State=UNKNOWN"
 
 
 def free_port():
@@ -59,23 +62,24 @@ def free_port():
 
 
 class Cluster:
-    def __init__(self, folder):
+    def __init__(self, folder, nodes=1):
         self.folder = folder
+        self.nodes = [f"drill{number}" for number in range(1, nodes + 1)]
         self.processes = {}
-        for part in ("state", "node", "log"):
+        for part in ("state", "log"):
             os.makedirs(os.path.join(folder, part))
         with open(os.open(os.path.join(folder, "munge.key"), os.O_WRONLY | os.O_CREAT, 0o600), "wb") as key:
             key.write(os.urandom(128))
         self.configuration = os.path.join(folder, "slurm.conf")
+        host = socket.gethostname().split(".")[0]
         with open(self.configuration, "w") as f:
             f.write(
                 CONFIGURATION.format(
                     folder=folder,
-                    host=socket.gethostname().split(".")[0],
-                    cpus=CPUS,
+                    host=host,
                     user=pwd.getpwuid(os.getuid()).pw_name,
                     controller_port=free_port(),
-                    node_port=free_port(),
+                    nodes="\n".join(NODE.format(name=n, host=host, port=free_port(), cpus=CPUS) for n in self.nodes),
                 )
             )
         os.environ["SLURM_CONF"] = self.configuration
@@ -93,8 +97,9 @@ class Cluster:
                 f"--seed-file={self.folder}/munge.seed",
             )
             self.start_controller()
-            self.start("slurmd", "-D", "-f", self.configuration)
-            self.wait_until(lambda: self.say("sinfo", "-h", "-o", "%T") == "idle", "the node to be idle")
+            for node in self.nodes:
+                self.start_node(node)
+            self.wait_until(lambda: self.say("sinfo", "-h", "-o", "%T %D") == f"idle {len(self.nodes)}", "idle nodes")
         except BaseException:
             self.__exit__()
             raise
@@ -103,16 +108,20 @@ class Cluster:
     def __exit__(self, *_):
         if "slurmctld" in self.processes:
             self.clear()
-        for name in ("slurmd", "slurmctld", "munged"):
+        for name in (*self.nodes, "slurmctld", "munged"):
             if name in self.processes:
                 self.stop(name)
 
-    def start(self, name, *arguments):
+    def start(self, name, *arguments, process=None, environment=None):
         program = os.path.join("/usr/sbin", name)
         if not os.path.exists(program):
             raise SystemExit(f"{program} is missing; Debian's packages slurm-wlm and munge have it")
-        log = open(os.path.join(self.folder, "log", name + ".out"), "a")
-        self.processes[name] = subprocess.Popen([program, *arguments], stdout=log, stderr=log, stdin=subprocess.DEVNULL)
+        process = process or name
+        log = open(os.path.join(self.folder, "log", process + ".out"), "a")
+        command = [program, *arguments]
+        self.processes[process] = subprocess.Popen(
+            command, stdout=log, stderr=log, stdin=subprocess.DEVNULL, env={**os.environ, **(environment or {})}
+        )
 
     def stop(self, name, number=signal.SIGTERM):
         process = self.processes.pop(name)
@@ -126,6 +135,17 @@ class Cluster:
     def start_controller(self):
         self.start("slurmctld", "-D", "-f", self.configuration)
 
+    def start_node(self, name):
+        arguments = ("-D", "-N", name, "-f", self.configuration)
+        self.start("slurmd", *arguments, process=name, environment={"DRILL_NODE": name})
+
+    def kill_node(self, name):
+        """Kills slurmd, the keepers of its steps and the processes of the steps."""
+        for process in processes_with("DRILL_NODE", name) + processes_with("SLURMD_NODENAME", name):
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(process, signal.SIGKILL)
+        self.processes.pop(name).wait()
+
     def restart_controller(self):
         """Starts the controller, and waits until it answers."""
         self.start_controller()
@@ -136,7 +156,7 @@ class Cluster:
         end = time.monotonic() + 20
         while self.say("squeue", "-h", "--me") and time.monotonic() < end:
             self.say("scancel", "--me")
-            self.resume_node()
+            self.resume_nodes()
             time.sleep(0.5)
 
     def say(self, *command):
@@ -160,12 +180,12 @@ class Cluster:
         lines = self.say("squeue", "-h", "-r", "--me", "--states=" + state, "-o", "%j %F_%K").split("\n")
         return [line.split()[1] for line in lines if line and not line.startswith("urgent ")]
 
-    def resume_node(self):
-        """Resumes the node if Slurm has drained it; returns True if it had."""
-        if not self.say("sinfo", "-h", "-o", "%T").startswith(("drain", "down")):
-            return False
-        self.say("scontrol", "update", "nodename=" + socket.gethostname().split(".")[0], "state=resume")
-        return True
+    def resume_nodes(self):
+        """Resumes nodes that Slurm has drained; returns their number."""
+        drained = self.say("sinfo", "-h", "-N", "--states=drain,down", "-o", "%n").split()
+        for node in set(drained):
+            self.say("scontrol", "update", "nodename=" + node, "state=resume")
+        return len(set(drained))
 
     def restarts(self):
         """Returns how often the elements known to Slurm were queued again."""

@@ -23,7 +23,7 @@ from slurm_cluster import CPUS, Cluster
 
 
 FAULTS = {"PECLET_FAKE_FAULTS": "crash:3 exit:4x1 overlap:5 kill:2x2"}
-QUICK = ("arrays", "killed_task", "controller_away", "answer_lost", "refused", "odd_folder", "one_job")
+QUICK = ("arrays", "killed_task", "controller_away", "answer_lost", "refused", "odd_folder", "one_job", "three_nodes")
 CASES = QUICK + (
     "killed_engine",
     "preempted",
@@ -36,8 +36,14 @@ CASES = QUICK + (
     "failing_engine",
     "real_engine",
 )
-SLOW = ("time_limit",)  # Slurm's shortest limit is a minute
+NODES = ("three_nodes", "nodes_at_limit")  # in a cluster of three nodes
+SLOW = ("time_limit", "nodes_at_limit")  # Slurm's shortest limit is a minute
 LONG_SEEDS = {**CAMPAIGN, "target": {"relative_tolerance": 0.9}, "realisations": {"minimum": 4, "maximum": 4}}
+LONG = {
+    **REAL,
+    "scene": {**REAL["scene"], "duration": {"equilibration": {"strain": 0.3}, "production": {"strain": 12}}},
+    "realisations": {"minimum": 20, "maximum": 20},
+}
 LONGER = {"environment": {"PECLET_FAKE_STEP_MS": "75"}}  # same results
 SETTINGS = {
     "preempted": LONGER,
@@ -45,6 +51,8 @@ SETTINGS = {
     "time_limit": {"document": LONG_SEEDS, "environment": {"PECLET_FAKE_STEP_MS": "1500"}},
     "failing_engine": {"environment": FAULTS},
     "real_engine": {"document": REAL},
+    "three_nodes": {"document": LONG},
+    "nodes_at_limit": {"document": LONG},
 }
 
 
@@ -92,18 +100,26 @@ def main():
     parser.add_argument("--keep")
     arguments = parser.parse_args()
     names = (arguments.only,) if arguments.only else QUICK if arguments.quick else CASES
+    good = []
     with contextlib.ExitStack() as stack:
         folder = arguments.keep or stack.enter_context(tempfile.TemporaryDirectory(prefix="slurm-drill-"))
         os.makedirs(folder, exist_ok=True)
         os.chmod(folder, 0o755)  # munged requires a reachable socket
-        cluster = stack.enter_context(Cluster(os.path.join(folder, "cluster")))
-        drill = Drill(os.path.abspath(arguments.bin), folder, cluster)
-        expected = expected_exports(drill, names)
-        print(f"{cluster.say('slurmctld', '-V')}; one node, {CPUS} processors\n")
-        print(f"{'case':22}{'lost':>5}{'double':>7}{'run again':>10}  {'same':5}{'time':>8}  what happened")
-        good = [try_case(drill, name, expected[name]) for name in names]
+        for nodes in (1, 3):
+            some = [name for name in names if (name in NODES) == (nodes == 3)]
+            if some:
+                good += try_cases(os.path.abspath(arguments.bin), folder, nodes, some)
     print(f"\n{sum(good)} of {len(good)} cases: nothing lost, nothing double, the same bytes as without Slurm")
     return 0 if all(good) else 1
+
+
+def try_cases(binaries, folder, nodes, names):
+    with Cluster(os.path.join(folder, f"cluster-{nodes}"), nodes) as cluster:
+        drill = Drill(binaries, folder, cluster)
+        expected = expected_exports(drill, names)
+        print(f"{cluster.say('slurmctld', '-V')}; nodes: {nodes}, of {CPUS} processors\n")
+        print(f"{'case':22}{'lost':>5}{'double':>7}{'run again':>10}  {'same':5}{'time':>8}  what happened")
+        return [try_case(drill, name, expected[name]) for name in names]
 
 
 if __name__ == "__main__":

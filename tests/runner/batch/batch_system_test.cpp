@@ -53,11 +53,31 @@ TEST(BatchTemplate, PlaceholdersAreReplacedAndOtherSignsStay) {
   EXPECT_THROW(fill_in("@NOMEN@", values, "job.sh"), InputError);
 }
 
-TEST(BatchTemplate, OfSlurmIsBuiltIn) {
-  const BatchTemplate slurm = batch_template("slurm", "");
-  EXPECT_NE(slurm.at("job.sh").find("#SBATCH --job-name=@NAME@"), std::string::npos);
-  EXPECT_NE(slurm.at("query.sh").find("squeue"), std::string::npos);
-  EXPECT_THROW(batch_template("pbs", ""), InputError);
+TEST(BatchTemplate, IsBuiltInForSomeSystems) {
+  const std::map<std::string, std::string> query_commands{
+      {"slurm", "squeue"}, {"pbs", "qselect"}, {"lsf", "bjobs"}};
+  for (const auto& [system, command] : query_commands) {
+    const BatchTemplate scripts = batch_template(system, "");
+    EXPECT_EQ(scripts.size(), 5) << system;
+    EXPECT_TRUE(says(scripts.at("query.sh"), command)) << system;
+  }
+  EXPECT_THROW(batch_template("condor", ""), InputError);
+}
+
+TEST(BatchTemplate, TakesFilesOfAFolderBeforeThoseThatAreBuiltIn) {
+  const TemporaryFolder folder;
+  std::ofstream(folder.path() / "job.sh") << "mine";
+  const BatchTemplate scripts = batch_template("slurm", folder.path());
+  EXPECT_EQ(scripts.at("job.sh"), "mine");
+  EXPECT_EQ(scripts.at("query.sh"), template_text("slurm-query"));
+  EXPECT_THROW(batch_template("condor", folder.path()), InputError);  // four files are missing
+}
+
+TEST(BatchTemplate, IsPrintedByName) {
+  const fs::path templates = fs::path(PECLET_SOURCE_DIR) / "templates";
+  EXPECT_EQ(template_text("slurm-nodes"), read_file(templates / "slurm" / "nodes.sh"));
+  EXPECT_TRUE(says(template_text(""), "slurm-job\nslurm-largest\nslurm-nodes\n"));
+  EXPECT_THROW(template_text("slurm"), InputError);
 }
 
 class Query : public testing::Test {
@@ -116,7 +136,8 @@ class SlurmScripts : public testing::Test {
   }
   ~SlurmScripts() override {
     setenv("PATH", path_.c_str(), 1);
-    unsetenv("SBATCH_CLUSTERS");
+    for (const char* const name : {"SBATCH_CLUSTERS", "SLURM_CLUSTERS", "SQUEUE_PARTITION", "SCANCEL_STATE"})
+      unsetenv(name);
   }
   void program(const std::string& name, const std::string& script) {
     const fs::path file = folder_.path() / "bin" / name;
@@ -148,17 +169,31 @@ TEST_F(SlurmScripts, AskTheClusterToWhichTheJobWent) {
     EXPECT_TRUE(std::holds_alternative<JobTaken>(submit(options))) << options.front();
     expect_found(options.front());
   }
-  setenv("SBATCH_CLUSTERS", "nautilus", 1);
-  submit({});
-  expect_found("SBATCH_CLUSTERS");
-  unsetenv("SBATCH_CLUSTERS");
+  for (const char* const name : {"SBATCH_CLUSTERS", "SLURM_CLUSTERS"}) {
+    setenv(name, "nautilus", 1);
+    submit({});
+    setenv("SLURM_CLUSTERS", "atlantis", 1);  // of a later shell
+    expect_found(name);
+    unsetenv("SBATCH_CLUSTERS");
+    unsetenv("SLURM_CLUSTERS");
+  }
   std::ofstream(folder_.path() / "job.sh") << "#!/bin/sh\n#SBATCH --time=1\n#SBATCH --clusters=nautilus\n";
   submit({});
   expect_found("the script");
 }
 
-TEST_F(SlurmScripts, RefuseAnotherName) {
-  for (const char* const option : {"-Jmine", "--job-name=mine", "-a0-3", "--array=0-3"}) {
+TEST_F(SlurmScripts, AreNotLedAstrayByVariablesOfTheUser) {
+  program("squeue", "[ -n \"$SQUEUE_PARTITION\" ] || echo 7 0 RUNNING");
+  program("scancel", "[ -n \"$SCANCEL_STATE\" ] || : >cancelled");
+  submit({});
+  setenv("SQUEUE_PARTITION", "urgent", 1);
+  setenv("SCANCEL_STATE", "PENDING", 1);
+  expect_found("SQUEUE_PARTITION and SCANCEL_STATE");
+}
+
+TEST_F(SlurmScripts, RefuseOptionsWithWhichTheJobIsNotFoundOrNotSubmitted) {
+  for (const char* const option : {"-Jmine", "--job-name=mine", "-a0-3", "--array=0-3", "-W", "--wait", "-Q",
+                                   "--quiet", "--test-only", "--wrap=true"}) {
     const Submission answer = submit({option});
     ASSERT_TRUE(std::holds_alternative<JobRefused>(answer)) << option;
     EXPECT_TRUE(says(std::get<JobRefused>(answer).complaint, option));
