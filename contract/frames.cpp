@@ -127,6 +127,12 @@ std::optional<Json> FrameDecoder::next() {
   return message;
 }
 
+std::optional<std::string> FrameDecoder::take(std::size_t count) {
+  if (buffer_.size() - begin_ < count) return std::nullopt;
+  begin_ += count;
+  return buffer_.substr(begin_ - count, count);
+}
+
 void FrameChannel::send(const Json& message) {
   const std::string frame = encode_frame(message);
   std::size_t sent = 0;

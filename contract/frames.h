@@ -49,6 +49,8 @@ class FrameDecoder {
   void feed(const char* bytes, std::size_t count);
   // Returns the next message, if it is complete. Throws FrameError; the stream is then unusable.
   std::optional<Json> next();
+  // Takes the next `count` bytes as they are, if they have come.
+  std::optional<std::string> take(std::size_t count);
   bool empty() const { return begin_ == buffer_.size(); }
 
  private:

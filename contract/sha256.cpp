@@ -39,8 +39,12 @@ std::string sha256(std::string_view bytes) { return hexadecimal(digest_of(bytes)
 
 std::string sha256_base64(std::string_view bytes) {
   const Digest digest = digest_of(bytes);
-  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): bytes are bytes
-  return base64({reinterpret_cast<const char*>(digest.data()), digest.size()});
+  constexpr int variant = sodium_base64_VARIANT_ORIGINAL;
+  std::string text(sodium_base64_ENCODED_LEN(digest.size(), variant),
+                   '\0');  // the length includes a final zero
+  sodium_bin2base64(text.data(), text.size(), digest.data(), digest.size(), variant);
+  text.pop_back();
+  return text;
 }
 
 std::string sha256_of_open(int file, const std::filesystem::path& path) {
@@ -78,28 +82,6 @@ std::string Sha256::hash() const {
   Digest digest{};
   crypto_hash_sha256_final(&until_now, digest.data());
   return hexadecimal(digest);
-}
-
-std::string base64(std::string_view bytes) {
-  constexpr int variant = sodium_base64_VARIANT_ORIGINAL;
-  std::string text(sodium_base64_ENCODED_LEN(bytes.size(), variant), '\0');  // with a final zero
-  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): bytes are bytes
-  sodium_bin2base64(text.data(), text.size(), reinterpret_cast<const unsigned char*>(bytes.data()),
-                    bytes.size(), variant);
-  text.pop_back();
-  return text;
-}
-
-std::optional<std::string> bytes_of_base64(std::string_view text) {
-  std::string bytes(text.size() / 4 * 3, '\0');
-  std::size_t size = 0;
-  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): bytes are bytes
-  const int error =
-      sodium_base642bin(reinterpret_cast<unsigned char*>(bytes.data()), bytes.size(), text.data(),
-                        text.size(), nullptr, &size, nullptr, sodium_base64_VARIANT_ORIGINAL);
-  if (error != 0) return std::nullopt;
-  bytes.resize(size);
-  return bytes;
 }
 
 }  // namespace peclet

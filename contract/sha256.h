@@ -1,9 +1,8 @@
-// Computes SHA-256 hashes, as lower-case hexadecimal, and base64.
+// Computes SHA-256 hashes, as lower-case hexadecimal.
 #pragma once
 
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
 
@@ -34,10 +33,5 @@ class Sha256 {
   struct State;
   std::unique_ptr<State> state_;
 };
-
-// Returns the bytes in base64, with padding.
-std::string base64(std::string_view bytes);
-// Returns the bytes that a text in base64 stands for; nothing if it is not one.
-std::optional<std::string> bytes_of_base64(std::string_view text);
 
 }  // namespace peclet

@@ -23,10 +23,8 @@
 namespace peclet::runner {
 namespace {
 
-// Bytes of a piece; in base64 it is shorter than the longest frame of an engine.
-constexpr std::size_t piece_size = std::size_t{384} << 10;
 // Bytes in the link beyond which nothing is added to it.
-constexpr std::size_t enough = 2 * piece_size;
+constexpr std::size_t enough = 2 * largest_piece;
 
 constexpr const char* relay_rows = R"(
 -- ready | Far end: the first frame.
@@ -46,7 +44,8 @@ constexpr const char* relay_rows = R"(
 /role | one of result, checkpoint, growing, beside, failure
 /name | string; default "" | Name of the file, if it is beside the result or the state of a failure.
 /offset | count | Place of the bytes in the file.
-/data | string | In base64.
+/bytes | count | Their number; they follow the frame, and a line break follows them.
+/data | string | They themselves, in memory only.
 /sha256? | hash | Hash of all bytes that were sent of the file.
 
 -- alive | Both ends: nothing else was sent for a while.
@@ -133,7 +132,7 @@ std::uint64_t Outbox::add_checkpoint(std::int64_t job, const fs::path& path, std
 }
 
 std::pair<Json, bool> Outbox::next_piece(File& file) {
-  std::string bytes(std::min<std::uint64_t>(piece_size, file.end - file.place), '\0');
+  std::string bytes(std::min<std::uint64_t>(largest_piece, file.end - file.place), '\0');
   const std::size_t count =
       read_at(file.descriptor.number(), file.place, std::as_writable_bytes(std::span(bytes)), file.path);
   if (count < bytes.size()) {  // it was cut meanwhile: the receiver will find fault with it
@@ -143,7 +142,7 @@ std::pair<Json, bool> Outbox::next_piece(File& file) {
   file.hash.add(bytes);
   Json piece = file.head;
   piece["offset"] = file.place;
-  piece["data"] = base64(bytes);
+  piece["data"] = std::move(bytes);
   file.place += count;
   const bool is_last = file.place == file.end;
   if (is_last) piece["sha256"] = file.hash.hash();
@@ -193,11 +192,9 @@ void Inbox::begin(const Json& piece, const fs::path& path) {
 }
 
 bool Inbox::take(const Json& piece, const fs::path& path) {
-  const std::optional<std::string> bytes = bytes_of_base64(piece.at("data").get_ref<const std::string&>());
-  if (!bytes) refuse(piece, "is not base64");
   if (!file_) begin(piece, path);
   if (file_->path != path) refuse(piece, "comes before the file before it has ended");
-  if (!file_->is_whole) add(piece, *bytes);
+  if (!file_->is_whole) add(piece, piece.at("data").get_ref<const std::string&>());
   if (!file_->is_whole) return false;
   if (file_->written == path) {
     synchronise(file_->descriptor.number(), path);

@@ -22,6 +22,14 @@ void never_wait(const Descriptor& descriptor) {
     throw std::system_error(errno, std::generic_category(), "fcntl");
 }
 
+// Throws FrameError.
+std::size_t size_of_piece(const Json& piece) {
+  const auto size = piece.find("bytes");
+  if (size == piece.end() || !size->is_number_unsigned() || *size > largest_piece)
+    throw FrameError(fmt::format("a piece of a file must have at most {} bytes", largest_piece));
+  return size->get<std::size_t>();
+}
+
 }  // namespace
 
 Descriptor duplicate(int descriptor) {
@@ -40,8 +48,16 @@ FrameLink::FrameLink(Descriptor input, Descriptor output, std::size_t largest, s
   never_wait(output_);
 }
 
-void FrameLink::send(const Json& message) {
+void FrameLink::send(Json message) {
+  std::string bytes;
+  if (message.at("type") == "piece") {
+    bytes = std::move(message.at("data").get_ref<std::string&>());
+    message.erase("data");
+    message["bytes"] = bytes.size();
+    bytes += '\n';
+  }
   unsent_ += encode_frame(message);
+  unsent_ += bytes;
   spoke_ = Clock::now();
 }
 
@@ -50,7 +66,16 @@ void FrameLink::keep_alive(std::chrono::duration<double> silence) {
   if (Clock::now() - spoke_ > silence / signs_of_life) send({{"type", "alive"}});
 }
 
-std::optional<Json> FrameLink::next() { return decoder_.next(); }
+std::optional<Json> FrameLink::next() {
+  if (!incomplete_) incomplete_ = decoder_.next();
+  if (incomplete_ && incomplete_->at("type") == "piece") {
+    std::optional<std::string> bytes = decoder_.take(size_of_piece(*incomplete_) + 1);
+    if (!bytes) return std::nullopt;
+    bytes->pop_back();
+    (*incomplete_)["data"] = std::move(*bytes);
+  }
+  return std::exchange(incomplete_, std::nullopt);
+}
 
 void FrameLink::leave_out_noise(std::string_view bytes) {
   before_ += bytes;

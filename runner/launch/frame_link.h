@@ -1,4 +1,7 @@
 // FrameLink exchanges frames through a pair of descriptors, and never waits.
+//
+// The bytes of a file travel behind their frame: a frame of type "piece" has their number as "bytes", and
+// they end with a line break, for which launchers may wait. In memory they are its "data".
 #pragma once
 
 #include <chrono>
@@ -15,6 +18,9 @@ namespace peclet::runner {
 // Returns another descriptor of the same file, which programs that are started do not inherit.
 Descriptor duplicate(int descriptor);
 
+// Longest piece of a file [bytes].
+constexpr std::size_t largest_piece = std::size_t{384} << 10;
+
 class FrameLink {
  public:
   using Clock = std::chrono::steady_clock;
@@ -24,7 +30,7 @@ class FrameLink {
   FrameLink(Descriptor input, Descriptor output, std::size_t largest, std::size_t noise = 0);
 
   // Appends a frame to what is to be sent.
-  void send(const Json& message);
+  void send(Json message);
   // Returns the number of bytes that have not been taken yet.
   std::size_t unsent() const { return unsent_.size(); }
   // Closes the output when everything is sent.
@@ -53,6 +59,7 @@ class FrameLink {
 
   Descriptor input_, output_;
   FrameDecoder decoder_;
+  std::optional<Json> incomplete_;  // a piece whose bytes have not come
   std::size_t noise_;
   bool has_begun_;
   std::string before_;  // what came before the first frame

@@ -319,7 +319,8 @@ void Dispatcher::exited_during_jobs(int number, const ExitStatus& ending) {
 void Dispatcher::launched_worker_ended(int number, const ExitStatus& ending) {
   const WorkerWatch& watch = at(number).watch;
   if (stopping_ != Stopping::no || watch.is_recalled()) return;
-  if (watch.is_busy() && is_blamed(watch.ended(ending, false).outcome)) return;  // the engine's doing
+  const bool is_of_engine = watch.is_busy() && !watch.condemned() && is_blamed(outcome_of(ending));
+  if (is_of_engine) return;
   const std::string how = watch.condemned() ? watch.condemned()->message : to_string(ending);
   const std::string warning = now_.starts.end(number, how, clock_());
   if (now_.starts.is_over()) throw EngineError(warning);

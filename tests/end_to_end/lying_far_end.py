@@ -6,7 +6,6 @@ roles and names, without end, too many files, noise. Each lie is told once. The 
 within 200 MiB of memory, and write nothing outside its folders; the campaign must then end with the results of a local
 one. With a LIE and a FLAG as first words, it is the far end: a true one whose frames it changes.
 """
-import base64
 import json
 import os
 import subprocess
@@ -20,8 +19,25 @@ HERE = os.path.abspath(__file__)
 
 
 def framed(message):
-    payload = json.dumps(message).encode()
-    return b"PCF1" + len(payload).to_bytes(4, "little") + payload
+    """Returns a frame; the bytes of a piece follow it, and a line break follows them."""
+    data = message.get("data")
+    head = {key: value for key, value in message.items() if key != "data"}
+    if data is not None:
+        head = {"bytes": len(data)} | head
+    payload = json.dumps(head).encode()
+    return b"PCF1" + len(payload).to_bytes(4, "little") + payload + (b"" if data is None else data + b"\n")
+
+
+def next_message(stream):
+    """Returns the next message with its bytes, or nothing at the end."""
+    header = stream.read(8)
+    if len(header) < 8:
+        return None
+    message = json.loads(stream.read(int.from_bytes(header[4:], "little")))
+    if message["type"] == "piece":
+        message["data"] = stream.read(message.pop("bytes"))
+        stream.read(1)
+    return message
 
 
 def changed(**members):
@@ -29,7 +45,7 @@ def changed(**members):
 
 
 def endless(piece):
-    data = base64.b64encode(bytes(300_000)).decode()
+    data = bytes(300_000)
     offset = 0
     while True:
         yield {key: value for key, value in dict(piece, offset=offset, data=data).items() if key != "sha256"}
@@ -50,7 +66,8 @@ LIES = {  # what is sent in the place of a piece of a result, and what the owner
     "name": (changed(role="beside", name="../../../escaped"), "a name that is not plain"),
     "name of a folder": (changed(role="failure", name=".."), "a name that is not plain"),
     "job": (changed(job=4_000_000), "spoke of job 4000000, which it does not have"),
-    "no base64": (changed(data="****"), "is not base64"),
+    "long piece": (changed(bytes=10**9), "at most 393216 bytes"),
+    "short piece": (changed(bytes=5), "does not have its hash"),
     "endless": (endless, "has more than"),
     "many": (many_files, "files of a job"),
     "ready twice, of another protocol": (lambda piece: [{"type": "ready", "protocol": 2, "version": ""}], "/protocol"),
@@ -71,18 +88,16 @@ def lie_once(name, flag, command):
         sys.stdout.buffer.flush()
     true = subprocess.Popen(command, stdout=subprocess.PIPE)
     while True:
-        header = true.stdout.read(8)
-        if len(header) < 8:
+        message = next_message(true.stdout)
+        if message is None:
             return
-        frame = header + true.stdout.read(int.from_bytes(header[4:], "little"))
-        message = json.loads(frame[8:])
         if name in LIES and message["type"] == "piece" and message["role"] == "result" and not os.path.exists(flag):
             open(flag, "w").close()
             for lie in LIES[name][0](message):
                 sys.stdout.buffer.write(framed(lie))
                 sys.stdout.buffer.flush()
         else:
-            sys.stdout.buffer.write(frame)
+            sys.stdout.buffer.write(framed(message))
             sys.stdout.buffer.flush()
 
 

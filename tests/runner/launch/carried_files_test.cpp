@@ -59,8 +59,8 @@ class CarriedFiles : public testing::Test {
     }
   }
   Json piece(const char* role, std::uint64_t offset, const std::string& bytes) const {
-    return {{"type", "piece"}, {"job", 7},         {"role", role},
-            {"name", "x"},     {"offset", offset}, {"data", base64(bytes)}};
+    return {{"type", "piece"},       {"job", 7},     {"role", role}, {"name", "x"}, {"offset", offset},
+            {"bytes", bytes.size()}, {"data", bytes}};
   }
   Json last_piece(const char* role, std::uint64_t offset, const std::string& bytes,
                   const std::string& all) const {
@@ -152,9 +152,6 @@ TEST_F(CarriedFiles, WithFaultsAreRefused) {
             std::string::npos);
   EXPECT_NE(why_refused(last_piece("result", 3, "d", "abcx")).find("does not have its hash"),
             std::string::npos);
-  Json no_text = piece("result", 3, "d");
-  no_text["data"] = "!!!";
-  EXPECT_NE(why_refused(no_text).find("is not base64"), std::string::npos);
   for (const char* name : {"../x", "a/b", "..", ".hidden", "-option", "x.tmp", ""}) {
     Json named = piece("failure", 0, "abc");
     named["name"] = name;
@@ -172,12 +169,34 @@ TEST_F(CarriedFiles, LeaveNothingWhenTheyAreBrokenOff) {
   EXPECT_EQ(files(), 0U);
 }
 
-TEST(Base64, IsThatOfRfc4648) {
-  EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
-  EXPECT_EQ(base64("fooba"), "Zm9vYmE=");
-  EXPECT_EQ(bytes_of_base64("Zm9vYg=="), "foob");
-  EXPECT_EQ(bytes_of_base64(""), "");
-  EXPECT_EQ(bytes_of_base64("Zm9vYg"), std::nullopt);
+TEST(FrameLinks, CarryAnyBytesBehindTheirFrame) {
+  Linked links;
+  const std::array both{&links.near, &links.far};
+  const std::string bytes = std::string(3, '\0') + "PCF1\n\n\xff" + std::string(100'000, '\n');
+  links.far.send({{"type", "piece"}, {"data", bytes}});
+  links.far.send({{"type", "piece"}, {"data", ""}});
+  links.far.send({{"type", "alive"}});
+  std::vector<Json> heard;
+  for (int turn = 0; turn < 9; ++turn) {
+    FrameLink::exchange(both, -1, std::chrono::milliseconds(0));
+    while (const std::optional<Json> frame = links.near.next()) heard.push_back(*frame);
+  }
+  ASSERT_EQ(heard.size(), 3U);
+  EXPECT_EQ(heard[0].at("data"), bytes);
+  EXPECT_EQ(heard[1].at("data"), "");
+  EXPECT_EQ(heard[2].at("type"), "alive");
+}
+
+TEST(FrameLinks, RefusePiecesWithoutASizeOrThatAreTooLong) {
+  for (const Json& size : {Json(largest_piece + 1), Json(-1), Json("3"), Json()}) {
+    Pipe there, back;
+    const std::string frame = encode_frame({{"type", "piece"}, {"bytes", size}});
+    ASSERT_EQ(::write(there.ends[1].number(), frame.data(), frame.size()), std::ssize(frame));
+    FrameLink link(std::move(there.ends[0]), std::move(back.ends[1]), largest_answer);
+    const std::array one{&link};
+    FrameLink::exchange(one, -1, std::chrono::milliseconds(0));
+    EXPECT_THROW(link.next(), FrameError) << size;
+  }
 }
 
 TEST(FrameLinks, LeaveOutWhatAMachinePrintsFirst) {
