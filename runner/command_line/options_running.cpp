@@ -103,7 +103,7 @@ to standard output. With --jsonl, events are printed instead, which schema/READM
 
   peclet run flow-curve.json --workers 8
   # 64 workers on the nodes of this Slurm job
-  peclet run flow-curve.json --launch 'srun --exact -N1 -n1 -c{threads}' --workers 64
+  peclet run flow-curve.json --launch 'srun --exact --mem=0 -N1 -n1 -c{threads}' --workers 64
   # on other machines, by ssh
   peclet run flow-curve.json --hosts hosts.txt
   # for eight hours; the same command resumes it tomorrow

@@ -152,11 +152,11 @@ std::pair<Json, bool> Outbox::next_piece(File& file) {
 void Outbox::fill(FrameLink& link) {
   while (!things_.empty() && link.unsent() < enough) {
     if (auto* const file = std::get_if<File>(&things_.front())) {
-      const auto [piece, is_last] = next_piece(*file);
-      link.send(piece);
+      auto [piece, is_last] = next_piece(*file);
+      link.send(std::move(piece));
       if (!is_last) continue;
     } else {
-      link.send(std::get<Json>(things_.front()));
+      link.send(std::move(std::get<Json>(things_.front())));
       --frames_;
     }
     things_.pop_front();

@@ -134,7 +134,7 @@ void FarEnd::hear_near_end() {
     } else if (type == "job") {
       take_job(std::move(frame));
     } else if (type != "alive" && frames_) {
-      frames_->send(frame);
+      frames_->send(std::move(frame));
     }
   }
   if (near_.has_ended()) hang_up();
@@ -184,7 +184,7 @@ void FarEnd::take_job(Json frame) {
   frame["checkpoint"] = paths.checkpoint.string();
   frame["failures"] = paths.failures.string();
   frame["files"] = paths.files;
-  frames_->send(frame);
+  frames_->send(std::move(frame));
 }
 
 void FarEnd::hear_engine() {

@@ -3,14 +3,14 @@
 #
 #   sbatch --job-name=friction --nodes=3 --ntasks-per-node=16 nodes.sh friction.json [option of `peclet run` ...]
 #
-# The database is on the first node. Each task of the job is a worker; without --ntasks-per-node each processor is one.
+# The database is on the first node. Each task of the job is a worker; without --ntasks-per-node there are
+# as many as processors, over --cpus-per-task.
 # Backups are in friction.saved beside friction.json: one every ten minutes, and one at the end. The job continues from
 # there when it is queued again, and when it is submitted again. `peclet` must be in PATH.
 #SBATCH --job-name=peclet
 #SBATCH --dependency=singleton
 #SBATCH --nodes=1
 #SBATCH --exclusive
-#SBATCH --no-kill
 #SBATCH --time=24:00:00
 #SBATCH --signal=B:USR1@300
 #SBATCH --requeue
@@ -36,7 +36,8 @@ save() {
 
 # SLURM_JOB_CPUS_PER_NODE is as 16(x2),8.
 processors=$(tr ',' '\n' <<<"$SLURM_JOB_CPUS_PER_NODE" | awk -F '[(x)]' '{ n += $1 * ($3 ? $3 : 1) } END { print n }')
-workers=(--workers "${SLURM_NTASKS:-$processors}" --threads "${SLURM_CPUS_PER_TASK:-1}")
+threads=${SLURM_CPUS_PER_TASK:-1}
+workers=(--workers "${SLURM_NTASKS:-$((processors / threads))}" --threads "$threads")
 # Without --mem=0 the first worker of a node takes all memory of the job there, and the others wait.
 [ "$SLURM_JOB_NUM_NODES" -eq 1 ] || workers+=(--launch 'srun --exact --mem=0 -N1 -n1 -c{threads}')
 peclet run "$campaign" --directory "$folder" "${workers[@]}" --quiet "$@" &

@@ -69,7 +69,7 @@ TEST(BatchTemplate, TakesFilesOfAFolderBeforeThoseThatAreBuiltIn) {
   std::ofstream(folder.path() / "job.sh") << "mine";
   const BatchTemplate scripts = batch_template("slurm", folder.path());
   EXPECT_EQ(scripts.at("job.sh"), "mine");
-  EXPECT_EQ(scripts.at("query.sh"), template_text("slurm-query"));
+  EXPECT_EQ(scripts.at("query.sh"), read_file(fs::path(PECLET_SOURCE_DIR) / "templates/slurm/query.sh"));
   EXPECT_THROW(batch_template("condor", folder.path()), InputError);  // four files are missing
 }
 
