@@ -222,7 +222,7 @@ class Drill:
         self.wait_for_job()
         # Without the first node there is neither script nor database.
         node = self.cluster.say("squeue", "-h", "--me", "-o", "%B")
-        self.cluster.wait_until(lambda: len(engines_on(node)) == CPUS, f"engines on {node}")
+        self.cluster.wait_until(lambda: len(engines_on(node)) >= CPUS, f"engines on {node}")
         time.sleep(1.5)
         before = self.cluster.restarts()
         self.cluster.kill_node(node)
