@@ -242,8 +242,9 @@ void add_members(const KeyTable& table, const std::string& pointer, Json& schema
       continue;
     }
     schema["properties"][name] = schema_of(table, *key);
-    if (const Key* const other = alternative_to(keys, *key)) {
-      schema["oneOf"] = {{{"required", {name}}}, {{"required", {name_of(*other)}}}};
+    if (const std::vector<const Key*> others = alternatives_to(keys, *key); !others.empty()) {
+      schema["oneOf"] = {{{"required", {name}}}};
+      for (const Key* const other : others) schema["oneOf"].push_back({{"required", {name_of(*other)}}});
     } else if (!key->only_if.empty()) {
       const Json where = {{"properties", {{key->only_if, {{"enum", key->if_words}}}}}};
       if (key->if_words.empty()) {
@@ -297,9 +298,11 @@ std::string_view name_of(const Key& key) {
   return std::string_view(key.pointer).substr(key.pointer.rfind('/') + 1);
 }
 
-const Key* alternative_to(const std::vector<const Key*>& keys, const Key& key) {
-  const auto found = std::ranges::find(keys, name_of(key), &Key::instead_of);
-  return found == keys.end() ? nullptr : *found;
+std::vector<const Key*> alternatives_to(const std::vector<const Key*>& keys, const Key& key) {
+  std::vector<const Key*> found;
+  std::ranges::copy_if(keys, std::back_inserter(found),
+                       [&](const Key* other) { return other->instead_of == name_of(key); });
+  return found;
 }
 
 KeyTable::KeyTable(std::string title, std::vector<Key> keys, Unknown unknown)
@@ -434,7 +437,8 @@ std::string KeyTable::markdown() const {
     if (is_element(*this, key)) continue;
     std::string fallback = key.required && key.only_if.empty() ? "required" : "";
     if (!key.instead_of.empty()) fallback = fmt::format("instead of `{}`", key.instead_of);
-    if (const Key* const other = alternative_to(below(key.pointer.substr(0, key.pointer.rfind('/'))), key)) {
+    for (const Key* const other :
+         alternatives_to(below(key.pointer.substr(0, key.pointer.rfind('/'))), key)) {
       fallback += fmt::format(", or `{}`", name_of(*other));
     }
     if (!key.default_value.is_null()) fallback = fmt::format("`{}`", key.default_value.dump());

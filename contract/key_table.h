@@ -21,7 +21,7 @@
 //   in UNIT
 //   named WORDS, SYMBOL   title and symbol for people; a symbol may be missing (schema/README.md, symbols)
 //   default JSON
-//   instead of NAME   NAME is a required key of the same object: exactly one of both is given
+//   instead of NAME   NAME is a required key of the same object: exactly one of it and all such keys is given
 //   if NAME           only beside that key of the same object
 //   if NAME A, B      only where that key has one of these words
 //   as POINTER        the rows below POINTER apply below this key, too
@@ -155,8 +155,8 @@ class KindTables {
 // Returns the last step of the key's pointer.
 std::string_view name_of(const Key& key);
 
-// Returns the one of `keys` that may be given instead of `key`, or null.
-const Key* alternative_to(const std::vector<const Key*>& keys, const Key& key);
+// Returns those of `keys` that may be given instead of `key`, which is required otherwise.
+std::vector<const Key*> alternatives_to(const std::vector<const Key*>& keys, const Key& key);
 
 // Returns what a key allows, in words: "must be a number > 0", "must be one of: a, b".
 std::string allowed_values(const Key& key);

@@ -131,13 +131,15 @@ class Validation {
       check_value(value, *key, below);
     }
     for (const Key* key : keys) {
-      if (object.contains(name_of(*key))) refuse_misplaced(object, *key, place);
+      if (object.contains(name_of(*key))) refuse_misplaced(object, *key, keys, place);
     }
     for (const Key* key : keys) {
       if (!key->required && key->default_value.is_null()) continue;
       const std::string_view name = name_of(*key);
       if (key == any_member || object.contains(name) || !may_be_given(*key, object)) continue;
-      if (const Key* other = alternative_to(keys, *key); other && object.contains(name_of(*other))) continue;
+      const std::vector<const Key*> others = alternatives_to(keys, *key);
+      const auto is_given = [&](const Key* other) { return object.contains(name_of(*other)); };
+      if (std::ranges::any_of(others, is_given)) continue;
       const Place below = {&place, name};
       if (key->required)
         throw InputError(file_, below.pointer().to_string(), "missing", wanted(*key, object));
@@ -153,9 +155,9 @@ class Validation {
     const std::vector<const Key*> keys = table_.below(key.same_as.empty() ? key.pointer : key.same_as);
     for (const Key* member : keys) {
       if (!member->required || !member->only_if.empty()) continue;
-      const Key* const other = alternative_to(keys, *member);
-      members.push_back(
-          fmt::format("{}{}{}", name_of(*member), other ? " or " : "", other ? name_of(*other) : ""));
+      std::string& names = members.emplace_back(name_of(*member));
+      for (const Key* const other : alternatives_to(keys, *member))
+        names += fmt::format(" or {}", name_of(*other));
     }
     std::string words = allowed_values(key);
     if (!members.empty()) words += fmt::format(" with {}", fmt::join(members, ", "));
@@ -164,14 +166,20 @@ class Validation {
     return words + fmt::format(", because {} is {}", key.only_if, value);
   }
 
-  void refuse_misplaced(const Json& object, const Key& key, const Place& place) const {
+  void refuse_misplaced(const Json& object, const Key& key, const std::vector<const Key*>& keys,
+                        const Place& place) const {
+    const auto excludes = [&](const Key* other) {
+      const bool is_alternative = name_of(*other) == key.instead_of || other->instead_of == key.instead_of;
+      return other != &key && is_alternative && object.contains(name_of(*other));
+    };
+    const auto excluding = key.instead_of.empty() ? keys.end() : std::ranges::find_if(keys, excludes);
     std::string allowed;
     if (!may_be_given(key, object)) {
       allowed = key.if_words.empty() ? fmt::format("must be left out without {}", key.only_if)
                                      : fmt::format("must be left out unless {} is {}", key.only_if,
                                                    fmt::join(key.if_words, " or "));
-    } else if (!key.instead_of.empty() && object.contains(key.instead_of)) {
-      allowed = fmt::format("must not be given beside {}", key.instead_of);
+    } else if (excluding != keys.end()) {
+      allowed = fmt::format("must not be given beside {}", name_of(**excluding));
     } else {
       return;
     }

@@ -254,6 +254,7 @@ TEST(KeyTable, SomeKeysAreOnlyGivenBesideOthers) {
 /slip | object; if friction
 /slip/low, /slip/high | number
 /slip/width | number; instead of high
+/slip/share | number; instead of high
 /slip/steps? | count
 )");
   const Json slip = {{"low", 0}, {"high", 1}};
@@ -266,7 +267,12 @@ TEST(KeyTable, SomeKeysAreOnlyGivenBesideOthers) {
            {{{"form", "flat"}, {"radius", 1}},
             "f: /radius: 1: must be left out unless form is round or oval"},
            {{{"form", "flat"}, {"friction", 1}},
-            "f: /slip: missing: must be an object with low, high or width, because friction is given"},
+            "f: /slip: missing: must be an object with low, high or width or share, because friction is "
+            "given"},
+           {{{"form", "flat"}, {"friction", 1}, {"slip", {{"low", 0}, {"width", 1}, {"share", 2}}}},
+            "f: /slip/width: 1: must not be given beside share"},
+           {{{"form", "flat"}, {"friction", 1}, {"slip", {{"low", 0}}}},
+            "f: /slip/high: missing: must be a number"},
            {{{"form", "flat"}, {"load", 1}}, "f: /load: 1: must be left out without friction"}}) {
     EXPECT_EQ(refusal_by([&, &given = document] { table.validate(given, "f"); }), message);
   }
