@@ -9,7 +9,7 @@
 // J includes the random forces: their squares are the viscosity at high frequency, and their effect on later
 // forces must not be lost.
 //
-// `viscosity` is eta(t) at the times `time`. `zero_shear_viscosity` is the slope
+// `viscosity` is eta(t) at the times `time`. `zero_shear_viscosity`, and `relative_viscosity`, is the slope
 //   1 + 2.5 phi + (B(2t) - B(t))/t
 // with the longest time t of the grid up to a sixteenth of the window. It reaches the plateau earlier than
 // eta(t), which includes the rise at short times. `zero_shear_rise` is this slope minus the one from t/2 to
@@ -44,6 +44,8 @@ namespace peclet::engine {
 namespace {
 
 constexpr const char *at_rest_name = "zero_shear_viscosity", *rise_name = "zero_shear_rise";
+// In slow flow this is a mean of the stress; at rest it is the limit.
+constexpr const char* viscosity_name = "relative_viscosity";
 constexpr std::size_t components = 5;
 
 // Returns the number of levels that have lags up to nearly half of the window.
@@ -97,8 +99,9 @@ class LinearResponse : public Observable {
                        fmt::format("must have at least {} steps for linear_response", least_steps));
     }
     keep(sums_, correlators_, squares_, taken_, last_, before_);
-    derive({.name = at_rest_name, .symbol = "η_r(0)", .unit = "1"},
-           [this] { return background_ + slope(moments(), plateau_time()); });
+    const auto at_rest = [this] { return background_ + slope(moments(), plateau_time()); };
+    derive({.name = at_rest_name, .symbol = "η_r(0)", .unit = "1"}, at_rest);
+    derive({.name = viscosity_name, .symbol = "η_r", .unit = "1"}, at_rest);
     derive({.name = rise_name, .symbol = "rise of η_r(0)", .unit = "1"}, [this] {
       const Curve curve = moments();
       return slope(curve, plateau_time()) - slope(curve, 0.5 * plateau_time());
@@ -279,7 +282,7 @@ ObservableKind linear_response() {
               "the exact viscosity of a fluid at rest from the momentum flux of every step, with curves over "
               "time and frequency",
           .sampling = Sampling::of_every_step,
-          .numbers = {at_rest_name, rise_name},
+          .numbers = {at_rest_name, rise_name, viscosity_name},
           .read = read_response};
 }
 

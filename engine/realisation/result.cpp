@@ -151,6 +151,9 @@ void add_measurements(const Scene& scene, const Simulation& simulation, const En
     observable->add_to(mean);
     observable->add_blocks_to(blocks);
   }
+  // A viscosity at rest is not a mean of the stress: it has no blocks.
+  if (scene.physics.flow.steady_rate() == 0 && !mean.at("relative_viscosity").is_null())
+    blocks.erase("relative_viscosity");
   leave_no_nans(mean);
   leave_no_nans(blocks);
   result["inefficiencies"] = inefficiencies(blocks, quantities);
@@ -186,7 +189,7 @@ std::string with_error(const Json& result, const char* name) {
 }
 
 std::string means(const Json& result) {
-  const bool sheared = !result.at("mean").at("relative_viscosity").is_null();
+  const bool sheared = result.at("units") != "scene";
   const auto value = [&](const char* name) { return with_error(result, name); };
   std::string text;
   if (sheared) {

@@ -116,7 +116,7 @@ std::vector<std::string> flows_without_rate(std::size_t begin) {
 }
 
 // Sets the temperature and returns the shear rate: the largest within the limits that have rate / kT = Pe /
-// (6 pi eta a^3).
+// (6 pi eta a^3). At Pe = 0 the rate is 0.
 double rate_from_peclet(const SceneDocument& scene, double radius, Physics& physics) {
   for (const char* pointer : {"/flow/shear_rate", "/fluid/thermal_energy"}) {
     if (scene.has(pointer)) scene.refuse(pointer, "must be left out together with /peclet, which sets it");
@@ -125,6 +125,10 @@ double rate_from_peclet(const SceneDocument& scene, double radius, Physics& phys
   const double scale = 6 * std::numbers::pi * physics.viscosity * radius * radius * radius;
   double rate = scene.number("/limits/shear_rate");
   const double largest_energy = scene.number("/limits/thermal_energy");
+  if (peclet == 0) {
+    physics.thermal_energy = largest_energy;
+    return 0;
+  }
   const double rate_at_largest_energy = peclet * largest_energy / scale;
   if (rate_at_largest_energy <= rate) {
     rate = rate_at_largest_energy;
@@ -329,8 +333,8 @@ std::string flow_keys() {
                                  fmt::join(flows_without_rate(std::string("/flow/").size()), ", flow."));
   for (const FlowKind& kind : flow_kinds()) keys += kind.keys;
   return keys + wave_keys + R"(
-/peclet? | number > 0; named Péclet number, Pe | Pe = 6 pi eta a^3 rate / k_B T, in place of shear_rate and
-    thermal_energy; needs limits.
+/peclet? | number >= 0; named Péclet number, Pe | Pe = 6 pi eta a^3 rate / k_B T, in place of shear_rate and
+    thermal_energy; needs limits. 0: a fluid at rest.
 /limits | object; if peclet | With peclet: the largest rate and temperature that Pe allows are used.
 /limits/shear_rate | number > 0; in 1 / time | Shear rate that is not exceeded.
 /limits/thermal_energy | number > 0; in energy | k_B T that is not exceeded.

@@ -336,6 +336,7 @@ TEST(Result, DescribesItsQuantitiesAsTheyAre) {
                 elastic_contacts,
                 {{"duration", {{"production", {{"time", 1.2}}}}}, {"observables", {"linear_response"}}}}));
   EXPECT_TRUE(responding.at("quantities").contains("zero_shear_viscosity"));
+  EXPECT_EQ(responding.at("mean").at("relative_viscosity"), responding.at("mean").at("zero_shear_viscosity"));
   for (const Json& result : {sheared, result_at_rest, responding}) {
     for (const auto& [name, quantity] : result.at("quantities").items()) {
       const Json& value = at_path(result.at("mean"), name);

@@ -105,7 +105,7 @@ const SceneFault faults[] = {
     {R"({"flow": null, "fluid": {"thermal_energy": null}, "peclet": 1e308,
          "limits": {"shear_rate": 1e-300, "thermal_energy": 1}})",
      "/peclet", "1e+308", "leaves no shear rate and thermal energy"},
-    {R"({"flow": null, "peclet": 0})", "/peclet", "0", "must be a number > 0"},
+    {R"({"flow": null, "peclet": -1})", "/peclet", "-1", "must be a number >= 0"},
     {R"({"contact": {"normal_stiffness": 0}})", "/contact/normal_stiffness", "0", "must be a number > 0"},
     {R"({"contact": {"normal_damping": -1}})", "/contact/normal_damping", "-1", "must be a number >= 0"},
     {R"({"contact": {"friction": null, "rolling_stiffness": null, "tangential_stiffness": 3}})",
