@@ -232,7 +232,7 @@ def over_sweep(data):
         place = series.setdefault(json.dumps(name), {"series": len(series), "name": name})["series"]
         x = axis["cells"][k] if axis["numeric"] else axis["values"].index(axis["cells"][k])
         mark = {"series": place, "x": x, "y": point["mean"], "half": point["half_width"], "kind": kind_of(point)}
-        marks.append({**mark, "good_enough": point["good_enough"]})
+        marks.append({**mark, "good_enough": point["good_enough"], "curve": point.get("curve")})
     marks.sort(key=lambda mark: mark["x"])
     log = data["log"]
     logs = {
@@ -249,6 +249,11 @@ def over_sweep(data):
         if banded:
             places = [[m["x"], m["y"] - m["good_enough"], m["y"] + m["good_enough"]] for m in banded]
             panel["bands"].append({"series": one["series"], "places": places})
+        elif not data["tolerance"]:
+            curved = [(mark["x"], mark["curve"]) for mark in flowing if mark["curve"]]
+            if len(curved) > 1:
+                places = [[x, curve["low"], curve["high"]] for x, curve in curved]
+                panel["bands"].append({"series": one["series"], "places": places})
     categories = None if axis["numeric"] else list(dict.fromkeys(axis["words"]))
     return {
         "x": {"about": axis["about"], "log": logs["x"], "categories": categories},
@@ -257,6 +262,7 @@ def over_sweep(data):
         "legend": list(series.values()) if others else [],
         "kinds": [mark["kind"] for mark in visible],
         "hasBand": bool(panel["bands"]),
+        "bandName": "tolerance" if data["tolerance"] else "band of the curve",
         "notes": notes(absent, len(marks) - len(visible), data["quantity"]["path"]),
     }
 

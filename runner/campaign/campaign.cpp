@@ -105,6 +105,13 @@ std::vector<std::string> Target::observables() const {
   return names;
 }
 
+std::string Target::over() const {
+  for (const Criterion& criterion : criteria()) {
+    if (criterion.tolerance.is_of_curve()) return criterion.tolerance.over;
+  }
+  return "";
+}
+
 std::string to_string(const Target& target) { return to_string(target.criteria()); }
 
 std::string to_string(const std::vector<Criterion>& criteria) {
@@ -150,7 +157,25 @@ Target target_of(const std::string& observable, const Json& criterion, double co
                  const std::string& file) {
   Target target{observable, tolerance_of(criterion), confidence};
   target.also = also_of(criterion, observable, file);
+  for (std::size_t place = 0; place < target.also.size(); ++place) {
+    const std::string& over = target.also[place].tolerance.over;
+    if (!over.empty() && over != target.over()) {
+      throw InputError(file, fmt::format("/target/also/{}/curve/over", place), over,
+                       "must be that of the other curves, " + target.over());
+    }
+  }
   return target;
+}
+
+std::vector<Curve> curves_of(const Json& document, const Target& target, const std::string& file) {
+  if (target.over().empty()) return {};
+  std::string pointer = "/target/curve/over";
+  if (!target.tolerance.is_of_curve()) {
+    const auto found = std::ranges::find_if(
+        target.also, [](const Criterion& criterion) { return criterion.tolerance.is_of_curve(); });
+    pointer = fmt::format("/target/also/{}/curve/over", found - target.also.begin());
+  }
+  return curves_over(target.over(), read_sweep(document.at("sweep"), file), file, pointer);
 }
 
 void check_campaign_name(const std::string& name, const std::string& file) {
@@ -195,6 +220,7 @@ Campaign parse_campaign(const Json& written, const std::string& file) {
   campaign.engine = document["engine"].get<std::vector<std::string>>();
   campaign.seeds_with_files = seeds_with_files(document);
   campaign.points = sweep_points(document["scene"], read_sweep(document["sweep"], file), campaign.name, file);
+  campaign.curves = curves_of(document, campaign.target, file);
   return campaign;
 }
 
@@ -210,6 +236,13 @@ constexpr const char* tolerance_rows = R"(
     |mean|; 0.05 is 5 %.
 /target{0}/absolute_tolerance | number > 0 and <= 1e100; instead of relative_tolerance | Largest allowed
     half-width in the observable's own unit; for observables that may be zero.
+/target{0}/curve | object; instead of relative_tolerance | A tolerance that the band of a curve through the points
+    may meet, too.
+/target{0}/curve/over | string | Pointer that the sweep sets to different numbers: the axis of the curve.
+/target{0}/curve/relative_tolerance | number > 0 and < 1 | Largest allowed half-width of the curve's band, or of
+    the point's own interval, over the mean.
+/target{0}/curve/even? | true or false | Whether the observable is even in the axis, as a viscosity in /peclet, so
+    that a point at 0 tells about those nearby.
 /target{0}/relative_to? | string; if relative_tolerance | {1}
 /target{0}/absolute_floor? | number > 0 and <= 1e100; if relative_tolerance | Half-width that is always allowed,
     however small the mean to which relative_tolerance refers.

@@ -20,6 +20,14 @@ struct StatePoint {
   std::string label;  // for people: "peclet=10 volume_fraction=0.5"
 };
 
+// Points of a sweep that differ in the rows of one entry only. A curve is estimated from four or more: its
+// trend takes two, its amplitude and length two more.
+constexpr std::size_t fewest_of_curve = 4;
+struct Curve {
+  std::vector<std::size_t> points;  // places in the sweep, in the order of the rows
+  std::vector<double> axis;         // value of each point
+};
+
 // The defaults of a campaign's observable and of the confidence of its intervals.
 constexpr const char* usual_observable = "relative_viscosity";
 constexpr double usual_confidence = 0.95;
@@ -41,6 +49,8 @@ struct Target {
   std::vector<Criterion> also{};  // must be met, too
 
   bool has_tolerance() const { return tolerance.kind != Tolerance::Kind::none; }
+  // Returns the pointer over which its criteria have curves, the same for all of them; "" without a curve.
+  std::string over() const;
 
   // Returns the observables to be read from each result, each once: the leading one, those of `also`, then
   // those to which a tolerance is relative.
@@ -69,6 +79,7 @@ struct Campaign {
   std::string name;
   Json document;                   // as read, with defaults
   std::vector<StatePoint> points;  // in the order of the sweep: the last entry varies fastest
+  std::vector<Curve> curves{};     // if the target has any
   Target target;
   int minimum_realisations;
   int maximum_realisations;                  // equal to the minimum if the number is fixed
@@ -79,6 +90,10 @@ struct Campaign {
 };
 
 const KeyTable& campaign_keys();
+
+// Returns the curves of a target in a campaign that has been read; none if it has no curve. Throws InputError
+// as curves_over().
+std::vector<Curve> curves_of(const Json& document, const Target& target, const std::string& file = "");
 
 // Reads and checks a campaign; the engine checks its scenes. Throws InputError with file, pointer, value and
 // what is allowed.

@@ -4,13 +4,17 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <utility>
 
 #include "contract/errors.h"
+#include "contract/key_table.h"
 #include "contract/sha256.h"
 #include "contract/text.h"
+#include "runner/campaign/number_text.h"
 
 namespace peclet::runner {
 namespace {
@@ -286,6 +290,70 @@ std::vector<StatePoint> sweep_points(const Json& scene, const std::vector<SweepE
     points.push_back(std::move(point));
   }
   return points;
+}
+
+std::vector<Curve> curves_over(const std::string& over, const std::vector<SweepEntry>& sweep,
+                               const std::string& file, const std::string& pointer) {
+  std::size_t entry = 0, column = 0;
+  for (; entry < sweep.size(); ++entry) {
+    const std::vector<std::string>& pointers = sweep[entry].pointers;
+    column = static_cast<std::size_t>(std::ranges::find(pointers, over) - pointers.begin());
+    if (column < pointers.size()) break;
+  }
+  if (entry == sweep.size())
+    throw InputError(file, pointer, over, "must be a pointer that the sweep sets, along which curves run");
+  std::vector<double> axis;
+  for (const std::vector<Json>& row : sweep[entry].rows) {
+    const Json& value = row[column];
+    const std::string where = fmt::format("/sweep/{}/values/{}", entry, axis.size());
+    if (!value.is_number())
+      throw InputError(file, where, shortened(value), "must be a number: it is the axis of curves");
+    if (std::ranges::find(axis, value.get<double>()) != axis.end())
+      throw InputError(file, where, shortened(value),
+                       "must differ from the others: it is the axis of curves");
+    axis.push_back(value.get<double>());
+  }
+  if (axis.size() < fewest_of_curve) {
+    throw InputError(file, fmt::format("/sweep/{}/values", entry), counted(axis.size(), "value"),
+                     fmt::format("must be {} or more, because curves run along {}", fewest_of_curve, over));
+  }
+  std::map<GridIndex, Curve> curves;  // by the rows of the other entries
+  std::size_t points = 1;
+  for (const SweepEntry& each : sweep) points *= each.rows.size();
+  for (std::size_t point = 0; point < points; ++point) {
+    GridIndex index = grid_index(sweep, point);
+    const std::size_t row = std::exchange(index[entry], 0);
+    Curve& curve = curves[index];
+    curve.points.push_back(point);
+    curve.axis.push_back(axis[row]);
+  }
+  std::vector<Curve> all;
+  for (auto& [others, curve] : curves) all.push_back(std::move(curve));
+  return all;
+}
+
+Json with_value_along(Json sweep, const std::string& over, double value) {
+  for (Json& entry : sweep) {
+    const bool is_list = entry["set"].is_array();
+    const Json pointers = is_list ? entry["set"] : Json::array({entry["set"]});
+    const auto column = static_cast<std::size_t>(std::ranges::find(pointers, Json(over)) - pointers.begin());
+    if (column == pointers.size()) continue;
+    Json& rows = entry["values"];
+    std::vector<double> axis;
+    for (const Json& row : rows) axis.push_back((is_list ? row[column] : row).get<double>());
+    const bool is_logarithmic = std::ranges::all_of(axis, [](double known) { return known > 0; });
+    const auto distance = [&](double known) {
+      return is_logarithmic ? std::abs(std::log(known / value)) : std::abs(known - value);
+    };
+    const auto nearest = std::ranges::min_element(axis, {}, distance) - axis.begin();
+    Json row = rows[static_cast<std::size_t>(nearest)];
+    const bool is_whole = value == std::floor(value) && std::abs(value) < largest_count;
+    (is_list ? row[column] : row) = is_whole ? Json(static_cast<std::int64_t>(value)) : Json(value);
+    const auto place = std::ranges::is_sorted(axis) ? std::ranges::upper_bound(axis, value) : axis.end();
+    rows.insert(rows.begin() + (place - axis.begin()), std::move(row));
+    return sweep;
+  }
+  return sweep;
 }
 
 }  // namespace peclet::runner

@@ -16,6 +16,10 @@ struct Tolerance {
   std::string relative_to{};
   // For a relative tolerance: the half-width that is always allowed, however small the mean.
   double floor = 0;
+  // For a relative tolerance: the pointer over which the points make a curve. The band of the curve may meet
+  // the tolerance in place of the point's own interval. "" without a curve.
+  std::string over{};
+  bool is_even = false;  // the observable is even in the axis of the curve, so that a point at 0 is at rest
 
   Tolerance() = default;
   // Creates a relative tolerance: a share of |mean|.
@@ -25,6 +29,7 @@ struct Tolerance {
   static Tolerance none();
 
   bool is_relative() const { return kind == Kind::relative; }
+  bool is_of_curve() const { return !over.empty(); }
   // Returns true if the half-width allowed at this mean is a share of it, not the floor or an absolute one.
   bool is_share_of(double mean) const;
   // Returns true if a mean of 0 allows no half-width.
@@ -38,16 +43,17 @@ struct Tolerance {
   bool operator==(const Tolerance&) const = default;
 };
 
-// Returns "5 %", "5 % of relative_viscosity", "5 % or 0.01", "0.1" or "none".
+// Returns "5 %", "5 % of relative_viscosity", "5 % or 0.01", "5 % along /peclet", "0.1" or "none".
 std::string to_string(const Tolerance& tolerance);
 
 // Returns a half-width as the tolerance measures it at this mean: "2.3 %", "0.012"; "-" if it is not finite.
 std::string width_text(const Tolerance& tolerance, double half_width, double mean);
 
 // Returns the keys of a target in a campaign file: {"relative_tolerance": 0.05}, with "relative_to" and
-// "absolute_floor" if set, or {"absolute_tolerance": 0.1}; {} for none().
+// "absolute_floor" if set, {"curve": {"over": "/peclet", "relative_tolerance": 0.05}}, with "even" if set, or
+// {"absolute_tolerance": 0.1}; {} for none().
 Json to_json(const Tolerance& tolerance);
-// Returns the key of a tolerance, which must not be none().
+// Returns the key of a tolerance, which must not be none(): "absolute_tolerance", "curve/relative_tolerance".
 const char* key_of(const Tolerance& tolerance);
 // Reads a tolerance from the keys of to_json(). Throws Json::exception for values of another type.
 Tolerance tolerance_of(const Json& target);

@@ -123,7 +123,7 @@ Reply retry_seeds(const RetryOptions& options) { return ask(options, Retry{optio
 namespace {
 
 struct Edit {
-  std::string block;  // "": the document
+  std::vector<std::string> block;  // keys of nested objects; none: the document
   const char* key;
   Json value;
 };
@@ -135,16 +135,21 @@ Json word_or_number(const std::string& text) {
   return read.ec == std::errc{} && read.ptr == text.data() + text.size() ? Json(number) : Json(text);
 }
 
-std::vector<Edit> edits_of(const SetOptions& options) {
+// The pointer to the curve of a target.
+constexpr const char* curve_pointer = "/target/curve";
+
+std::vector<Edit> edits_of(const SetOptions& options, const Json& document) {
   std::vector<Edit> edits;
-  if (options.tolerance) edits.push_back({"target", "relative_tolerance", *options.tolerance});
+  std::vector<std::string> target{"target"}, of_tolerance = target;
+  if (document.contains(Json::json_pointer(curve_pointer))) of_tolerance.emplace_back("curve");
+  if (options.tolerance) edits.push_back({of_tolerance, "relative_tolerance", *options.tolerance});
   if (options.absolute_tolerance)
-    edits.push_back({"target", "absolute_tolerance", *options.absolute_tolerance});
-  if (options.confidence) edits.push_back({"target", "confidence", *options.confidence});
-  if (options.minimum) edits.push_back({"realisations", "minimum", *options.minimum});
-  if (options.maximum) edits.push_back({"realisations", "maximum", *options.maximum});
-  if (options.realisations) edits.push_back({"", "realisations", *options.realisations});
-  if (options.keep_files) edits.push_back({"", "keep_files", word_or_number(*options.keep_files)});
+    edits.push_back({target, "absolute_tolerance", *options.absolute_tolerance});
+  if (options.confidence) edits.push_back({target, "confidence", *options.confidence});
+  if (options.minimum) edits.push_back({{"realisations"}, "minimum", *options.minimum});
+  if (options.maximum) edits.push_back({{"realisations"}, "maximum", *options.maximum});
+  if (options.realisations) edits.push_back({{}, "realisations", *options.realisations});
+  if (options.keep_files) edits.push_back({{}, "keep_files", word_or_number(*options.keep_files)});
   return edits;
 }
 
@@ -155,7 +160,7 @@ void check_usage(const SetOptions& options) {
   if (!options.priority && !options.points.empty()) {
     throw InputError("", "", "--point", "is for --priority; target and realisations apply to all points");
   }
-  if (options.priority && !edits_of(options).empty()) {
+  if (options.priority && !edits_of(options, {}).empty()) {
     throw InputError("", "", "--priority", "is not part of the campaign file: set it in a separate call");
   }
 }
@@ -185,8 +190,8 @@ void check_kind(const Json& document, const SetOptions& options) {
                      fmt::format("is changed by {}, not by {}", other_option, option));
   };
   must_not_have(options.tolerance, "--tolerance", "/target/absolute_tolerance", "--absolute-tolerance");
-  must_not_have(options.absolute_tolerance, "--absolute-tolerance", "/target/relative_tolerance",
-                "--tolerance");
+  for (const char* const other : {"/target/relative_tolerance", curve_pointer})
+    must_not_have(options.absolute_tolerance, "--absolute-tolerance", other, "--tolerance");
 }
 
 // Returns the text with the edits in place; every other byte stays.
@@ -194,14 +199,14 @@ std::string edited(const std::string& text, const std::vector<Edit>& edits, cons
   Json expected = parse_json_input(text, file.string());
   std::string changed = text;
   for (const Edit& edit : edits) {
-    const bool has_block =
-        expected.is_object() &&
-        (edit.block.empty() || (expected.contains(edit.block) && expected[edit.block].is_object()));
+    Json::json_pointer block;
+    for (const std::string& key : edit.block) block /= key;
+    const bool has_block = expected.contains(block) && expected[block].is_object();
     if (!has_block) parse_campaign(expected, file.string());  // refuses it, and says why
-    std::vector<std::string> path{edit.block, edit.key};
-    if (edit.block.empty()) path.erase(path.begin());
+    std::vector<std::string> path = edit.block;
+    path.emplace_back(edit.key);
     changed = with_value(changed, path, edit.value);
-    (edit.block.empty() ? expected : expected[edit.block])[edit.key] = edit.value;
+    expected[block][edit.key] = edit.value;
   }
   if (parse_json_input(changed, file.string()) != expected) {
     throw std::logic_error(file.string() + ": could not be changed in place; change it by hand");
@@ -222,8 +227,9 @@ Reply take_over(const SetOptions& options) {
   {
     const FileLock lock(file);  // of two verbs at once, the second one reads what the first has written
     before = read_input(file);
-    check_kind(parse_json_input(before, options.campaign.string()), options);
-    text = edited(before, edits_of(options), options.campaign);
+    const Json document = parse_json_input(before, options.campaign.string());
+    check_kind(document, options);
+    text = edited(before, edits_of(options, document), options.campaign);
     const Campaign campaign =
         parse_campaign(parse_json_input(text, options.campaign.string()), options.campaign.string());
     check_scenes(campaign, options.campaign, resolve_engine(campaign, options.campaign));

@@ -101,7 +101,7 @@ void examine_results(Database& database, const CampaignUnderExamination& examine
 }
 
 void examine_stop_tests(Database& database, Findings& findings) {
-  const TargetRecord target = database.campaign().target;
+  StopTestCheck check(database);
   for (const PointRecord& point : database.points()) {
     if (point.suspect) {
       findings.push_back(
@@ -120,17 +120,16 @@ void examine_stop_tests(Database& database, Findings& findings) {
              "find out why seeds repeat each other (a start list with equal files, an engine that ignores "
              "the seed), and run in another --directory"});
       }
-      checked_stop_test(database, point, target);
+      check.last(point);
     } catch (const IntegrityError& error) {
       findings.push_back({"stop-test-differs", Severity::integrity, error.what(),
                           "`peclet doctor --repair` tests the stored results again",
-                          [id = point.id, target](Database& owner) {
-                            const std::vector<StopTest> stop_tests = replay_stop_tests(
-                                owner.outcomes(id), target.target, target.minimum, target.maximum);
+                          [point](Database& owner) {
+                            const std::vector<StopTest> stop_tests = StopTestCheck(owner).replayed(point);
                             Transaction booking(owner.connection());
-                            ResultStore(owner).store_stop_tests(id, stop_tests);
+                            ResultStore(owner).store_stop_tests(point.id, stop_tests);
                             EventStore(owner.connection())
-                                .write("repaired", id, std::nullopt, "tested the stored results again");
+                                .write("repaired", point.id, std::nullopt, "tested the stored results again");
                             booking.commit();
                           }});
     }

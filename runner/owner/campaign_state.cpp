@@ -107,7 +107,9 @@ std::optional<SeedId> CampaignState::seed_of_checkpoint(const fs::path& file) co
 
 void CampaignState::book_stop_tests() {
   for (int place = 0; place < point_states_.size(); ++place) {
-    store_stop_tests(place, database_.stop_tests(point(place).id).size());
+    const std::vector<StopTestRecord> known = database_.stop_tests(point(place).id);
+    const bool was_decided = !known.empty() && known.back().stop_test.verdict != Verdict::more;
+    store_stop_tests({place, known.size(), was_decided});
     if (!scheduler().decided(place)) seeds_.enqueue(point(place).id, scheduler().wanted(place));
   }
 }
@@ -125,27 +127,30 @@ void CampaignState::roll_back() {
   read_point_states();
 }
 
-// Stores the stop tests of a point, and tells of those after the first `known`, which are stored already.
-void CampaignState::store_stop_tests(int place, std::size_t known) {
-  const std::vector<StopTest>& stop_tests = scheduler().stop_tests(place);
-  results_.store_stop_tests(point(place).id, stop_tests);
-  for (std::size_t i = known; i < stop_tests.size(); ++i)
-    changes_.after.tell(StopTestMade{point_name(place), stop_tests[i]});
-  if (stop_tests.size() > known && scheduler().decided(place)) {
-    changes_.after.tell(Decided{point_name(place), stop_tests.back()});
+// Stores the stop tests of a point, and tells of the new ones.
+void CampaignState::store_stop_tests(const Change& change) {
+  const std::vector<StopTest>& stop_tests = scheduler().stop_tests(change.point);
+  results_.store_stop_tests(point(change.point).id, stop_tests);
+  for (std::size_t i = change.stop_tests; i < stop_tests.size(); ++i)
+    changes_.after.tell(StopTestMade{point_name(change.point), stop_tests[i]});
+  const bool is_new = stop_tests.size() > change.stop_tests || !change.decided;
+  if (is_new && scheduler().decided(change.point)) {
+    changes_.after.tell(Decided{point_name(change.point), stop_tests.back()});
   }
 }
 
 void CampaignState::book_outcome(SeedId id, const Outcome& outcome) {
-  const std::size_t known = scheduler().stop_tests(id.point).size();
-  if (!point_states_.scheduler().end(id, outcome)) return;
-  const PointRecord& about = point(id.point);
-  store_stop_tests(id.point, known);
-  if (!scheduler().decided(id.point)) {
-    seeds_.enqueue(about.id, scheduler().wanted(id.point));
+  for (const Change& change : point_states_.scheduler().end(id, outcome)) book_change(change);
+}
+
+void CampaignState::book_change(const Change& change) {
+  const PointRecord& about = point(change.point);
+  store_stop_tests(change);
+  if (!scheduler().decided(change.point)) {
+    seeds_.enqueue(about.id, scheduler().wanted(change.point));
     return;
   }
-  const StopTest& last = scheduler().stop_tests(id.point).back();
+  const StopTest& last = scheduler().stop_tests(change.point).back();
   const std::string message = fmt::format("{} after {} seeds", to_string(last.verdict), last.seeds);
   events_.write("decided", about.id, std::nullopt, message);
   changes_.after.note(fmt::format("{}: {}", about.label, message));

@@ -155,7 +155,8 @@ class CampaignState {
   void take(const RealisationResult& result, const fs::path& spool);
   void note_lacking(const RealisationResult& result);
   void book_outcome(SeedId id, const Outcome& outcome);
-  void store_stop_tests(int place, std::size_t known);
+  void store_stop_tests(const Change& change);
+  void book_change(const Change& change);
   void turn_down(const fs::path& spool, const std::string& why);
 
   Database& database_;

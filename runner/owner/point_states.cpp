@@ -30,7 +30,8 @@ void PointStates::read_seeds(Database& database, const Campaign& campaign) {
     forecasts_[place].cost = Cost(std::move(wall));
     processor_[place] = Cost(std::move(processor));
   }
-  scheduler_.emplace(std::move(outcomes), campaign.target, campaign.minimum_realisations, maximum_);
+  scheduler_.emplace(std::move(outcomes), campaign.target, campaign.minimum_realisations, maximum_,
+                     campaign.curves);
   for (const PointRecord& known : points_) {
     scheduler_->set_priority(*known.place, known.priority);
     scheduler_->set_cancelled(*known.place, known.cancelled);

@@ -52,6 +52,7 @@ Json point_json(const Json& point, const Json& estimate, const std::string& path
           {"standard_error", number(1)},
           {"half_width", number(2)},
           {"good_enough", is_known ? point.at("good_enough").value(path, Json()) : Json(nullptr)},
+          {"curve", point.at("curve").value(path, Json())},
           {"count", is_known ? estimate[3] : point.at("endings").at("ended")},
           {"state", state_of(point)},
           {"jammed", point.at("endings").at("has_jammed")}};

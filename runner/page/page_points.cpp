@@ -239,23 +239,41 @@ Json first_result(Database& database, const PointRecord& point) {
   return database.result(point.id, completed.front()).value_or(Json::object());
 }
 
+// Returns the bands of curves that are known and not refused: {"relative_viscosity": {"mean", "low",
+// "high"}}.
+Json bands_json(const StopTest& stop_test) {
+  Json bands = Json::object();
+  for (const ObservableStopTest& one : stop_test.each) {
+    if (!one.curve || !one.curve->is_known() || one.curve->refused) continue;
+    bands[bare(one.observable)] = {
+        {"mean", one.curve->mean}, {"low", one.curve->low}, {"high", one.curve->high}};
+  }
+  return bands;
+}
+
+// Returns what of a stop test may change without new seeds of its point.
+std::string last_text(const StopTest& stop_test) {
+  return fmt::format("{} {} {}", stop_test.seeds, to_string(stop_test.verdict), bands_json(stop_test).dump());
+}
+
 // Returns a key that changes with the seeds that have ended, their values and the stop tests.
 std::string key_of(const PointSummary& point, const TargetRecord& target) {
   const StateCounts& counts = point.counts;
   return fmt::format("{} {} {} {} {:a} {} {:a} {:a} {} {}", target.id, counts.done, counts.failed,
                      counts.quarantined, counts.cpu_seconds, point.all_seeds.count, point.all_seeds.mean,
                      point.all_seeds.standard_error, point.stop_tests.size(),
-                     point.stop_tests.empty() ? 0 : point.stop_tests.back().seeds);
+                     point.stop_tests.empty() ? "" : last_text(point.stop_tests.back()));
 }
 
 class PointPage {
  public:
-  PointPage(Database& database, NumberStore& book, const TargetRecord& target, const PointSummary& point)
+  PointPage(Database& database, StopTestCheck& check, NumberStore& book, const TargetRecord& target,
+            const PointSummary& point)
       : database_(database),
         book_(book),
         target_(target),
         point_(point),
-        stop_test_(checked_stop_test(database, point.point, target)) {}
+        stop_test_(check.last(point.point)) {}
 
   KnownPoint read() {
     const Target& target = target_.target;
@@ -269,6 +287,7 @@ class PointPage {
                    {"running_mean", running_mean(found, rule)},
                    {"scatter", scatter(found)},
                    {"plain", Json::object()},
+                   {"curve", stop_test_ ? bands_json(*stop_test_) : Json::object()},
                    {"good_enough", Json::object()}};
     add_estimates();
     if (stop_test_) add_deciding();
@@ -383,12 +402,13 @@ Json point_json(const PointSummary& point) {
 
 PagePoints page_points(Database& database, const CampaignStatus& status, KnownPoints& known) {
   NumberStore book(database.connection());
+  StopTestCheck check(database);
   Columns columns;
   PagePoints page;
   for (const PointSummary& point : status.points) {
     KnownPoint& of_point = known[point.point.id];
     if (of_point.key != key_of(point, status.campaign.target)) {
-      of_point = PointPage(database, book, status.campaign.target, point).read();
+      of_point = PointPage(database, check, book, status.campaign.target, point).read();
     }
     Json json = point_json(point);
     json.update(of_point.json);

@@ -47,8 +47,19 @@ std::vector<Known> known_of(const StopTest& stop_test, const Target& target) {
   return all;
 }
 
-std::string width_text(const Known& known) {
+std::string own_width_text(const Known& known) {
   return width_text(known.criterion.tolerance, known.stop_test.half_width, known.measure.estimate.mean);
+}
+
+// Returns "1.6 %", with "refused" after it for a curve that decides nothing; "-" without a curve.
+std::string band_text(const ObservableStopTest& one) {
+  if (!one.curve || !one.curve->is_known()) return "-";
+  return percent(one.curve->high / one.curve->mean - 1) + (one.curve->refused ? " refused" : "");
+}
+
+std::string width_text(const Known& known) {
+  if (!known.stop_test.is_decided_by_curve()) return own_width_text(known);
+  return fmt::format("{} by the curve ({} alone)", band_text(known.stop_test), own_width_text(known));
 }
 
 // Returns "a half-width of 2 %", or "half-widths of 2 % for relative_viscosity, 0.1 for pressure".
@@ -207,6 +218,7 @@ std::string next_step(const PointSummary& point, const TargetRecord& target,
            "then";
   }
   if (point.point.cancelled && !point.decided) return "nothing; `peclet cancel --undo` resumes the point";
+  if (point.waits) return "nothing, until other points of its curve have made their stop tests";
   if (!point.decided) {
     if (!target.target.has_tolerance()) return fmt::format("the remaining ones of {} seeds", point.wanted);
     if (point.stop_tests.empty()) return fmt::format("the first stop test, at {} seeds", point.wanted);
@@ -266,6 +278,7 @@ std::string stop_tests_table(const std::vector<StopTest>& stop_tests, const Targ
   for (const char* const title : {"seeds", "lost", "mean ± half-width"}) table.add_column(title);
   if (target.has_tolerance()) {
     table.add_column(target.tolerance.is_relative() ? "relative" : "half-width");
+    if (target.tolerance.is_of_curve()) table.add_column("curve");
     table.add_column("tolerance");
   }
   if (with_control) table.add_column("without control variate");
@@ -274,7 +287,9 @@ std::string stop_tests_table(const std::vector<StopTest>& stop_tests, const Targ
     std::vector<std::string> row{fmt::format("{}", stop_test.seeds), fmt::format("{}", stop_test.lost),
                                  with_error(stop_test.controlled.mean, stop_test.controlled_half_width)};
     if (target.has_tolerance()) {
-      row.push_back(width_text(known_of(stop_test, target).front()));
+      const Known leading = known_of(stop_test, target).front();
+      row.push_back(own_width_text(leading));
+      if (target.tolerance.is_of_curve()) row.push_back(band_text(leading.stop_test));
       row.push_back(to_string(target.tolerance));
     }
     if (with_control) row.push_back(with_error(stop_test.estimate.mean, stop_test.half_width));
@@ -292,6 +307,7 @@ std::string observables_table(const std::vector<StopTest>& stop_tests, const Tar
   for (const char* const title : {"values", "mean ± half-width"}) table.add_column(title);
   if (target.has_tolerance()) {
     table.add_column("half-width");
+    if (!target.over().empty()) table.add_column("curve");
     table.add_column("tolerance");
   }
   table.add_column("verdict", TextTable::Align::left);
@@ -300,13 +316,38 @@ std::string observables_table(const std::vector<StopTest>& stop_tests, const Tar
                                  fmt::format("{}", known.stop_test.estimate.count),
                                  with_error(known.stop_test.estimate.mean, known.stop_test.half_width)};
     if (target.has_tolerance()) {
-      row.push_back(width_text(known));
+      row.push_back(own_width_text(known));
+      if (!target.over().empty()) row.push_back(band_text(known.stop_test));
       row.push_back(to_string(known.criterion.tolerance));
     }
     row.emplace_back(to_string(*known.stop_test.verdict));
     table.add_row(std::move(row));
   }
   return table.text("  ");
+}
+
+// Returns a line on each curve at the point.
+std::string curves_text(const std::vector<StopTest>& stop_tests, const Target& target) {
+  if (stop_tests.empty()) return "";
+  std::string text;
+  for (const ObservableStopTest& one : stop_tests.back().each) {
+    if (!one.curve) continue;
+    const CurveBand& curve = *one.curve;
+    text += fmt::format("  curve of {} over {}: ", one.observable, target.over());
+    if (!curve.is_known()) {
+      text += "not known yet, or not at this point\n";
+      continue;
+    }
+    text += fmt::format(
+        "{} .. {};\n    the point's own mean is {} standard deviations from the curve through the "
+        "others, and at most {} are allowed\n",
+        rough(curve.low), rough(curve.high), rough(std::abs(curve.residual)), rough(curve.allowed));
+    if (curve.refused) {
+      text += fmt::format("    the curve is refused, because {}: the points decide alone\n",
+                          curve.contradicts() ? "this point contradicts it" : "another point contradicts it");
+    }
+  }
+  return text;
 }
 
 Json blamed_attempts_json(Database& database, std::int64_t point) {
@@ -380,6 +421,7 @@ std::string explain(Database& database, const CampaignDirectory& directory, cons
     text += fmt::format("  {}: {}\n", verdict_text(summary), reason(summary, target.target));
     text += stop_tests_table(summary.stop_tests, target.target);
     text += observables_table(summary.stop_tests, target.target);
+    text += curves_text(summary.stop_tests, target.target);
     text += prediction_text(summary);
     text += estimate_text(database, summary, target);
     text += losses_text(database, summary);

@@ -143,11 +143,12 @@ Json attempt_json(const AttemptRecord& attempt) {
 // One point of the exported document, with its seeds.
 class PointExport {
  public:
-  PointExport(Database& database, const PointRecord& point, const TargetRecord& target, bool canonical)
+  PointExport(Database& database, StopTestCheck& check, const PointRecord& point, const TargetRecord& target,
+              bool canonical)
       : database_(database),
         point_(point),
         canonical_(canonical),
-        stop_test_(checked_stop_test(database, point, target)),
+        stop_test_(check.last(point)),
         level_(target.level()) {
     if (!canonical_) {
       for (const AttemptRecord& attempt : database.attempts(point.id)) {
@@ -262,10 +263,11 @@ std::string export_json(Database& database, bool canonical) {
       continue;
     }
     const char* separator = "[\n";
+    StopTestCheck check(database);
     std::vector<PointSummary> summaries;
     if (!canonical) summaries = summarise_points(database, campaign.target);
     for (const PointRecord& record : database.points()) {
-      Json point = PointExport(database, record, campaign.target, canonical).json();
+      Json point = PointExport(database, check, record, campaign.target, canonical).json();
       if (!canonical) point["endings"] = to_json(summaries[static_cast<std::size_t>(*record.place)].endings);
       text += separator + canonical_json(point);
       separator = ",\n";
@@ -348,6 +350,13 @@ std::vector<QuantityEstimate> scalar_estimates(NumberStore& numbers, const Point
   return estimates.estimates();
 }
 
+// Returns the band of the leading observable's curve.
+Fields curve_fields(const std::optional<StopTest>& stop_test) {
+  if (!stop_test || !stop_test->each.front().curve->is_known()) return Fields(4);
+  const CurveBand& curve = *stop_test->each.front().curve;
+  return {csv_number(curve.mean), csv_number(curve.low), csv_number(curve.high), curve.refused ? "1" : "0"};
+}
+
 Fields stop_test_fields(const std::optional<StopTest>& stop_test) {
   if (!stop_test) return Fields(10);
   Fields fields{stop_test->verdict == Verdict::more ? "" : to_string(stop_test->verdict),
@@ -420,6 +429,8 @@ std::string export_csv(Database& database, bool canonical) {
   Fields titles = settings.titles();
   append(titles, {"verdict", "seeds", "lost", "count", "mean", "standard_error", "half_width", "plain_mean",
                   "plain_standard_error", "plain_half_width"});
+  const bool has_curve = target.target.tolerance.is_of_curve();
+  if (has_curve) append(titles, {"curve_mean", "curve_low", "curve_high", "curve_refused"});
   if (!canonical) {
     append(titles, {"all_seeds_count", "all_seeds_mean", "all_seeds_standard_error", "extra", "cpu_seconds",
                     "suspect", "jammed"});
@@ -427,10 +438,12 @@ std::string export_csv(Database& database, bool canonical) {
   std::vector<Fields> rows;
   ScalarColumns scalars;
   NumberStore numbers(database.connection());
+  StopTestCheck check(database);
   for (const PointRecord& point : points) {
     Fields fields = settings.fields(point);
-    const std::optional<StopTest> stop_test = checked_stop_test(database, point, target);
+    const std::optional<StopTest> stop_test = check.last(point);
     append(fields, stop_test_fields(stop_test));
+    if (has_curve) append(fields, curve_fields(stop_test));
     if (!canonical) append(fields, full_fields(summaries[rows.size()]));
     scalars.add(rows.size(), scalar_estimates(numbers, point, stop_test));
     rows.push_back(std::move(fields));
@@ -483,9 +496,9 @@ std::string export_long_csv(Database& database) {
   const SettingColumns settings(records);
   std::vector<Point> points;
   std::size_t most_axes = 1;
+  StopTestCheck check(database);
   for (const PointRecord& record : records) {
-    points.push_back({settings.fields(record),
-                      point_estimates(database, record, checked_stop_test(database, record, target))});
+    points.push_back({settings.fields(record), point_estimates(database, record, check.last(record))});
     for (const QuantityEstimate& found : points.back().estimates) {
       most_axes = std::max(most_axes, found.quantity.axes.size());
     }

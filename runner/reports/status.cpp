@@ -154,6 +154,19 @@ std::vector<std::string> reservations(const PointSummary& point) {
   if (!point.stop_tests.empty() && point.stop_tests.back().near_maximum) found.emplace_back("near-maximum");
   if (!point.without_interval.empty())
     found.emplace_back(point.stop_tests.back().repeated.empty() ? "equal-values" : "repeated-seeds");
+  if (!point.stop_tests.empty()) {
+    const StopTest& last = point.stop_tests.back();
+    const auto any = [&](auto is) {
+      return std::ranges::any_of(last.each,
+                                 [&](const ObservableStopTest& one) { return one.curve && is(one); });
+    };
+    if (is_decided_by_curve(last)) found.emplace_back("by-curve");
+    if (point.waits) found.emplace_back("waits-for-curve");
+    if (any([](const ObservableStopTest& one) { return one.curve->contradicts(); }))
+      found.emplace_back("off-curve");
+    else if (any([](const ObservableStopTest& one) { return one.curve->refused; }))
+      found.emplace_back("curve-refused");
+  }
   if (point.earlier_stop_test > 0) found.emplace_back("earlier-stop-test");
   for (const auto& [code, count] : point.flags) {
     if (code == "jammed" && point.endings.has_jammed()) continue;  // said already
@@ -190,13 +203,21 @@ std::string interval(const StopTest& stop_test, const Tolerance& tolerance) {
              : text;
 }
 
+// Returns the band of the leading observable's curve: "10.06 ± 0.16 (1.6 %)", or "-" while it is unknown.
+std::string band(const StopTest& stop_test) {
+  const CurveBand& curve = *stop_test.each.front().curve;
+  if (!curve.is_known()) return "-";
+  return fmt::format("{} ({})", with_error(curve.mean, 0.5 * (curve.high - curve.low)),
+                     percent(curve.high / curve.mean - 1));
+}
+
 // Returns "pressure 2.6 x": the observable with the largest half-width, as a multiple of the allowed one.
 std::string farthest(const StopTest& stop_test) {
   const ObservableStopTest* found = nullptr;
   for (const ObservableStopTest& one : stop_test.each) {
-    if (one.verdict && (found == nullptr || !(one.share <= found->share))) found = &one;
+    if (one.verdict && (found == nullptr || !(one.smaller_share() <= found->smaller_share()))) found = &one;
   }
-  return fmt::format("{} {} x", found->observable, rough(found->share));
+  return fmt::format("{} {} x", found->observable, rough(found->smaller_share()));
 }
 
 // Returns the cells for a fixed number of realisations: each observable over the seeds of the stop test, or
@@ -221,10 +242,12 @@ std::vector<std::string> cells(const PointSummary& point, const Target& target) 
                                  with_error(point.all_seeds.mean, point.all_seeds.standard_error)};
   if (point.stop_tests.empty()) {
     cells.emplace_back("-");
+    if (target.tolerance.is_of_curve()) cells.emplace_back("-");
     if (with_others) cells.emplace_back("-");
   } else {
     const StopTest& stop_test = point.stop_tests.back();
     cells.push_back(interval(stop_test, target.tolerance));
+    if (target.tolerance.is_of_curve()) cells.push_back(band(stop_test));
     if (with_others) cells.push_back(farthest(stop_test));
   }
   cells.push_back(verdict_text(point));
@@ -242,7 +265,7 @@ std::string heading(const CampaignStatus& status) {
 
 // The importance of the columns that a narrow terminal may leave out.
 namespace importance {
-constexpr int all_seeds = 1, seeds = 2, stop_test = 3, farthest = 4;
+constexpr int all_seeds = 1, seeds = 2, stop_test = 3, curve = 4, farthest = 5;
 }
 
 // Returns the legend of the columns that are shown.
@@ -265,6 +288,9 @@ std::string legend(const CampaignStatus& status, const std::vector<std::string>&
       parts.push_back(
           fmt::format("stop test: mean ± half-width of the{}{:g} % interval at the last stop test", blank,
                       100 * target.confidence));
+    }
+    if (target.tolerance.is_of_curve() && shows("curve")) {
+      parts.push_back(fmt::format("curve: the band of the curve over {}", target.over()));
     }
     if (shows("farthest") && target.observables().size() > 1) {
       parts.emplace_back("farthest: the largest half-width, as a multiple of its tolerance");
@@ -371,6 +397,7 @@ std::string status_table(const CampaignStatus& status, std::size_t width) {
   if (target.has_tolerance()) {
     table.add_column("all seeds", TextTable::Align::right, importance::all_seeds);
     table.add_column("stop test", TextTable::Align::right, importance::stop_test);
+    if (target.tolerance.is_of_curve()) table.add_column("curve", TextTable::Align::right, importance::curve);
     if (observables.size() > 1) table.add_column("farthest", TextTable::Align::left, importance::farthest);
   } else {
     for (const std::string& name : observables) {

@@ -95,7 +95,7 @@ StopTest stop_test_at(std::span<const std::optional<Outcome>> cohort, StopRule& 
   stop_test.controlled_half_width = each.front().half_width;
   stop_test.skewness = each.front().skewness;
   stop_test.verdict = judgement.verdict;
-  if (each.size() > 1) stop_test.each = std::move(each);
+  if (each.size() > 1 || !target.over().empty()) stop_test.each = std::move(each);
   stop_test.near_maximum = is_near_maximum(stop_test, target, rule.schedule().back());
   return stop_test;
 }
@@ -146,8 +146,9 @@ double largest_share(const StopTest& stop_test, const Target& target) {
   double largest = 0;
   for (const ObservableStopTest& one : each_of(stop_test, target)) {
     if (!one.verdict) continue;
-    if (std::isnan(one.share)) return one.share;
-    largest = std::max(largest, one.share);
+    const double share = one.smaller_share();
+    if (std::isnan(share)) return share;
+    largest = std::max(largest, share);
   }
   return largest;
 }
@@ -162,7 +163,8 @@ bool is_near_maximum(const StopTest& stop_test, const Target& target, int maximu
   if (!is_reached(stop_test.verdict)) return false;
   const std::vector<ObservableStopTest> each = each_of(stop_test, target);
   return std::any_of(each.begin(), each.end(), [&](const ObservableStopTest& one) {
-    return one.verdict && is_near_maximum(stop_test.seeds, one.estimate.count, one.share, maximum);
+    return one.verdict && !one.is_decided_by_curve() &&
+           is_near_maximum(stop_test.seeds, one.estimate.count, one.share, maximum);
   });
 }
 
@@ -202,19 +204,38 @@ bool is_skewed(const StopTest& stop_test, double confidence) {
   return std::abs(stop_test.skewness) > 2.5 * chance && loss > 0.01;
 }
 
+bool is_decided_by_curve(const StopTest& stop_test) {
+  return std::ranges::any_of(stop_test.each, &ObservableStopTest::is_decided_by_curve);
+}
+
+bool waits_for_curve(const StopTest& stop_test) {
+  bool has_curve = false;
+  for (const ObservableStopTest& one : stop_test.each) {
+    if (one.curve && one.curve->goes_on) return false;
+    has_curve = has_curve || one.curve;
+  }
+  return has_curve && stop_test.verdict == Verdict::more;
+}
+
 bool has_control(const StopTest& stop_test) {
   return stop_test.estimate.count > 0 && stop_test.controlled.mean != stop_test.estimate.mean;
+}
+
+std::optional<StopTest> stop_test_over(int seeds, const std::vector<std::optional<Outcome>>& outcomes,
+                                       const Target& target, StopRule& rule) {
+  if (!is_closed(outcomes, seeds)) return std::nullopt;
+  return stop_test_at(std::span(outcomes).first(static_cast<std::size_t>(seeds)), rule, target.observables(),
+                      target);
 }
 
 std::vector<StopTest> replay_stop_tests(const std::vector<std::optional<Outcome>>& outcomes,
                                         const Target& target, int minimum, int maximum) {
   StopRule rule(target, minimum, maximum);
-  const std::vector<std::string> observables = target.observables();
   std::vector<StopTest> stop_tests;
   for (const int seeds : rule.schedule()) {
-    if (!is_closed(outcomes, seeds)) break;
-    stop_tests.push_back(
-        stop_test_at(std::span(outcomes).first(static_cast<std::size_t>(seeds)), rule, observables, target));
+    std::optional<StopTest> next = stop_test_over(seeds, outcomes, target, rule);
+    if (!next) break;
+    stop_tests.push_back(*std::move(next));
     if (stop_tests.back().verdict != Verdict::more) break;
   }
   return stop_tests;
@@ -241,6 +262,17 @@ Estimate::Values stored_values(const Estimate& estimate, double half_width) {
   return is_share ? Estimate::Values::share : Estimate::Values::spread;
 }
 
+Json curve_json(const CurveBand& curve) {
+  return {{"mean", number_json(curve.mean)},
+          {"low", number_json(curve.low)},
+          {"high", number_json(curve.high)},
+          {"share_of_tolerance", number_json(curve.share)},
+          {"residual", number_json(curve.residual)},
+          {"allowed_residual", number_json(curve.allowed)},
+          {"refused", curve.refused},
+          {"goes_on", curve.goes_on}};
+}
+
 Json observables_json(const StopTest& stop_test) {
   Json json = Json::array();
   for (const ObservableStopTest& one : stop_test.each) {
@@ -251,6 +283,7 @@ Json observables_json(const StopTest& stop_test) {
     of["skewness"] = number_json(one.skewness);
     of["transient"] = one.untested ? Json(nullptr) : Json(one.transient);
     of["verdict"] = one.verdict ? Json(to_string(*one.verdict)) : Json(nullptr);
+    if (one.curve) of["curve"] = curve_json(*one.curve);
   }
   return json;
 }
@@ -269,6 +302,13 @@ std::vector<ObservableStopTest> observables_of(const Json& json) {
     one.untested = of.at("transient").is_null();
     one.transient = !one.untested && of.at("transient").get<bool>();
     if (!of.at("verdict").is_null()) one.verdict = verdict_of(of.at("verdict").get<std::string>()).value();
+    if (of.contains("curve")) {
+      const Json& curve = of["curve"];
+      one.curve = {number(curve.at("mean")),        number(curve.at("low")),
+                   number(curve.at("high")),        number(curve.at("share_of_tolerance")),
+                   number(curve.at("residual")),    number(curve.at("allowed_residual")),
+                   curve.at("refused").get<bool>(), curve.at("goes_on").get<bool>()};
+    }
   }
   return each;
 }

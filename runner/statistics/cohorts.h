@@ -25,6 +25,7 @@ class NumberLayout;
 struct Outcome : Observation {
   std::vector<Observation> further{};  // of Target::observables() from the second on, in that order
   std::uint64_t final_state = 0;       // first 16 digits of its SHA-256; 0 if unknown
+  double steps = 0;                    // of the realisation; 0 if unknown
 
   bool is_lost() const { return !has_value(); }
   // Returns the observation of Target::observables()[place]; it has no value if the seed is lost.
@@ -41,6 +42,24 @@ void add(RunningEstimate& known, const Observation& observation);
 std::vector<Estimate> estimates_so_far(std::span<const std::optional<Outcome>> outcomes,
                                        std::size_t observables);
 
+// The curve through the points of a campaign at one of them (curve_fit.h); NaN as long as too few points of
+// the curve are known, or for a mean without a logarithm.
+struct CurveBand {
+  static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  double mean = unknown, low = unknown, high = unknown;  // of the observable
+  double share = unknown;  // larger side of the band over the largest allowed one
+  // Distance of the point's own mean from the curve through the others, in standard deviations, and the
+  // largest allowed one.
+  double residual = unknown, allowed = unknown;
+  bool refused = false;  // a point contradicts the curve, which decides nothing
+  bool goes_on = false;  // the point makes its next stop test in the next round: see curve_stop_tests.h
+
+  bool is_known() const { return !std::isnan(mean); }
+  // True if this point contradicts the curve.
+  bool contradicts() const { return is_known() && !(std::abs(residual) <= allowed); }
+  bool is_met() const { return !refused && share <= 1; }
+};
+
 // The result of a stop test for one observable.
 struct ObservableStopTest {
   std::string observable;
@@ -50,6 +69,15 @@ struct ObservableStopTest {
   double skewness = std::numeric_limits<double>::quiet_NaN();
   bool transient = false, untested = false;  // as in StopTest
   std::optional<Verdict> verdict;            // none if tolerances are only relative to this observable
+  std::optional<CurveBand> curve{};          // if the criterion has one
+
+  // Half-width over the largest allowed one: of the band if it counts and is narrower than the point's own
+  // interval.
+  double smaller_share() const {
+    return curve && curve->is_known() && !curve->refused && !(share <= curve->share) ? curve->share : share;
+  }
+  // True if the point has converged although its own interval is too wide.
+  bool is_decided_by_curve() const { return curve && verdict && is_reached(*verdict) && !(share <= 1); }
 };
 
 // One stop test at a closed cohort. The controlled estimate, of value + control, decides. The coefficient of
@@ -70,15 +98,22 @@ struct StopTest {
   // the seeds that repeat earlier ones (repeated_seeds()).
   bool near_maximum = false;
   std::vector<int> repeated{};
-  // Each observable of a target of several, the leading one first; empty for a single observable.
-  // `transient`, `untested` and `verdict` above are then those of all observables together.
+  // Each observable of a target of several or with a curve, the leading one first; empty for a single
+  // observable. `transient`, `untested` and `verdict` above are then those of all observables together.
   std::vector<ObservableStopTest> each{};
 };
+
+// True if the point has converged although some interval of its own is too wide: curves decide.
+bool is_decided_by_curve(const StopTest& stop_test);
+
+// True if the point is open, and makes no stop test before other points of its curve have made theirs.
+bool waits_for_curve(const StopTest& stop_test);
 
 // Returns StopTest::each, or one element for a target of one observable.
 std::vector<ObservableStopTest> each_of(const StopTest& stop_test, const Target& target);
 
-// Returns the largest half-width over the allowed one of all criteria: met at 1 or less, NaN if unknown.
+// Returns the largest half-width over the allowed one of all criteria: met at 1 or less, NaN if unknown. For
+// a curve it is that of the band, if that is less.
 double largest_share(const StopTest& stop_test, const Target& target);
 
 // Returns the controlled estimates of Target::observables(), in that order.
@@ -108,8 +143,14 @@ double relative_width(const StopTest& stop_test);
 // Returns true if a control variate has changed the mean; not all engines have one.
 bool has_control(const StopTest& stop_test);
 
+// Returns the stop test over the first `seeds` seeds; nothing if one of them has not ended. The rule must be
+// that of the target. It judges the point's own intervals: curves are judged by CurveStopTests.
+std::optional<StopTest> stop_test_over(int seeds, const std::vector<std::optional<Outcome>>& outcomes,
+                                       const Target& target, StopRule& rule);
+
 // Returns all stop tests that the outcomes allow, in order, up to the first that decides (any verdict but
-// `more`). outcomes[s] belongs to seed s. A pure function, by which stored stop tests are checked.
+// `more`). outcomes[s] belongs to seed s. A pure function, by which stored stop tests are checked. The target
+// must have no curve.
 std::vector<StopTest> replay_stop_tests(const std::vector<std::optional<Outcome>>& outcomes,
                                         const Target& target, int minimum, int maximum);
 
@@ -128,6 +169,8 @@ Json stop_test_json(const StopTest& stop_test);
 //   sqrt(m (1 - m) / (n - 1))
 // and a whole number n m of ones; other values hardly ever have both. Repeated values count as equal ones.
 Estimate::Values stored_values(const Estimate& estimate, double half_width);
+
+Json curve_json(const CurveBand& curve);
 
 // Converts StopTest::each to JSON and back. Throws a std::exception for JSON of another form.
 Json observables_json(const StopTest& stop_test);

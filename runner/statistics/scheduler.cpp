@@ -8,8 +8,10 @@
 #include <compare>
 #include <iterator>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <tuple>
+#include <utility>
 
 #include "runner/campaign/number_text.h"
 #include "runner/statistics/forecast.h"
@@ -31,7 +33,7 @@ std::string sum_text(const SummedError& error) {
 }  // namespace
 
 Scheduler::Scheduler(std::vector<std::vector<std::optional<Outcome>>> outcomes, Target target, int minimum,
-                     int maximum)
+                     int maximum, std::vector<Curve> curves)
     : target_(std::move(target)),
       minimum_(minimum),
       maximum_(maximum),
@@ -50,9 +52,19 @@ Scheduler::Scheduler(std::vector<std::vector<std::optional<Outcome>>> outcomes, 
       ++point.all_ended;
       count_in(point, *outcome);
     }
-    stop_test_at(point);
     points_.push_back(std::move(point));
   }
+  for (Curve& curve : curves) {
+    std::vector<int> places;
+    for (const std::size_t place : curve.points) {
+      points_[place].curve = curves_.size();
+      points_[place].member = places.size();
+      places.push_back(static_cast<int>(place));
+    }
+    CurveStopTests stop_tests(curve.axis, target_, minimum_, maximum_);
+    curves_.push_back({std::move(places), std::move(curve.axis), std::move(stop_tests)});
+  }
+  for (int number = 0; number < points(); ++number) stop_test_at(number, false);
 }
 
 Scheduler::Phase& Scheduler::phase_of(SeedId id) {
@@ -71,11 +83,42 @@ void Scheduler::close(Point& point) {
     ++point.closed;
 }
 
-void Scheduler::stop_test_at(Point& point) {
+std::vector<Change> Scheduler::stop_test_at(int number, bool again) {
+  Point& point = point_at(number);
   close(point);
-  point.stop_tests = replay_stop_tests(point.outcomes, target_, minimum_, maximum_);
+  if (point.curve) return stop_test_at(curves_[*point.curve], again);
+  return {take(number, replay_stop_tests(point.outcomes, target_, minimum_, maximum_))};
+}
+
+std::vector<Change> Scheduler::stop_test_at(JointStopTests& curve, bool again) {
+  if (again) curve.stop_tests = CurveStopTests(curve.axis, target_, minimum_, maximum_);
+  std::vector<CurveStopTests::Member> members;
+  for (const int number : curve.points)
+    members.push_back({&point_at(number).outcomes, point_at(number).cancelled});
+  std::vector<std::size_t> changed = curve.stop_tests.advance(members);
+  if (again) {
+    changed.resize(members.size());
+    std::iota(changed.begin(), changed.end(), 0);
+  }
+  std::vector<Change> changes;
+  for (const std::size_t member : changed)
+    changes.push_back(take(curve.points[member], curve.stop_tests.stop_tests(member)));
+  return changes;
+}
+
+Change Scheduler::take(int number, std::vector<StopTest> stop_tests) {
+  Point& point = point_at(number);
+  const Change change{number, point.stop_tests.size(), decides(point.stop_tests)};
+  point.stop_tests = std::move(stop_tests);
   point.expected = expected_seeds(point.stop_tests, target_, minimum_, maximum_);
   point.fall = decides(point.stop_tests) ? 0 : expected_fall(point);
+  return change;
+}
+
+void Scheduler::set_cancelled(int number, bool cancelled) {
+  Point& point = point_at(number);
+  if (std::exchange(point.cancelled, cancelled) == cancelled || !point.curve) return;
+  stop_test_at(curves_[*point.curve], true);
 }
 
 void Scheduler::count_in(Point& point, const Outcome& outcome) {
@@ -95,7 +138,7 @@ bool Scheduler::finished() const {
 
 int Scheduler::stop_test_ahead(const Point& point, int steps) const {
   const std::size_t index = point.stop_tests.size() + static_cast<std::size_t>(steps);
-  return schedule_[std::min(index, schedule_.size() - 1)];
+  return schedule_[std::min(is_waiting(point) ? index - 1 : index, schedule_.size() - 1)];
 }
 
 int Scheduler::wanted(int point) const {
@@ -242,8 +285,8 @@ void Scheduler::give_back(SeedId id) {
   --point_at(id.point).begun;
 }
 
-bool Scheduler::end(SeedId id, const Outcome& outcome) {
-  if (id.seed >= maximum_) return false;
+std::vector<Change> Scheduler::end(SeedId id, const Outcome& outcome) {
+  if (id.seed >= maximum_) return {};
   Phase& phase = phase_of(id);
   Point& point = point_at(id.point);
   if (phase == Phase::waiting) ++point.begun;
@@ -255,15 +298,11 @@ bool Scheduler::end(SeedId id, const Outcome& outcome) {
   if (!had_value) count_in(point, outcome);
   point.all_ended += again ? 0 : 1;
   known = outcome;
-  if (again) {
-    stop_test_at(point);
-    return true;
-  }
-  if (id.seed != point.closed || decides(point.stop_tests)) return false;
+  if (again) return stop_test_at(id.point, true);
+  if (id.seed != point.closed || decides(point.stop_tests)) return {};
   close(point);
-  if (point.closed < stop_test_ahead(point, 0)) return false;
-  stop_test_at(point);
-  return true;
+  if (is_waiting(point) || point.closed < stop_test_ahead(point, 0)) return {};
+  return stop_test_at(id.point, false);
 }
 
 SummedError summed_error(const Scheduler& scheduler) {

@@ -1,9 +1,10 @@
 // Chooses the seed that runs next, and decides when a point is done. Pure: no clock, no process, no database.
 //
-// A point that is neither decided nor cancelled needs the seeds of its next stop test. Points of the highest
-// priority go first; among them the one that the allocation ranks first, then the order of the sweep and of
-// the seeds. If every needed seed runs, workers run ahead with seeds of the stop test after the next one. If
-// the next one decides the point, these are extra seeds and do not count.
+// A point that is neither decided nor cancelled needs the seeds of its next stop test, but for a point of a
+// curve that waits for the others (curve_stop_tests.h). Points of the highest priority go first; among them
+// the one that the allocation ranks first, then the order of the sweep and of the seeds. If every needed seed
+// runs, workers run ahead with seeds of the stop test after the next one. If the next one decides the point,
+// these are extra seeds and do not count.
 //
 // Under a budget no point runs ahead of its next stop test, and a seed is given out only if its expected cost
 // is within the budget left. Under a ceiling only the first seeds of each point are given out.
@@ -18,6 +19,7 @@
 #include <vector>
 
 #include "runner/statistics/cohorts.h"
+#include "runner/statistics/curve_stop_tests.h"
 
 namespace peclet::runner {
 
@@ -43,6 +45,13 @@ enum class Allocation {
   steepest_first
 };
 
+// A point whose stop tests may have changed, and what was known of it before.
+struct Change {
+  int point = 0;
+  std::size_t stop_tests = 0;
+  bool decided = false;
+};
+
 class Scheduler {
  public:
   // The first seeds of `peclet plan --pilot`: they give a mean with an error, and the cost of a seed. The
@@ -50,13 +59,15 @@ class Scheduler {
   static constexpr int seeds_of_pass = 4;
 
   // `outcomes[point][seed]` is known from earlier runs; seeds beyond the end have no outcome.
+  // The curves must be those of a target with a curve, and have each point once.
   Scheduler(std::vector<std::vector<std::optional<Outcome>>> outcomes, Target target, int minimum,
-            int maximum);
+            int maximum, std::vector<Curve> curves = {});
 
   void set_allocation(Allocation allocation) { allocation_ = allocation; }
   void set_priority(int point, int priority) { point_at(point).priority = priority; }
-  // A cancelled point gets no more seeds and delays nothing. Its outcomes stay.
-  void set_cancelled(int point, bool cancelled) { point_at(point).cancelled = cancelled; }
+  // A cancelled point gets no more seeds and delays nothing. Its outcomes stay. Points of its curve that
+  // waited for it do so no longer.
+  void set_cancelled(int point, bool cancelled);
   // Sets the mean cost of a realisation [s]. Until then it follows from the work, at the mean seconds per
   // work of the other points.
   void set_cost(int point, double seconds) { point_at(point).seconds = seconds; }
@@ -83,18 +94,20 @@ class Scheduler {
   // Records that a worker gave the seed back without an outcome; it may be given out again.
   void give_back(SeedId id);
   // Records that the seed has ended, for the first time or again (late result of a quarantined seed). Returns
-  // true if the stop tests of its point may have changed.
-  bool end(SeedId id, const Outcome& outcome);
+  // the points whose stop tests may have changed: its own, or all of its curve.
+  std::vector<Change> end(SeedId id, const Outcome& outcome);
 
   // Returns all stop tests that the outcomes allow. The last one decides unless its verdict is `more`.
   const std::vector<StopTest>& stop_tests(int point) const { return point_at(point).stop_tests; }
   bool decided(int point) const;
   bool cancelled(int point) const { return point_at(point).cancelled; }
+  // True if the point needs no seeds until other points of its curve have made their stop tests.
+  bool is_waiting(int point) const { return is_waiting(point_at(point)); }
   // Returns true if every point is decided or cancelled, or all its seeds below the ceiling have ended.
   bool finished() const;
 
   // Returns the number of seeds of the next stop test, or the ceiling if that is less; for a decided point,
-  // the seeds of the deciding stop test.
+  // the seeds of the deciding stop test, and for a waiting one those of its last stop test.
   int wanted(int point) const;
   // Returns how many of the wanted() seeds have ended.
   int ended(int point) const;
@@ -126,15 +139,30 @@ class Scheduler {
     int priority = 0;
     bool cancelled = false;
     double work = 1;
+    std::optional<std::size_t> curve{};  // with its place in it
+    std::size_t member = 0;
+  };
+  // A curve, and the stop tests of its points.
+  struct JointStopTests {
+    std::vector<int> points;
+    std::vector<double> axis;
+    CurveStopTests stop_tests;
   };
   const Point& point_at(int point) const { return points_[static_cast<std::size_t>(point)]; }
   Point& point_at(int point) { return points_[static_cast<std::size_t>(point)]; }
   // Returns the phase of the seed, for which it makes room. Throws std::out_of_range beyond the maximum.
   Phase& phase_of(SeedId id);
   static void close(Point& point);
-  void stop_test_at(Point& point);
+  // Makes the stop tests of a point; `again` replaces those made.
+  std::vector<Change> stop_test_at(int number, bool again);
+  std::vector<Change> stop_test_at(JointStopTests& curve, bool again);
+  Change take(int number, std::vector<StopTest> stop_tests);
+  bool is_waiting(const Point& point) const {
+    return point.curve && curves_[*point.curve].stop_tests.is_waiting(point.member);
+  }
   static void count_in(Point& point, const Outcome& outcome);
-  // Returns the number of seeds of the next stop test (steps = 0), or of the one `steps` after it.
+  // Returns the number of seeds of the next stop test (steps = 0), or of the one `steps` after it; of a point
+  // that waits, those of the one before.
   int stop_test_ahead(const Point& point, int steps) const;
   bool is_open(const Point& point) const;
   // Returns the mean over the points with a known cost; nothing if there are none.
@@ -164,6 +192,7 @@ class Scheduler {
   std::vector<int> schedule_;
   Allocation allocation_ = Allocation::longest_first;
   std::vector<Point> points_;
+  std::vector<JointStopTests> curves_;
 };
 
 // The report of a run under a budget of processor time.

@@ -89,6 +89,8 @@ class StopRule {
   };
   Judgement judge(int seeds, Estimates estimates);
   bool has_tolerance() const { return has_tolerance_; }
+  // Returns the level of each interval: adjusted_confidence().
+  double confidence() const { return confidence_; }
   // Returns true if each criterion is within its tolerance.
   bool is_met(Estimates estimates);
 

@@ -11,6 +11,7 @@
 
 #include "contract/errors.h"
 #include "contract/frames.h"
+#include "runner/statistics/curve_stop_tests.h"
 #include "runner/statistics/window_advice.h"
 #include "runner/store/number_store.h"
 #include "runner/store/result_store.h"
@@ -130,18 +131,22 @@ void make_again(Database& database, const PointRecord& point, const TargetRecord
 // NaN stands for a number that is undefined or too large.
 bool is_same(double one, double other) { return one == other || (std::isnan(one) && std::isnan(other)); }
 
-bool agree(const std::vector<ObservableStopTest>& stored, const std::vector<ObservableStopTest>& replayed) {
+// A point that waited for its curve may have been decided by results that no owner has booked yet.
+bool agree(const std::vector<ObservableStopTest>& stored, const std::vector<ObservableStopTest>& replayed,
+           bool is_waiting) {
   return std::equal(stored.begin(), stored.end(), replayed.begin(), replayed.end(),
-                    [](const ObservableStopTest& one, const ObservableStopTest& other) {
-                      return one.observable == other.observable && one.verdict == other.verdict &&
+                    [=](const ObservableStopTest& one, const ObservableStopTest& other) {
+                      return one.observable == other.observable &&
+                             (one.verdict == other.verdict || is_waiting) &&
                              one.estimate.count == other.estimate.count &&
                              is_same(one.estimate.mean, other.estimate.mean);
                     });
 }
 
 bool agrees(const StopTest& stored, const StopTest& replayed) {
-  return agree(stored.each, replayed.each) && stored.seeds == replayed.seeds &&
-         stored.lost == replayed.lost && stored.verdict == replayed.verdict &&
+  const bool is_waiting = waits_for_curve(stored);
+  return agree(stored.each, replayed.each, is_waiting) && stored.seeds == replayed.seeds &&
+         stored.lost == replayed.lost && (stored.verdict == replayed.verdict || is_waiting) &&
          stored.estimate.count == replayed.estimate.count &&
          (stored.estimate.count == 0 || (is_same(stored.estimate.mean, replayed.estimate.mean) &&
                                          is_same(stored.controlled.mean, replayed.controlled.mean)));
@@ -193,7 +198,10 @@ std::vector<PointSummary> summarise_points(Database& database, const TargetRecor
     summary.decided = !summary.stop_tests.empty() && summary.stop_tests.back().verdict != Verdict::more;
     if (target.target.has_tolerance() && summary.decided && earlier[point.id] > seen)
       summary.earlier_stop_test = earlier[point.id];
-    summary.wanted = summary.decided ? seen : *std::upper_bound(schedule.begin(), schedule.end() - 1, seen);
+    summary.waits = !summary.stop_tests.empty() && waits_for_curve(summary.stop_tests.back());
+    summary.wanted = summary.decided || summary.waits
+                         ? seen
+                         : *std::upper_bound(schedule.begin(), schedule.end() - 1, seen);
     if (const auto known = predictions.find(point.id); known != predictions.end()) {
       summary.prediction = known->second;
     }
@@ -228,17 +236,43 @@ std::vector<PointForecast> forecasts_of(Database& database, const std::vector<Po
   return forecasts;
 }
 
-std::optional<StopTest> checked_stop_test(Database& database, const PointRecord& point,
-                                          const TargetRecord& target) {
-  const std::vector<StopTestRecord> stored = database.stop_tests(point.id);
-  const std::vector<StopTest> replayed =
-      replay_stop_tests(database.outcomes(point.id), target.target, target.minimum, target.maximum);
+StopTestCheck::StopTestCheck(Database& database) : database_(database) {
+  const CampaignRecord campaign = database.campaign();
+  target_ = campaign.target;
+  curves_ = curves_of(campaign.document, target_.target);
+}
+
+std::vector<StopTest> StopTestCheck::replayed(const PointRecord& point) {
+  if (curves_.empty())
+    return replay_stop_tests(database_.outcomes(point.id), target_.target, target_.minimum, target_.maximum);
+  if (!of_curves_.contains(*point.place)) {
+    const auto place = static_cast<std::size_t>(*point.place);
+    const Curve& curve = *std::ranges::find_if(curves_, [&](const Curve& each) {
+      return std::ranges::find(each.points, place) != each.points.end();
+    });
+    const std::vector<PointRecord> points = database_.points();
+    std::vector<std::vector<std::optional<Outcome>>> outcomes;
+    std::vector<CurveStopTests::Member> members;
+    for (const std::size_t number : curve.points) outcomes.push_back(database_.outcomes(points[number].id));
+    for (std::size_t i = 0; i < outcomes.size(); ++i)
+      members.push_back({&outcomes[i], points[curve.points[i]].cancelled});
+    CurveStopTests made(curve.axis, target_.target, target_.minimum, target_.maximum);
+    made.advance(members);
+    for (std::size_t i = 0; i < members.size(); ++i)
+      of_curves_[static_cast<int>(curve.points[i])] = made.stop_tests(i);
+  }
+  return of_curves_.at(*point.place);
+}
+
+std::optional<StopTest> StopTestCheck::last(const PointRecord& point) {
+  const std::vector<StopTestRecord> stored = database_.stop_tests(point.id);
+  const std::vector<StopTest> replayed = this->replayed(point);
   // An owner that was killed after a result may have left fewer stop tests than the results allow.
   for (std::size_t i = 0; i < stored.size(); ++i) {
     if (i < replayed.size() && agrees(stored[i].stop_test, replayed[i])) continue;
     throw IntegrityError(fmt::format(
         "{}: the stored stop test at {} seeds of {} is not what the stored results say; see `peclet doctor`",
-        database.connection().path(), stored[i].stop_test.seeds, point.label));
+        database_.connection().path(), stored[i].stop_test.seeds, point.label));
   }
   if (stored.empty()) return std::nullopt;
   StopTest stop_test = stored.back().stop_test;

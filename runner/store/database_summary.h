@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "runner/campaign/campaign.h"
 #include "runner/store/database.h"
 
 namespace peclet::runner {
@@ -40,6 +41,7 @@ struct PointSummary {
   double confidence = 0.95;                     // requested level
   std::vector<std::string> without_interval{};  // observables of the last stop test
   bool decided = false;
+  bool waits = false;                 // for other points of its curve
   std::vector<SetAside> set_aside{};  // results of other engines
   int wanted = 0;                     // seeds of the next stop test, or of the deciding one
   int wanted_ended = 0;               // how many of these have ended
@@ -62,10 +64,24 @@ std::vector<PointSummary> summarise_points(Database& database, const TargetRecor
 // Returns the cost and the estimates of the seeds of these points, for time_to_go().
 std::vector<PointForecast> forecasts_of(Database& database, const std::vector<PointSummary>& points);
 
-// Returns the last stop test at a point for the present target, checked by replaying it; nothing before the
-// first. Throws IntegrityError if the stored stop tests do not follow from the stored results.
-std::optional<StopTest> checked_stop_test(Database& database, const PointRecord& point,
-                                          const TargetRecord& target);
+// Checks the stored stop tests for the present target by replaying them.
+class StopTestCheck {
+ public:
+  // The database must outlive it, and must not change meanwhile.
+  explicit StopTestCheck(Database& database);
+
+  // Returns the last stop test at a point of the sweep; nothing before the first. Throws IntegrityError if
+  // the stored stop tests do not follow from the stored results.
+  std::optional<StopTest> last(const PointRecord& point);
+  // Returns all stop tests that the stored results allow.
+  std::vector<StopTest> replayed(const PointRecord& point);
+
+ private:
+  Database& database_;
+  TargetRecord target_;
+  std::vector<Curve> curves_;
+  std::map<int, std::vector<StopTest>> of_curves_{};  // by place, once the curve has been replayed
+};
 
 // Queries of `peclet doctor` for contradictions in a database.
 //

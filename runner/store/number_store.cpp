@@ -59,8 +59,10 @@ ResultNumbers numbers_of(const Json& result, const std::vector<std::string>& obs
   const NumberLayout layout(result, observables);
   const std::vector<double> numbers = layout.numbers(result);
   const Json& state = result.at("final_state_sha256");
-  return {layout.text(), text_of(numbers),
-          outcome_of(layout, numbers, state.is_string() ? state.get<std::string>() : "")};
+  Outcome outcome = outcome_of(layout, numbers, state.is_string() ? state.get<std::string>() : "");
+  for (const char* const phase : {"equilibration", "production"})
+    outcome.steps += result.value("steps", Json::object()).value(phase, 0.0);
+  return {layout.text(), text_of(numbers), std::move(outcome)};
 }
 
 void store_numbers(Connection& connection, std::int64_t point, int seed, const ResultNumbers& numbers) {
@@ -108,7 +110,8 @@ void NumberStore::for_each(std::int64_t point, int end, const Visit& visit) {
 std::vector<std::optional<Outcome>> NumberStore::outcomes(std::int64_t point) {
   Statement query(
       connection_,
-      "SELECT seed, layout_id, numbers, final_state_sha256 FROM realisation LEFT JOIN numbers USING "
+      "SELECT seed, layout_id, numbers, final_state_sha256, coalesce(equilibration_steps, 0) + "
+      "coalesce(production_steps, 0) FROM realisation LEFT JOIN numbers USING "
       "(point_id, seed) WHERE point_id = ? AND seed < ? AND state IN ('done', 'failed', 'quarantined') ORDER "
       "BY seed",
       point, most_realisations);
@@ -121,6 +124,7 @@ std::vector<std::optional<Outcome>> NumberStore::outcomes(std::int64_t point) {
     const NumberLayout& about = layout(query.integer(1));
     read(about, seed, query.text(2));
     outcomes.back() = outcome_of(about, numbers_, query.text(3));
+    outcomes.back()->steps = query.real(4);
   }
   return outcomes;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "runner/store/database_summary.h"
 #include "runner/store/point_store.h"
 #include "runner/store/result_store.h"
 #include "runner/store/seed_store.h"
@@ -32,9 +33,12 @@ void StoredCampaign::store(int point, const Json& result) {
 }
 
 void StoredCampaign::store_stop_tests(int point) {
-  ResultStore(database_).store_stop_tests(
-      id(point), replay_stop_tests(database_.outcomes(id(point)), campaign_.target,
-                                   campaign_.minimum_realisations, campaign_.maximum_realisations));
+  StopTestCheck check(database_);
+  for (const PointRecord& record : database_.points()) {
+    // The stop tests of a curve are made together.
+    if (*record.place == point || !campaign_.curves.empty())
+      ResultStore(database_).store_stop_tests(record.id, check.replayed(record));
+  }
 }
 
 void StoredCampaign::set_tolerance(double tolerance) {

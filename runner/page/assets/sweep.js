@@ -168,6 +168,7 @@ class Sweep {
           y,
           half,
           allowed: point.good_enough[path],
+          curve: point.curve[path],
           kind,
           point: i,
           text: `${point.label}${terms ? `, ${term(index)}` : ''}: ${number} (${Format.counted(count, 'seed')}, ${state})`,
@@ -208,7 +209,8 @@ class Sweep {
           ? [...series.values()].map((one) => (stacked && one.series !== total ? { ...one, kind: 'column' } : one))
           : [],
       kinds: [...kinds],
-      hasBand: marks.some((mark) => Format.isNumber(mark.allowed)),
+      hasBand: marks.some((mark) => mark.curve || Format.isNumber(mark.allowed)),
+      bandName: marks.some((mark) => mark.curve) ? 'band of the curve' : 'tolerance',
       table: {
         columns: ['label', ...this.parameters.map((one) => one.pointer || 'point'), 'quantity', 'mean', 'standard_error',
           'half_width', 'count', 'state'],
@@ -283,9 +285,11 @@ class Sweep {
         .sort((a, b) => a.x - b.x);
       const places = marks.map((mark) => [mark.x, mark.y]);
       if (places.length > 1) panel.lines.push({ series: place, style: 'guide', places });
-      const banded = marks
-        .filter((mark) => Format.isNumber(mark.allowed))
-        .map((mark) => [mark.x, mark.y - mark.allowed, mark.y + mark.allowed]);
+      const curved = marks.filter((mark) => mark.curve).map((mark) => [mark.x, mark.curve.low, mark.curve.high]),
+        allowed = marks
+          .filter((mark) => Format.isNumber(mark.allowed))
+          .map((mark) => [mark.x, mark.y - mark.allowed, mark.y + mark.allowed]);
+      const banded = panel.marks.some((mark) => mark.curve) ? curved : allowed;
       if (banded.length) panel.bands.push({ series: place, places: banded });
     }
   }

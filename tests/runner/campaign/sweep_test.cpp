@@ -78,6 +78,19 @@ TEST(Sweep, EqualLastStepsAndBareIndicesAreLabelledWithTheWholePointer) {
   EXPECT_EQ(labels(R"([{"set": "/species/0", "values": [{"radius": 3}]}])")[0], "/species/0={\"radius\":3}");
 }
 
+TEST(Sweep, HasACurveForEachValueOfTheOtherEntries) {
+  const std::vector<SweepEntry> sweep = read_sweep(Json::parse(R"([
+      {"set": "/a", "values": [10, 20]}, {"set": ["/x", "/w"], "values": [[4, 0], [1, 0], [2, 1], [3, 1]]},
+      {"set": "/b", "values": ["p", "q"]}])"),
+                                                   "f");
+  const std::vector<Curve> curves = curves_over("/x", sweep, "f", "/target/curve/over");
+  ASSERT_EQ(curves.size(), 4);
+  EXPECT_EQ(curves[0].points, (std::vector<std::size_t>{0, 2, 4, 6}));
+  EXPECT_EQ(curves[0].axis, (std::vector<double>{4, 1, 2, 3}));
+  EXPECT_EQ(curves[1].points, (std::vector<std::size_t>{1, 3, 5, 7}));
+  EXPECT_EQ(curves[3].points, (std::vector<std::size_t>{9, 11, 13, 15}));
+}
+
 TEST(Sweep, LongValuesAreLabelledByTheirPlace) {
   EXPECT_EQ(labels(R"([{"set": "/lubrication", "values": [
                        {"form": "kim-karrila", "inner_gap": 0.001}, {"form": "kim-karrila", "inner_gap": 0.01}]}])"),

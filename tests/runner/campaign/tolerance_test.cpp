@@ -38,7 +38,9 @@ TEST(Tolerance, OfASmallMeanHasAFloor) {
 TEST(Tolerance, IsWrittenAsItIsRead) {
   for (const char* const text : {R"({"relative_tolerance":0.05})", R"({"absolute_tolerance":12.5})",
                                  R"({"relative_to":"pressure","relative_tolerance":0.05})",
-                                 R"({"absolute_floor":0.1,"relative_tolerance":0.05})"}) {
+                                 R"({"absolute_floor":0.1,"relative_tolerance":0.05})",
+                                 R"({"curve":{"over":"/peclet","relative_tolerance":0.05}})",
+                                 R"({"curve":{"even":true,"over":"/peclet","relative_tolerance":0.05}})"}) {
     EXPECT_EQ(to_json(tolerance_of(Json::parse(text))).dump(), text);
   }
   EXPECT_EQ(to_string(Tolerance(0.05)), "5 %");
@@ -47,6 +49,9 @@ TEST(Tolerance, IsWrittenAsItIsRead) {
   EXPECT_THROW(tolerance_of(Json::parse(R"({"absolute_tolerance": "wide"})")), Json::exception);
   const Json measured = Json::parse(R"({"relative_to":"pressure","relative_tolerance":0.05})");
   EXPECT_EQ(to_string(tolerance_of(measured)), "5 % of pressure");
+  const Json along = Json::parse(R"({"curve":{"over":"/peclet","relative_tolerance":0.05}})");
+  EXPECT_EQ(to_string(tolerance_of(along)), "5 % along /peclet");
+  EXPECT_STREQ(key_of(tolerance_of(along)), "curve/relative_tolerance");
 }
 
 }  // namespace

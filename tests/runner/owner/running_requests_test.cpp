@@ -151,6 +151,17 @@ TEST(Set, RefusesAFaultWithNothingWritten) {
   EXPECT_EQ(campaign.count("SELECT count(*) FROM event WHERE request IS NOT NULL"), 0);
 }
 
+TEST(Set, ChangesTheToleranceOfACurve) {
+  CampaignOnDisk campaign(4);
+  campaign.document["target"] = Json::parse(R"({"curve": {"over": "/peclet", "relative_tolerance": 0.2}})");
+  ASSERT_EQ(campaign.run(), 0) << campaign.log();
+  set(campaign, [](SetOptions& options) { options.tolerance = 0.06; });
+  campaign.document["target"]["curve"]["relative_tolerance"] = 0.06;
+  EXPECT_EQ(read_json(campaign.options.campaign), campaign.document);
+  ASSERT_EQ(campaign.run(), 0) << campaign.log();
+  EXPECT_EQ(canonical(campaign), undisturbed(campaign.document, {}));
+}
+
 TEST(Set, SaysWhichOptionAnAbsoluteToleranceTakes) {
   CampaignOnDisk campaign;
   campaign.document["target"].erase("relative_tolerance");

@@ -106,7 +106,7 @@ void simulate_together(int pilot, double tolerance, unsigned start, Tally& tally
   constexpr int maximum = 4000;
   std::mt19937_64 random(start);
   std::uniform_real_distribution<double> uniform(0, 1);
-  Campaign campaign{"", {}, {}, {"relative_viscosity", tolerance, confidence}, minimum, maximum, {}};
+  Campaign campaign{"", {}, {}, {}, {"relative_viscosity", tolerance, confidence}, minimum, maximum, {}};
   std::map<std::string, PointHistory> known;
   int actual = 0;
   for (int point = 0; point < points_together; ++point) {

@@ -101,10 +101,10 @@ TEST(Scheduler, TestsOnlyClosedCohorts) {
   Scheduler scheduler = fresh(1);
   for (int i = 0; i < 5; ++i) take(scheduler);
   for (const int seed : {4, 3, 2, 1}) {
-    EXPECT_FALSE(scheduler.end({0, seed}, steady_outcome(seed)));
+    EXPECT_TRUE(scheduler.end({0, seed}, steady_outcome(seed)).empty());
     EXPECT_TRUE(scheduler.stop_tests(0).empty());
   }
-  EXPECT_TRUE(scheduler.end({0, 0}, steady_outcome(0)));
+  EXPECT_FALSE(scheduler.end({0, 0}, steady_outcome(0)).empty());
   ASSERT_EQ(scheduler.stop_tests(0).size(), 1U);
   EXPECT_EQ(scheduler.stop_tests(0)[0].seeds, 4);  // seed 4 is extra
   EXPECT_TRUE(scheduler.finished());
@@ -167,7 +167,7 @@ TEST(Scheduler, ALateResultOfALostSeedRepeatsTheStopTest) {
     scheduler.end({0, seed}, seed == 2 ? Outcome{} : steady_outcome(seed));
   }
   EXPECT_EQ(scheduler.stop_tests(0).back().verdict, Verdict::converged_with_losses);
-  EXPECT_TRUE(scheduler.end({0, 2}, steady_outcome(2)));
+  EXPECT_FALSE(scheduler.end({0, 2}, steady_outcome(2)).empty());
   EXPECT_EQ(scheduler.stop_tests(0).back().verdict, Verdict::converged);
 }
 
