@@ -14,6 +14,7 @@
 #include "runner/page/supplement.h"
 #include "runner/reports/explain.h"
 #include "runner/reports/export.h"
+#include "runner/reports/next.h"
 #include "runner/reports/status.h"
 #include "runner/store/locks.h"
 
@@ -398,6 +399,38 @@ one of them is missing, the verb exits with 1 and says what is missing and which
   add_json(verb, options->json);
 }
 
+void show_next(const NextOptions& options) {
+  const NextAnswer answer = propose_next(options);
+  print(answer.text);
+  if (!answer.message.empty()) say(answer.message);
+}
+
+void add_next(VerbSet& verbs) {
+  const auto [verb, options] = verbs.add<NextOptions>(
+      show_next, "next", "Say which seeds would lower the largest error of a curve most", {0, 1, 2, 6}, R"(
+For a campaign whose target has a curve. Looks at the band between the points, too, and proposes new values of
+the axis, or more seeds of old points, until the band is within the tolerance everywhere. Each step lowers the
+band where it is widest by the seeds that do so most for their processor time. Spread and cost of a seed at a
+new value are those between its neighbours. The proposal follows from the stored results alone.
+
+More seeds at points that have met the tolerance are asked for by a smaller tolerance. Points that have been
+run are not run again.
+
+  peclet next flow-curve.json
+  # a campaign file with points for an hour of processor time
+  peclet next flow-curve.json --budget 3600 --write next.json
+)");
+  add_campaign(verb, *options);
+  add_number(verb, "--budget SECONDS", options->budget, number_above(0),
+             "Processor time for each curve; without it, as much as the tolerance takes");
+  add_number(verb, "--points NUMBER", options->points, whole_number(0, 1000),
+             "New points of each curve, at most")
+      ->capture_default_str();
+  add_option(verb, "--write FILE", options->write,
+             "New campaign file with the proposed points; a file that is there is never replaced");
+  add_json(verb, options->json);
+}
+
 }  // namespace
 
 void add_viewing_verbs(VerbSet& verbs) {
@@ -411,6 +444,7 @@ void add_viewing_verbs(VerbSet& verbs) {
   add_serve(verbs);
   add_plot(verbs);
   add_jamming(verbs);
+  add_next(verbs);
 }
 
 }  // namespace peclet::runner

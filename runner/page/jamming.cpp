@@ -18,6 +18,7 @@
 #include "runner/engines/engine_process.h"
 #include "runner/owner/open_campaign.h"
 #include "runner/page/swept.h"
+#include "runner/reports/proposed_file.h"
 #include "runner/statistics/cohorts.h"
 #include "runner/store/campaign_directory.h"
 
@@ -138,28 +139,6 @@ void check_usage(const JammingOptions& options) {
   if (!options.write.empty()) throw InputError("", "", "--write", "is for --propose");
 }
 
-// Throws InputError if the file exists or cannot be written. Called before any work is done.
-void check_new_file(const fs::path& file) {
-  if (file.empty()) return;
-  if (fs::symlink_status(file).type() != fs::file_type::not_found) {
-    throw InputError(file.string(), "", "--write",
-                     "is there already, and is never replaced: name another file");
-  }
-  check_output(file);
-}
-
-// The campaign file as its author wrote it or, if there is none, as it was last run.
-struct Source {
-  fs::path file;
-  std::string text;
-};
-
-Source source_of(const JammingOptions& options, const CampaignRecord& campaign) {
-  const fs::path file = campaign_file_of(options.campaign);
-  if (fs::is_regular_file(file)) return {file, read_input(file)};
-  return {options.campaign, campaign.document.dump(2) + '\n'};
-}
-
 Json json_or_null(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
 
 // Returns the document that the script reads: the curves and the options. `sweep` is for proposals.
@@ -201,16 +180,6 @@ Json fitted(const Json& document) {
                   fmt::join(command, " "), said.complaint()));
 }
 
-// Writes the campaign file with this sweep and returns a message. Throws InputError if it would be invalid.
-std::string write_campaign(const fs::path& written, const std::string& source, const Json& sweep,
-                           const CampaignDirectory& directory) {
-  const std::string text = with_value(source, {"sweep"}, sweep);
-  parse_campaign(parse_json_input(text, written.string()), written.string());
-  write_durably(written, text);
-  return fmt::format("wrote {0}; `peclet run {1} --directory {2}` adds its points to the campaign\n",
-                     written.string(), shell_word(written.string()), shell_word(directory.root().string()));
-}
-
 }  // namespace
 
 JammingAnswer find_jamming(const JammingOptions& options) {
@@ -219,10 +188,10 @@ JammingAnswer find_jamming(const JammingOptions& options) {
   OpenCampaign open = open_campaign(options.campaign, options.directory);
   const CampaignRecord campaign = open.database.campaign();
   const Json curves = read_curves(open.database, options.curves);
-  Source source;
+  CampaignSource source;
   Json sweep = Json::array();
   if (options.propose) {
-    source = source_of(options, campaign);
+    source = source_of(options.campaign, campaign);
     sweep = parse_json_input(source.text, source.file.string()).value("sweep", sweep);
   }
   const Json found = fitted(document_of(options, curves, sweep));
@@ -236,7 +205,8 @@ JammingAnswer find_jamming(const JammingOptions& options) {
     answer.message = fmt::format("note: {}\n", note);
   }
   if (!options.write.empty() && found.at("sweep").is_array()) {
-    answer.message += write_campaign(options.write, source.text, found["sweep"], open.directory);
+    answer.message +=
+        write_proposed(options.write, with_value(source.text, {"sweep"}, found["sweep"]), open.directory);
   }
   return answer;
 }

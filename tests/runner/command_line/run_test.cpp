@@ -103,8 +103,8 @@ TEST_P(FailuresInARun, AreCountedByCauseAndNeverWithTheSeedThatWaits) {
 const auto jobs_of_workers = [](const auto& ahead) { return ahead.param ? "two_jobs" : "one_job"; };
 INSTANTIATE_TEST_SUITE_P(WithWorkersThatHave, FailuresInARun, testing::Bool(), jobs_of_workers);
 
-// Kills a campaign of this many points five times, after so many more results each, and expects the answer of
-// one that was left alone. Seeds from `held` on do not end before the last kill.
+// Kills a campaign of this many points five times, after `results` more results each, and expects the answer
+// of one that was left alone. Seeds from `held` on do not end before the last kill.
 void expect_no_trace_of_kills(int points, const Json& target, int held, int results,
                               const Environment& environment) {
   CampaignOnDisk undisturbed(points);

@@ -1,0 +1,28 @@
+// Writes a campaign file with points that a verb proposes.
+#pragma once
+
+#include <string>
+
+#include "runner/campaign/paths.h"
+#include "runner/store/campaign_directory.h"
+#include "runner/store/database.h"
+
+namespace peclet::runner {
+
+// The campaign file as its author wrote it or, if there is none, as it was last run.
+struct CampaignSource {
+  fs::path file;
+  std::string text;
+};
+// `given` is the file or folder by which the campaign was named.
+CampaignSource source_of(const fs::path& given, const CampaignRecord& campaign);
+
+// Throws InputError at --write if the file exists or cannot be written; does nothing for "". Called before
+// any work is done.
+void check_new_file(const fs::path& file);
+
+// Writes the text as the campaign file `file` and returns a message. Throws InputError if it would be
+// invalid.
+std::string write_proposed(const fs::path& file, const std::string& text, const CampaignDirectory& directory);
+
+}  // namespace peclet::runner

@@ -1,0 +1,54 @@
+// Proposes the seeds that lower the largest error of a curve most for their processor time: at new places of
+// the axis, or at points that are there.
+//
+// The curve is looked at on its points and three places between neighbours. One step after the other, the
+// largest half-width of the band is found, and that place or point is taken which lowers the variance there
+// most per second. A new point gets the seeds of a first stop test, an old one those of its next stop test.
+// The mean is assumed to stay as it is. Spread and cost of a seed between points follow from those of the
+// neighbours, by their logarithms. Of equal gains the smaller axis counts. The proposal depends on its
+// numbers alone.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "runner/statistics/curve_fit.h"
+
+namespace peclet::runner {
+
+// A point of the curve as it stands.
+struct KnownOnCurve {
+  CurveFit::Datum datum;
+  int seeds = 0;       // of its last stop test
+  double seconds = 0;  // processor time of a seed
+};
+
+struct CurveProposal {
+  double axis = 0;
+  bool is_new = false;
+  int from = 0, to = 0;  // seeds before and after
+  double seconds = 0;    // processor time of these
+  double width = 0;      // largest relative half-width of the band afterwards
+  double widest_at = 0;  // where that was before
+};
+
+struct ProposalBounds {
+  double width = 0;                 // ends where the largest relative half-width is not above it
+  std::optional<double> seconds{};  // processor time of all proposals
+  int new_points = 0;               // at most
+  int steps = 100;                  // at most
+};
+
+struct CurvePlan {
+  double width = 0;  // largest relative half-width of the band before
+  double at = 0;     // where
+  std::vector<CurveProposal> proposals{};
+  double width_at_points = 0;  // largest relative half-width at points, old and new, afterwards
+};
+
+// Requires CurveFit::fewest_points, and positive costs. `schedule` has the seeds of the stop tests;
+// `confidence` is the level of the band.
+CurvePlan plan_curve(const std::vector<KnownOnCurve>& points, bool is_even, const std::vector<int>& schedule,
+                     double confidence, const ProposalBounds& bounds);
+
+}  // namespace peclet::runner
