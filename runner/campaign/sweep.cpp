@@ -308,9 +308,10 @@ std::vector<Curve> curves_over(const std::string& over, const std::vector<SweepE
     const std::string where = fmt::format("/sweep/{}/values/{}", entry, axis.size());
     if (!value.is_number())
       throw InputError(file, where, shortened(value), "must be a number: it is the axis of curves");
-    if (std::ranges::find(axis, value.get<double>()) != axis.end())
+    if (std::ranges::find(axis, value.get<double>()) != axis.end()) {
       throw InputError(file, where, shortened(value),
                        "must differ from the others: it is the axis of curves");
+    }
     axis.push_back(value.get<double>());
   }
   if (axis.size() < fewest_of_curve) {
@@ -328,6 +329,7 @@ std::vector<Curve> curves_over(const std::string& over, const std::vector<SweepE
     curve.axis.push_back(axis[row]);
   }
   std::vector<Curve> all;
+  all.reserve(curves.size());
   for (auto& [others, curve] : curves) all.push_back(std::move(curve));
   return all;
 }

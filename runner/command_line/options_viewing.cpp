@@ -411,7 +411,8 @@ void add_next(VerbSet& verbs) {
 For a campaign whose target has a curve. Looks at the band between the points, too, and proposes new values of
 the axis, or more seeds of old points, until the band is within the tolerance everywhere. Each step lowers the
 band where it is widest by the seeds that do so most for their processor time. Spread and cost of a seed at a
-new value are those between its neighbours. The proposal follows from the stored results alone.
+new value are those between its neighbours. The proposal follows from the stored results alone. Few points at a
+time cost least: run them, and ask again.
 
 More seeds at points that have met the tolerance are asked for by a smaller tolerance. Points that have been
 run are not run again.
@@ -424,7 +425,7 @@ run are not run again.
   add_number(verb, "--budget SECONDS", options->budget, number_above(0),
              "Processor time for each curve; without it, as much as the tolerance takes");
   add_number(verb, "--points NUMBER", options->points, whole_number(0, 1000),
-             "New points of each curve, at most")
+             "New points of each curve, at most; 0: more seeds at old points only")
       ->capture_default_str();
   add_option(verb, "--write FILE", options->write,
              "New campaign file with the proposed points; a file that is there is never replaced");

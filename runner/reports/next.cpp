@@ -72,8 +72,8 @@ Planned planned(const Curve& curve, const std::vector<PointSummary>& points, con
                 const NextOptions& options) {
   Planned made{name_of(curve, points)};
   std::vector<KnownOnCurve> known = known_on(curve, points);
-  std::vector<CurveFit::Datum> data;
-  for (const KnownOnCurve& point : known) data.push_back(point.datum);
+  std::vector<CurveFit::Datum> data(known.size());
+  std::ranges::transform(known, data.begin(), &KnownOnCurve::datum);
   const bool is_even = target.target.tolerance.is_even;
   if (is_even && !CurveFit::serves_as_anchor(data))
     std::erase_if(known, [](const KnownOnCurve& point) { return point.datum.axis == 0; });

@@ -11,7 +11,7 @@ namespace peclet::runner {
 struct NextOptions {
   fs::path campaign, directory;
   std::optional<double> budget;  // processor time for each curve [s]
-  int points = 12;               // new points of each curve, at most
+  int points = 2;                // new points of each curve, at most; 0: more seeds at old points only
   fs::path write;                // campaign file with the proposed points; "": none
   bool json = false;
 };

@@ -162,10 +162,11 @@ std::vector<std::string> reservations(const PointSummary& point) {
     };
     if (is_decided_by_curve(last)) found.emplace_back("by-curve");
     if (point.waits) found.emplace_back("waits-for-curve");
-    if (any([](const ObservableStopTest& one) { return one.curve->contradicts(); }))
+    if (any([](const ObservableStopTest& one) { return one.curve->contradicts(); })) {
       found.emplace_back("off-curve");
-    else if (any([](const ObservableStopTest& one) { return one.curve->refused; }))
+    } else if (any([](const ObservableStopTest& one) { return one.curve->refused; })) {
       found.emplace_back("curve-refused");
+    }
   }
   if (point.earlier_stop_test > 0) found.emplace_back("earlier-stop-test");
   for (const auto& [code, count] : point.flags) {

@@ -59,11 +59,11 @@ std::vector<Place> places_of(std::vector<KnownOnCurve> points, bool is_even) {
 
 CurvePlan plan_curve(const std::vector<KnownOnCurve>& points, bool is_even, const std::vector<int>& schedule,
                      double confidence, const ProposalBounds& bounds) {
-  std::vector<CurveFit::Datum> data;
-  for (const KnownOnCurve& point : points) data.push_back(point.datum);
+  std::vector<CurveFit::Datum> data(points.size());
+  std::ranges::transform(points, data.begin(), &KnownOnCurve::datum);
   std::vector<Place> places = places_of(points, is_even);
-  std::vector<double> axes;
-  for (const Place& place : places) axes.push_back(place.axis);
+  std::vector<double> axes(places.size());
+  std::ranges::transform(places, axes.begin(), &Place::axis);
   CurveFit::Outlook outlook = CurveFit(data, is_even).outlook(axes);
   const double normal = boost::math::quantile(boost::math::normal(), (1 + confidence) / 2);
   const auto width_at = [&](Eigen::Index place) {
@@ -87,7 +87,7 @@ CurvePlan plan_curve(const std::vector<KnownOnCurve>& points, bool is_even, cons
     for (std::size_t k = 0; k < places.size(); ++k) {
       const Place& place = places[k];
       const int more = seeds_after(place) - place.seeds;
-      if (more <= 0 || (place.is_new && place.seeds == 0 && new_points == bounds.new_points)) continue;
+      if (more <= 0 || (place.is_new && bounds.new_points == 0)) continue;
       if (bounds.seconds && seconds + more * place.seconds > *bounds.seconds) continue;
       const double gain = outlook.gain(k, place.variance / more)[worst] / (more * place.seconds);
       if (gain > most) {
@@ -95,11 +95,12 @@ CurvePlan plan_curve(const std::vector<KnownOnCurve>& points, bool is_even, cons
         best = k;
       }
     }
-    if (!best) break;
+    const auto is_further = [&](const Place& place) { return place.is_new && place.seeds == 0; };
+    if (!best || (is_further(places[*best]) && new_points == bounds.new_points)) break;
     Place& chosen = places[*best];
     const int after = seeds_after(chosen), more = after - chosen.seeds;
     const double widest_at = axes[static_cast<std::size_t>(worst)];
-    new_points += chosen.is_new && chosen.seeds == 0 ? 1 : 0;
+    new_points += is_further(chosen) ? 1 : 0;
     outlook.take(*best, chosen.variance / more);
     seconds += more * chosen.seconds;
     worst = widest();

@@ -35,7 +35,7 @@ struct CurveProposal {
 struct ProposalBounds {
   double width = 0;                 // ends where the largest relative half-width is not above it
   std::optional<double> seconds{};  // processor time of all proposals
-  int new_points = 0;               // at most
+  int new_points = 0;               // ends before the next one; 0: more seeds at old points only
   int steps = 100;                  // at most
 };
 

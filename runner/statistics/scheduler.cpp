@@ -101,6 +101,7 @@ std::vector<Change> Scheduler::stop_test_at(JointStopTests& curve, bool again) {
     std::iota(changed.begin(), changed.end(), 0);
   }
   std::vector<Change> changes;
+  changes.reserve(changed.size());
   for (const std::size_t member : changed)
     changes.push_back(take(curve.points[member], curve.stop_tests.stop_tests(member)));
   return changes;

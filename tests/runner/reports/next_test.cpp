@@ -21,6 +21,7 @@ class Next : public ::testing::Test {
   Json json() {
     NextOptions options;
     options.json = true;
+    options.points = 12;
     return Json::parse(next(options).text);
   }
   StoredCampaign campaign_{curve_campaign()};
