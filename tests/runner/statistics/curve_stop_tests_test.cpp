@@ -34,12 +34,14 @@ Outcomes outcomes(std::size_t point, double mean, double spread, int count = max
 // Returns the outcomes of a curve that is constant but for one point.
 std::vector<Outcomes> curve(double spread, double at_one = 5, std::size_t one = 3) {
   std::vector<Outcomes> all;
+  all.reserve(axis.size());
   for (std::size_t i = 0; i < axis.size(); ++i) all.push_back(outcomes(i, i == one ? at_one : 5, spread));
   return all;
 }
 
 std::vector<CurveStopTests::Member> members(const std::vector<Outcomes>& all) {
   std::vector<CurveStopTests::Member> found;
+  found.reserve(all.size());
   for (const Outcomes& of_point : all) found.push_back({&of_point});
   return found;
 }
@@ -200,7 +202,7 @@ Scheduler fresh() {
 TEST(CurveStopTests, DoNotDependOnTheOrderOfTheResults) {
   const std::vector<Outcomes> all = curve(0.2);
   Json first;
-  for (const std::size_t workers : {1, 3, 20}) {
+  for (const std::size_t workers : {1U, 3U, 20U}) {
     Scheduler scheduler = fresh();
     std::mt19937_64 random(workers);
     std::vector<SeedId> running;
