@@ -339,11 +339,15 @@ Json target_hints(const Scene& scene) {
                                                             {"G''", "loss_modulus"},
                                                             {"shear_stress", "stress/total/3"}};
   Json hints = Json::object();
+  const std::vector<Quantity> always = StressMeans(scene).quantities();
   for (const ObservableKind& kind : observable_kinds()) {
     if (scene.observables.contains(kind.name)) continue;
     const std::string hint = fmt::format("needs \"observables\": [\"{}\"] in the scene", kind.name);
     hints[kind.name] = hint;
-    for (const std::string& number : kind.numbers) hints[number] = hint;
+    for (const std::string& number : kind.numbers) {
+      const auto is_it = [&](const Quantity& quantity) { return quantity.name == number; };
+      if (std::none_of(always.begin(), always.end(), is_it)) hints[number] = hint;
+    }
   }
   for (const auto& [name, meant] : called) {
     hints[name] = fmt::format("is called {}", meant);

@@ -177,7 +177,7 @@ continues them.
 )");
   add_campaign_file(verb, *options);
   add_number(verb, "--tolerance", options->tolerance, *campaign_keys().find("/target/relative_tolerance"),
-             "/target/relative_tolerance: 0.05 or 5%");
+             "/target/relative_tolerance, also that of a curve: 0.05 or 5%");
   add_number(verb, "--absolute-tolerance", options->absolute_tolerance,
              *campaign_keys().find("/target/absolute_tolerance"),
              "/target/absolute_tolerance, where the campaign has that");

@@ -329,11 +329,14 @@ script that was changed is never replaced. Axes are logarithmic if the numbers t
   add_quiet(verb, options->quiet);
 }
 
-void show_jamming(const JammingOptions& options) {
-  const JammingAnswer answer = find_jamming(options);
-  print(answer.text);
-  if (!answer.message.empty()) say(answer.message);
+void show(const Proposal& proposal) {
+  print(proposal.text);
+  if (!proposal.message.empty()) say(proposal.message);
 }
+
+void show_jamming(const JammingOptions& options) { show(find_jamming(options)); }
+
+void show_next(const NextOptions& options) { show(propose_next(options)); }
 
 void add_law_options(CLI::App* verb, JammingOptions& options) {
   add_option(verb, "--by DEFINITION", options.by, "Definition of the jamming point; both unless given")
@@ -397,12 +400,6 @@ one of them is missing, the verb exits with 1 and says what is missing and which
   add_law_options(verb, *options);
   add_proposing_options(verb, *options);
   add_json(verb, options->json);
-}
-
-void show_next(const NextOptions& options) {
-  const NextAnswer answer = propose_next(options);
-  print(answer.text);
-  if (!answer.message.empty()) say(answer.message);
 }
 
 void add_next(VerbSet& verbs) {

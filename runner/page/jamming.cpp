@@ -18,7 +18,6 @@
 #include "runner/engines/engine_process.h"
 #include "runner/owner/open_campaign.h"
 #include "runner/page/swept.h"
-#include "runner/reports/proposed_file.h"
 #include "runner/statistics/cohorts.h"
 #include "runner/store/campaign_directory.h"
 
@@ -182,7 +181,7 @@ Json fitted(const Json& document) {
 
 }  // namespace
 
-JammingAnswer find_jamming(const JammingOptions& options) {
+Proposal find_jamming(const JammingOptions& options) {
   check_usage(options);
   check_new_file(options.write);
   OpenCampaign open = open_campaign(options.campaign, options.directory);
@@ -199,7 +198,7 @@ JammingAnswer find_jamming(const JammingOptions& options) {
     const auto [place, value, rule] = found["refused"].get<std::array<std::string, 3>>();
     throw InputError(source.file.string(), place, value, rule);
   }
-  JammingAnswer answer{found.at("text").get<std::string>(), ""};
+  Proposal answer{found.at("text").get<std::string>(), ""};
   if (const std::string note = difference_from_file(options.campaign, options.directory, campaign);
       !note.empty()) {
     answer.message = fmt::format("note: {}\n", note);

@@ -19,6 +19,7 @@
 #include <string>
 
 #include "contract/json.h"
+#include "runner/reports/proposed_file.h"
 #include "runner/store/database.h"
 
 namespace peclet::runner {
@@ -63,14 +64,9 @@ struct JammingOptions {
   bool json = false;
 };
 
-struct JammingAnswer {
-  std::string text;     // for standard output
-  std::string message;  // for standard error
-};
-
 // Runs the fits and returns their texts. Writes nothing but the file `write`, which must not exist. Throws as
 // open_campaign() and read_curves(); InputError for options that exclude each other, for a sweep to which
 // points cannot be added, and for `write`; std::runtime_error if the fits cannot run.
-JammingAnswer find_jamming(const JammingOptions& options);
+Proposal find_jamming(const JammingOptions& options);
 
 }  // namespace peclet::runner

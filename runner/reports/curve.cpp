@@ -34,17 +34,6 @@ std::string swept_most(const CampaignStatus& status) {
 
 std::string last_step(const std::string& pointer) { return pointer.substr(pointer.rfind('/') + 1); }
 
-// Returns the parameters of a point except `axis`, as in its label.
-std::string name_beside(const PointSummary& point, const std::string& axis) {
-  std::string name;
-  for (const auto& [pointer, value] : point.point.settings.items()) {
-    if (pointer == axis) continue;
-    name += fmt::format("{}{}={}", name.empty() ? "" : " ", last_step(pointer),
-                        value.is_number() ? rough(value.get<double>()) : value.dump());
-  }
-  return name;
-}
-
 // The height of a mean between the smallest and the largest one, from 0 to 1.
 class Scale {
  public:
@@ -86,17 +75,28 @@ std::string ends(const Points& curve) {
 
 }  // namespace
 
+std::string settings_text(const Json& settings, const std::function<bool(const std::string&)>& is_named) {
+  std::string text;
+  for (const auto& [pointer, value] : settings.items()) {
+    if (!is_named(pointer)) continue;
+    text += fmt::format("{}{}={}", text.empty() ? "" : " ", last_step(pointer),
+                        value.is_number() ? rough(value.get<double>()) : value.dump());
+  }
+  return text;
+}
+
 std::string curve_text(const CampaignStatus& status, std::size_t width) {
   constexpr std::size_t fewest = 3, widest = 48;
   if (status.points.empty()) return "";
   const std::string axis = swept_most(status);
+  const auto is_beside = [&](const std::string& pointer) { return pointer != axis; };
   std::map<std::string, Points> curves;
   std::vector<double> means;
   for (const PointSummary& point : status.points) {
     if (axis.empty()) break;
     const double estimate = point.decided ? point.stop_tests.back().controlled.mean : point.all_seeds.mean;
     const double mean = point.endings.has_jammed() ? jammed : estimate;
-    curves[name_beside(point, axis)][point.point.settings[axis].get<double>()] = mean;
+    curves[settings_text(point.point.settings, is_beside)][point.point.settings[axis].get<double>()] = mean;
     if (std::isfinite(mean)) means.push_back(mean);
   }
   std::size_t name = 0, values = 0;

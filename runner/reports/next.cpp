@@ -13,7 +13,7 @@
 #include "runner/campaign/sweep.h"
 #include "runner/campaign/text_table.h"
 #include "runner/owner/open_campaign.h"
-#include "runner/reports/proposed_file.h"
+#include "runner/reports/status.h"
 #include "runner/statistics/curve_proposal.h"
 #include "runner/store/database_summary.h"
 
@@ -37,17 +37,11 @@ struct Planned {
 // Returns the settings that all points of the curve share: "volume_fraction=0.45".
 std::string name_of(const Curve& curve, const std::vector<PointSummary>& points) {
   const Json& first = points[curve.points.front()].point.settings;
-  std::string name;
-  for (const auto& [pointer, value] : first.items()) {
-    const bool is_shared =
-        std::ranges::all_of(curve.points, [&, &key = pointer, &same = value](std::size_t i) {
-          return points[i].point.settings.value(key, Json()) == same;
-        });
-    if (!is_shared) continue;
-    name += fmt::format("{}{}={}", name.empty() ? "" : " ", pointer.substr(pointer.rfind('/') + 1),
-                        value.is_number() ? rough(value.get<double>()) : value.dump());
-  }
-  return name;
+  return settings_text(first, [&](const std::string& pointer) {
+    return std::ranges::all_of(curve.points, [&](std::size_t i) {
+      return points[i].point.settings.value(pointer, Json()) == first.at(pointer);
+    });
+  });
 }
 
 // Returns the points of the curve whose means have logarithms.
@@ -156,7 +150,7 @@ Json patch_of(const std::vector<Planned>& curves, const Target& target, Json swe
 
 }  // namespace
 
-NextAnswer propose_next(const NextOptions& options) {
+Proposal propose_next(const NextOptions& options) {
   check_new_file(options.write);
   OpenCampaign open = open_campaign(options.campaign, options.directory);
   const CampaignRecord campaign = open.database.campaign();
@@ -174,7 +168,7 @@ NextAnswer propose_next(const NextOptions& options) {
   const Json written = parse_json_input(source.text, source.file.string());
   const Json patch = patch_of(curves, target, written.value("sweep", Json::array()));
 
-  NextAnswer answer;
+  Proposal answer;
   if (const std::string note = difference_from_file(options.campaign, options.directory, campaign);
       !note.empty())
     answer.message = fmt::format("note: {}\n", note);

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "runner/campaign/paths.h"
+#include "runner/reports/proposed_file.h"
 
 namespace peclet::runner {
 
@@ -16,14 +17,9 @@ struct NextOptions {
   bool json = false;
 };
 
-struct NextAnswer {
-  std::string text;     // for standard output
-  std::string message;  // for standard error
-};
-
 // Returns proposals for each curve until its band is within the tolerance everywhere between its first and
 // last point, and the patch of the campaign file. Writes nothing but the file `write`, which must not exist.
 // Throws as open_campaign(), and InputError if the target has no curve, or for `write`.
-NextAnswer propose_next(const NextOptions& options);
+Proposal propose_next(const NextOptions& options);
 
 }  // namespace peclet::runner

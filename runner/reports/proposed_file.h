@@ -1,4 +1,4 @@
-// Writes a campaign file with points that a verb proposes.
+// Verbs that propose points: their answer, and the campaign file with the points.
 #pragma once
 
 #include <string>
@@ -8,6 +8,11 @@
 #include "runner/store/database.h"
 
 namespace peclet::runner {
+
+struct Proposal {
+  std::string text;     // for standard output
+  std::string message;  // for standard error
+};
 
 // The campaign file as its author wrote it or, if there is none, as it was last run.
 struct CampaignSource {

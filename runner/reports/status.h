@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -48,6 +49,9 @@ int ending(const CampaignStatus& status, bool finished);
 
 // Returns "3 points: 1 capped, 2 open".
 std::string point_totals(const CampaignStatus& status);
+
+// Returns the settings whose pointers are named, as in a label: "peclet=10 volume_fraction=0.5".
+std::string settings_text(const Json& settings, const std::function<bool(const std::string&)>& is_named);
 
 // Returns the verdict in a word; "open" or "cancelled" without one.
 std::string state_word(const PointSummary& point);

@@ -31,11 +31,6 @@ double median(Eigen::VectorXd values) {
   return *middle;
 }
 
-double variance(const CurveFit::Datum& datum) {
-  const double error = datum.standard_error / datum.mean;
-  return error * error * (datum.count - 1) / (datum.count - 3);
-}
-
 double smallest_axis(std::span<const CurveFit::Datum> data) {
   double smallest = std::numeric_limits<double>::infinity();
   for (const CurveFit::Datum& datum : data) {
@@ -53,8 +48,8 @@ double shift(std::span<const CurveFit::Datum> data) {
   double largest_shift = 0;
   for (const CurveFit::Datum& datum : data) {
     if (datum.axis <= smallest) continue;
-    const double difference =
-        std::abs(std::log(datum.mean / rest->mean)) + 2 * std::sqrt(variance(datum) + variance(*rest));
+    const double difference = std::abs(std::log(datum.mean / rest->mean)) +
+                              2 * std::sqrt(CurveFit::variance(datum) + CurveFit::variance(*rest));
     largest_shift = std::max(largest_shift, difference * std::pow(smallest / datum.axis, 2));
   }
   return largest_shift * largest_shift;
@@ -69,7 +64,13 @@ double matern(double ratio) {
 
 bool CurveFit::takes(const Estimate& estimate) {
   return estimate.count >= smallest_count && estimate.values == Estimate::Values::spread &&
-         std::isfinite(estimate.mean) && estimate.mean > 0 && estimate.standard_error > 0;
+         std::isfinite(estimate.mean) && estimate.mean > 0 && estimate.standard_error > 0 &&
+         std::isfinite(variance({0, estimate.mean, estimate.standard_error, estimate.count}));
+}
+
+double CurveFit::variance(const Datum& datum) {
+  const double error = datum.standard_error / datum.mean;
+  return error * error * (datum.count - 1) / (datum.count - 3);
 }
 
 CurveFit::CurveFit(std::vector<Datum> data, bool is_even) {
@@ -175,22 +176,6 @@ CurveFit::Posterior CurveFit::posterior(const Model& model, const Eigen::VectorX
               missed * model.uncertainty * missed.transpose()};
 }
 
-std::vector<CurveFit::Value> CurveFit::at(std::span<const double> axes) const {
-  const Eigen::VectorXd places = this->places(axes);
-  Eigen::ArrayXd mean = Eigen::ArrayXd::Zero(places.size()), square = mean;
-  for (const Model& model : models_) {
-    const Posterior found = posterior(model, places);
-    mean += model.weight * found.mean.array();
-    square += model.weight * (found.covariance.diagonal().array() + found.mean.array().square());
-  }
-  std::vector<Value> values;
-  for (Eigen::Index i = 0; i < places.size(); ++i) {
-    const double shift = axes[static_cast<std::size_t>(i)] == 0 ? shift_ : 0;
-    values.push_back({mean[i], std::sqrt(std::max(0.0, square[i] - mean[i] * mean[i]) + shift)});
-  }
-  return values;
-}
-
 // Without datum i the prediction of y_i has the mean y_i - (P y)_i / P_ii and the variance 1 / P_ii, where P
 // is the precision of the y_i for unknown coefficients (eqs. 5.12 and 2.41). The likelihood of the others is
 // that of all over that of this prediction.
@@ -231,8 +216,20 @@ CurveFit::Outlook CurveFit::outlook(std::span<const double> axes) const {
     square += model.weight * found.mean.array().square();
     outlook.models_.push_back({model.weight, std::move(found.covariance)});
   }
+  outlook.mean_ = mean;
   outlook.between_ = (square - mean.square()).max(0);
+  outlook.shift_.resize(places.size());
+  std::ranges::transform(axes, outlook.shift_.begin(),
+                         [this](double axis) { return axis == 0 ? shift_ : 0; });
   return outlook;
+}
+
+std::vector<CurveFit::Value> CurveFit::Outlook::values() const {
+  const Eigen::VectorXd deviation = (variances() + shift_).cwiseMax(0).cwiseSqrt();
+  std::vector<Value> values;
+  values.reserve(static_cast<std::size_t>(mean_.size()));
+  for (Eigen::Index i = 0; i < mean_.size(); ++i) values.push_back({mean_[i], deviation[i]});
+  return values;
 }
 
 Eigen::VectorXd CurveFit::Outlook::variances() const {

@@ -42,6 +42,8 @@ class CurveFit {
   static constexpr int smallest_count = 4;
   // True if the estimate can be a datum.
   static bool takes(const Estimate& estimate);
+  // Returns v_i.
+  static double variance(const Datum& datum);
   static constexpr std::size_t fewest_points = fewest_of_curve;
 
   // Requires fewest_points data with different axes. `is_even`: a datum at 0 is at rest, and
@@ -55,7 +57,7 @@ class CurveFit {
   struct Value {
     double mean = 0, deviation = 0;
   };
-  std::vector<Value> at(std::span<const double> axes) const;
+  std::vector<Value> at(std::span<const double> axes) const { return outlook(axes).values(); }
 
   // The distance of a datum from the curve that all others make, in standard deviations of its prediction,
   // and the largest one that is allowed: that of Student's distribution for the datum's values which the
@@ -68,9 +70,11 @@ class CurveFit {
   // True if a datum contradicts the others: the curve is refused.
   bool is_refused() const;
 
-  // The variances of ln y at some places, and what further values would make of them.
+  // The curve at some places, and what further values would make of its variances.
   class Outlook {
    public:
+    std::vector<Value> values() const;
+    // Returns the variances of ln y.
     Eigen::VectorXd variances() const;
     // Returns by how much a value at one of the places would lower the variances; `noise` is the variance of
     // its logarithm. A mean of several values counts as one.
@@ -85,7 +89,8 @@ class CurveFit {
       Eigen::MatrixXd covariance;
     };
     std::vector<Weighted> models_;
-    Eigen::VectorXd between_;  // variance of the models' means
+    Eigen::VectorXd mean_, between_;  // of the models' means, and their variance
+    Eigen::VectorXd shift_;           // shift_ of the fit at rest, 0 elsewhere
   };
   Outlook outlook(std::span<const double> axes) const;
 

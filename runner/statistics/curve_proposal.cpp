@@ -35,9 +35,7 @@ std::vector<Place> places_of(std::vector<KnownOnCurve> points, bool is_even) {
   std::vector<Place> places;
   for (const KnownOnCurve& point : points) {
     const CurveFit::Datum& datum = point.datum;
-    const double error = datum.standard_error / datum.mean;
-    const Place own{datum.axis, false, point.seeds,
-                    error * error * datum.count * (datum.count - 1) / (datum.count - 3), point.seconds};
+    const Place own{datum.axis, false, point.seeds, datum.count * CurveFit::variance(datum), point.seconds};
     const bool has_neighbour = !places.empty() && !(is_even && places.back().axis == 0);
     if (has_neighbour) {
       const Place before = places.back();

@@ -28,7 +28,8 @@ double mean_steps(const std::vector<std::optional<Outcome>>& outcomes, int seeds
 
 // The curve of one criterion, through the members that have a logarithm.
 struct CurveStopTests::Round {
-  std::optional<CurveFit> fit{};      // none of fewer points than a curve needs, and none that is refused
+  // Absent if too few points are known, and if the curve is refused.
+  std::optional<CurveFit::Outlook> outlook{};
   std::vector<double> axes{};         // of the data
   std::vector<std::size_t> member{};  // of each datum
   std::size_t observable = 0;
@@ -109,7 +110,8 @@ CurveStopTests::Round CurveStopTests::estimate(std::size_t place, const Toleranc
     fit = CurveFit(data, tolerance.is_even);
   }
   const double normal = boost::math::quantile(boost::math::normal(), (1 + rule_.confidence()) / 2);
-  const std::vector<CurveFit::Value> values = fit.at(round.axes);
+  CurveFit::Outlook outlook = fit.outlook(round.axes);
+  const std::vector<CurveFit::Value> values = outlook.values();
   for (std::size_t k = 0; k < round.member.size(); ++k) {
     const double half_width = normal * values[k].deviation;
     const auto [distance, allowed] = fit.residuals()[k];
@@ -121,7 +123,7 @@ CurveStopTests::Round CurveStopTests::estimate(std::size_t place, const Toleranc
                                                                      allowed,
                                                                      fit.is_refused()};
   }
-  if (!fit.is_refused()) round.fit = std::move(fit);
+  if (!fit.is_refused()) round.outlook = std::move(outlook);
   return round;
 }
 
@@ -138,7 +140,7 @@ void CurveStopTests::end_round(const std::vector<Member>& members) {
         continue;
       const ObservableStopTest& one = state.stop_tests.back().each[place];
       if (one.share <= 1 || (one.curve && one.curve->is_met())) continue;
-      goes_on[round.fit && one.curve->is_known() ? best_for(i, round, members) : i] = 1;
+      goes_on[round.outlook && one.curve->is_known() ? best_for(i, round, members) : i] = 1;
     }
   }
   is_decided_ = std::ranges::count(goes_on, 1) == 0;
@@ -165,7 +167,6 @@ std::size_t CurveStopTests::best_for(std::size_t unmet, const Round& round,
                                      const std::vector<Member>& members) const {
   const bool has_steps =
       std::ranges::all_of(round.member, [this](std::size_t i) { return members_[i].steps > 0; });
-  const CurveFit::Outlook outlook = round.fit->outlook(round.axes);
   const auto at = static_cast<Eigen::Index>(std::ranges::find(round.member, unmet) - round.member.begin());
   std::size_t best = unmet;
   double most = 0;
@@ -178,7 +179,7 @@ std::size_t CurveStopTests::best_for(std::size_t unmet, const Round& round,
     const double error = estimate.standard_error / estimate.mean;
     const int more = next_seeds(state) - last.seeds;
     const double steps = more * (has_steps ? state.steps : 1);
-    const double gain = outlook.gain(k, error * error * estimate.count / more)[at] / steps;
+    const double gain = round.outlook->gain(k, error * error * estimate.count / more)[at] / steps;
     if (gain > most) {
       most = gain;
       best = i;

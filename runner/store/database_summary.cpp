@@ -131,16 +131,27 @@ void make_again(Database& database, const PointRecord& point, const TargetRecord
 // NaN stands for a number that is undefined or too large.
 bool is_same(double one, double other) { return one == other || (std::isnan(one) && std::isnan(other)); }
 
+// Another build may round the last digits of a band differently.
+bool is_same_band(const std::optional<CurveBand>& one, const std::optional<CurveBand>& other) {
+  constexpr double rounding = 1e-6;
+  const auto is_near = [](double a, double b) {
+    return is_same(a, b) || std::abs(a - b) <= rounding * std::abs(b);
+  };
+  if (!one || !other) return one.has_value() == other.has_value();
+  return is_near(one->mean, other->mean) && is_near(one->low, other->low) &&
+         is_near(one->high, other->high) && one->refused == other->refused;
+}
+
 // A point that waited for its curve may have been decided by results that no owner has booked yet.
 bool agree(const std::vector<ObservableStopTest>& stored, const std::vector<ObservableStopTest>& replayed,
            bool is_waiting) {
-  return std::equal(stored.begin(), stored.end(), replayed.begin(), replayed.end(),
-                    [=](const ObservableStopTest& one, const ObservableStopTest& other) {
-                      return one.observable == other.observable &&
-                             (one.verdict == other.verdict || is_waiting) &&
-                             one.estimate.count == other.estimate.count &&
-                             is_same(one.estimate.mean, other.estimate.mean);
-                    });
+  return std::equal(
+      stored.begin(), stored.end(), replayed.begin(), replayed.end(),
+      [=](const ObservableStopTest& one, const ObservableStopTest& other) {
+        return one.observable == other.observable &&
+               (is_waiting || (one.verdict == other.verdict && is_same_band(one.curve, other.curve))) &&
+               one.estimate.count == other.estimate.count && is_same(one.estimate.mean, other.estimate.mean);
+      });
 }
 
 bool agrees(const StopTest& stored, const StopTest& replayed) {

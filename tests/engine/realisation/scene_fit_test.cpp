@@ -146,6 +146,10 @@ bool is_no_target(const std::string& name) {
 TEST(TargetHints, SayWhatPeopleMayMean) {
   const Json hints = target_hints(scene_from());
   EXPECT_EQ(hints["N1"], "is called first_normal_difference");
+  // In a flow it is measured; at rest, where the stress does not give it, an observable does.
+  EXPECT_EQ(hints["eta_r"], "is called relative_viscosity");
+  EXPECT_EQ(target_hints(scene_from(at_rest))["relative_viscosity"],
+            "needs \"observables\": [\"linear_response\"] in the scene");
   EXPECT_EQ(hints["storage_modulus"], "needs \"observables\": [\"oscillation\"] in the scene");
   EXPECT_EQ(hints["G'"],
             "is called storage_modulus, which needs \"observables\": [\"oscillation\"] in the scene");

@@ -76,7 +76,7 @@ class JammingProposal : public PythonOfDebian {
 };
 
 TEST_F(JammingProposal, KeepsThePointsThatThereAre) {
-  const JammingAnswer answer = find_jamming(options);
+  const Proposal answer = find_jamming(options);
   EXPECT_TRUE(says(answer.text, "next: 0.63, half-way between 0.6, which flows, and 0.66, which is jammed"))
       << answer.text;
   EXPECT_TRUE(says(answer.message, "next.json --directory ")) << answer.message;

@@ -87,6 +87,15 @@ TEST(CurveReports, AStoredStopTestThatWasChangedIsFound) {
   EXPECT_THROW(StopTestCheck(campaign.database()).last(point), IntegrityError);
 }
 
+TEST(CurveReports, ABandThatWasChangedIsFound) {
+  StoredCampaign campaign(curve_campaign());
+  const PointRecord point = decided(campaign).database().points().at(2);
+  campaign.database().connection().run(
+      "UPDATE stop_test SET observables = json_set(observables, '$[0].curve.high', 11) WHERE point_id = ?",
+      point.id);
+  EXPECT_THROW(StopTestCheck(campaign.database()).last(point), IntegrityError);
+}
+
 TEST(CurveReports, AFigureHasTheBand) {
   StoredCampaign campaign(curve_campaign());
   const Json figure = figure_data(decided(campaign).database(), {});

@@ -14,7 +14,7 @@ namespace {
 
 class Next : public ::testing::Test {
  protected:
-  NextAnswer next(NextOptions options) {
+  Proposal next(NextOptions options) {
     options.campaign = campaign_.directory().root();
     return propose_next(options);
   }
@@ -57,7 +57,7 @@ TEST_F(Next, WritesACampaignFileWithTheNewValues) {
   const TemporaryFolder folder;
   NextOptions options;
   options.write = folder.path() / "next.json";
-  const NextAnswer answer = next(options);
+  const Proposal answer = next(options);
   EXPECT_TRUE(says(answer.message, "adds its points to the campaign")) << answer.message;
   const Campaign written = read_campaign(options.write);
   const Campaign before = curve_campaign();

@@ -116,6 +116,7 @@ TEST(CurveStopTests, ACurveThatAPointContradictsDecidesNothing) {
     }
     EXPECT_TRUE(last(joint, i).each.at(0).share <= 1 || last(joint, i).each.at(0).curve->is_met());
   }
+  EXPECT_TRUE(refused);
   const CurveBand& odd = *last(joint, 3).each.at(0).curve;
   EXPECT_NEAR(odd.mean, 3.5, 0.1);
 }

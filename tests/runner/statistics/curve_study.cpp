@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "runner/statistics/scheduler.h"
+#include "tests/runner/population.h"
 
 namespace peclet::runner {
 namespace {
@@ -104,9 +105,7 @@ class Source {
     const double spread = truth_.spread[point];
     while (values.size() <= static_cast<std::size_t>(id.seed)) {
       const double z = std::normal_distribution<double>()(random_[point]);
-      const double width = std::sqrt(std::log1p(spread * spread));
-      values.push_back(truth_.mean[point] *
-                       (truth_.is_skewed ? std::exp(width * z - width * width / 2) : 1 + spread * z));
+      values.push_back(truth_.mean[point] * (truth_.is_skewed ? lognormal_of(z, spread) : 1 + spread * z));
     }
     Outcome outcome{{values[static_cast<std::size_t>(id.seed)]}};
     outcome.steps = truth_.steps[point];
