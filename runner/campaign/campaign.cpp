@@ -175,7 +175,40 @@ std::vector<Curve> curves_of(const Json& document, const Target& target, const s
         target.also, [](const Criterion& criterion) { return criterion.tolerance.is_of_curve(); });
     pointer = fmt::format("/target/also/{}/curve/over", found - target.also.begin());
   }
-  return curves_over(target.over(), read_sweep(document.at("sweep"), file), file, pointer);
+  const auto curves_along = [&](const Json& sweep) {
+    return curves_over(target.over(), read_sweep(sweep, file), file, pointer);
+  };
+  std::vector<Curve> curves = curves_along(document.at("sweep"));  // numbers, to which values can be added
+  return chosen_values(document).empty() ? curves : curves_along(whole_sweep(document, target));
+}
+
+Json chosen_values(const Json& document) {
+  return document.contains("choose") ? document["choose"].value("values", Json::array()) : Json::array();
+}
+
+Json whole_sweep(const Json& document, const Target& target) {
+  Json sweep = document.at("sweep");
+  for (const Json& value : chosen_values(document))
+    sweep = with_value_along(std::move(sweep), target.over(), value.get<double>());
+  return sweep;
+}
+
+Json with_chosen_value(Json document, double value) {
+  document.at("choose")["values"].push_back(value);
+  return document;
+}
+
+Json keeping_chosen_values(Json document, const Json& before) {
+  const Json::json_pointer over("/target/curve/over");
+  const auto is_alike = [&](const char* key) {
+    return document.value(key, Json()) == before.value(key, Json());
+  };
+  const Json known = chosen_values(before);
+  if (!known.empty() && document.contains("choose") && !document["choose"].contains("values") &&
+      is_alike("sweep") && is_alike("scene") && document.value(over, Json()) == before.value(over, Json())) {
+    document["choose"]["values"] = known;
+  }
+  return document;
 }
 
 void check_campaign_name(const std::string& name, const std::string& file) {
@@ -219,8 +252,16 @@ Campaign parse_campaign(const Json& written, const std::string& file) {
   }
   campaign.engine = document["engine"].get<std::vector<std::string>>();
   campaign.seeds_with_files = seeds_with_files(document);
-  campaign.points = sweep_points(document["scene"], read_sweep(document["sweep"], file), campaign.name, file);
+  if (document.contains("choose")) {
+    if (campaign.target.over().empty()) {
+      throw InputError(file, "/choose", shortened(document["choose"]),
+                       "needs a curve in the target, for whose axis values are chosen");
+    }
+    campaign.most_values = document["choose"]["points"].get<int>();
+  }
   campaign.curves = curves_of(document, campaign.target, file);
+  campaign.points = sweep_points(document["scene"], read_sweep(whole_sweep(document, campaign.target), file),
+                                 campaign.name, file);
   return campaign;
 }
 
@@ -274,6 +315,11 @@ constexpr const char* campaign_rows = R"(
     one stop test.
 /realisations/maximum | integer >= 2 and <= {realisations} | Seeds at the last stop test; a point that has not
     converged then is capped. Not below the minimum.
+/choose? | object | Values of the curve's axis that the run adds to the sweep, one after the other, where the band
+    between the points is wider than the tolerance.
+/choose/points | integer >= {fewest} and <= 1000 | Most values of the axis, those of the sweep included.
+/choose/values? | array | Values that runs have chosen. The stored document has them; a file needs none.
+/choose/values/* | number
 /show? | array of 1 to {shown} | For a fixed number of realisations: paths of the numbers in the result's mean
     that tables show. Charts show the first one. relative_viscosity unless given.
 /show/* | string
@@ -293,7 +339,7 @@ const KeyTable& campaign_keys() {
       "A campaign of peclet",
       fmt::format(campaign_rows, arg("observable", usual_observable), arg("confidence", usual_confidence),
                   arg("realisations", most_realisations), arg("targets", most_further_targets),
-                  arg("shown", 1 + most_further_targets),
+                  arg("shown", 1 + most_further_targets), arg("fewest", fewest_of_curve),
                   arg("target", fmt::format(tolerance_rows, "",
                                             "Path of another number in the result's mean; "
                                             "relative_tolerance is then a share of its |mean|.")),

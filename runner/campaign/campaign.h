@@ -80,6 +80,7 @@ struct Campaign {
   Json document;                   // as read, with defaults
   std::vector<StatePoint> points;  // in the order of the sweep: the last entry varies fastest
   std::vector<Curve> curves{};     // if the target has any
+  int most_values = 0;             // of the curves' axis, up to which a run chooses some; 0: it chooses none
   Target target;
   int minimum_realisations;
   int maximum_realisations;                  // equal to the minimum if the number is fixed
@@ -94,6 +95,18 @@ const KeyTable& campaign_keys();
 // Returns the curves of a target in a campaign that has been read; none if it has no curve. Throws InputError
 // as curves_over().
 std::vector<Curve> curves_of(const Json& document, const Target& target, const std::string& file = "");
+
+// Values of the curves' axis that runs choose (/choose) are kept in the stored document, at /choose/values.
+
+// Returns the values that were chosen for the target's curves.
+Json chosen_values(const Json& document);
+// Returns the sweep of a document together with the values that were chosen for the target's curves.
+Json whole_sweep(const Json& document, const Target& target);
+// Returns the document with one more chosen value.
+Json with_chosen_value(Json document, double value);
+// Returns the document with the values that were chosen for `before`, if the sweep, the scene and the curve
+// are those of `before` and it has no values of its own.
+Json keeping_chosen_values(Json document, const Json& before);
 
 // Reads and checks a campaign; the engine checks its scenes. Throws InputError with file, pointer, value and
 // what is allowed.

@@ -38,9 +38,8 @@ bool carry_out_here(const CampaignDirectory& directory) {
     refuse_lost_database(directory);
     create_folders(directory);
     Database database = Database::open_owner(directory.database());
-    const Campaign campaign = parse_campaign(database.campaign().document, directory.database().string());
     Progress progress(Progress::style_of_stderr(true));
-    CampaignState state(database, campaign, directory, progress, retries);
+    CampaignState state(database, adopted_campaign(database), directory, progress, retries);
     RequestHandler(database, state, directory, progress).carry_out();
     return true;
   } catch (const OwnedByAnother&) {

@@ -101,7 +101,7 @@ void judge_worker_count(const WorkerCount& size, RunListener& listener) {
 struct OpenedRun {
   OpenedRun(const ClaimedCampaign& claimed, const RunOptions& options, RunListener& listener)
       : database(open_for_owner(claimed, [&](const std::string& text) { listener.note(text); })),
-        state(database, claimed.campaign, claimed.directory, listener, retries),
+        state(database, adopted_campaign(database), claimed.directory, listener, retries),
         requests(database, state, claimed.directory, listener) {
     requests.carry_out();
     if (!options.accept_engine.empty()) accept_engine(state, claimed.engine, listener);

@@ -11,7 +11,9 @@
 #include <system_error>
 #include <utility>
 
+#include "runner/campaign/number_text.h"
 #include "runner/campaign/quoting.h"
+#include "runner/statistics/curve_proposal.h"
 #include "runner/statistics/quantities.h"
 #include "runner/store/blame.h"
 #include "runner/store/bundle_store.h"
@@ -55,14 +57,14 @@ bool is_of_the_result(const std::exception& error) {
 
 }  // namespace
 
-CampaignState::CampaignState(Database& database, const Campaign& campaign, CampaignDirectory directory,
+CampaignState::CampaignState(Database& database, Campaign campaign, CampaignDirectory directory,
                              RunListener& listener, int retries)
     : database_(database),
       seeds_(database),
       results_(database),
       rows_(database),
       events_(database.connection()),
-      campaign_(campaign),
+      campaign_(std::move(campaign)),
       directory_(std::move(directory)),
       listener_(listener),
       retries_(retries) {
@@ -77,6 +79,7 @@ CampaignState::CampaignState(Database& database, const Campaign& campaign, Campa
   remove_late_checkpoints();
   Transaction booking(database_.connection());
   book_stop_tests();
+  choose_values();
   booking.commit();
   after_commit();
 }
@@ -412,11 +415,31 @@ void CampaignState::take_over(const Campaign& campaign) {
   next_campaign_ = campaign;
 }
 
-void CampaignState::refresh() {
+void CampaignState::read_again() {
   point_states_.read_points(database_);
   read_point_states();
   book_stop_tests();
+}
+
+void CampaignState::refresh() {
+  read_again();
+  choose_values();
   if (has_engine()) refuse_other_engine(engine_);
+}
+
+bool CampaignState::choose_values() {
+  bool any = false;
+  while (const std::optional<ChosenValue> chosen = choose_value(scheduler(), campaign())) {
+    const std::string message =
+        fmt::format("{} = {}: there the band of {} is the widest, {}", campaign().target.over(),
+                    rough(chosen->value), chosen->observable, percent(chosen->width));
+    take_over(parse_campaign(with_chosen_value(campaign().document, chosen->value), campaign().name));
+    read_again();
+    events_.write("chosen", message);
+    changes_.after.note("a new value, " + message);
+    any = true;
+  }
+  return any;
 }
 
 bool CampaignState::find_place(GivenSeed& given_seed) const {
@@ -552,6 +575,7 @@ void CampaignState::ingest_spool_of(const CampaignDirectory& directory) {
     const std::size_t end = std::min(files.size(), next + files_at_a_time);
     Transaction booking(database_.connection());
     for (; next < end; ++next) ingest(files[next]);
+    if (point_states_.has_seeds()) choose_values();
     booking.commit();
     after_commit();
   }

@@ -43,10 +43,10 @@ struct GivenSeed {
 
 class CampaignState {
  public:
-  // Requires that the database has adopted the campaign. Takes in what earlier runs left in the spool, then
+  // Requires the campaign that the database has adopted. Takes in what earlier runs left in the spool, then
   // queues the seeds of a dead owner again. All references must outlive the state.
-  CampaignState(Database& database, const Campaign& campaign, CampaignDirectory directory,
-                RunListener& listener, int retries);
+  CampaignState(Database& database, Campaign campaign, CampaignDirectory directory, RunListener& listener,
+                int retries);
 
   // Sets the bounds from now on. With a budget, seeds go where they lower the summed relative error most;
   // without one, to the point that will take longest.
@@ -104,9 +104,13 @@ class CampaignState {
   // Takes over a changed campaign within the transaction. Throws InputError if results lack its observable.
   void take_over(const Campaign& campaign);
   // Reads the state again after others have written to the database within the transaction, and stores the
-  // stop tests and seeds that follow. Throws OtherEngine as admit_engine(). The seeds that workers have then
-  // need find_place().
+  // stop tests, the chosen values and the seeds that follow. Throws OtherEngine as admit_engine(). The seeds
+  // that workers have then need find_place().
   void refresh();
+  // Adds the values of the axis that decided curves ask for, if the campaign chooses values. To be called
+  // within a transaction that has booked results. Returns true if it did: the seeds that workers have then
+  // need find_place().
+  bool choose_values();
   // Drops the effects of a failed transaction and reads the state from the database again. The seeds that
   // workers have then need find_place().
   void roll_back();
@@ -134,6 +138,7 @@ class CampaignState {
   // Returns nothing if the file is not a checkpoint of a point in the sweep.
   std::optional<SeedId> seed_of_checkpoint(const fs::path& file) const;
   void read_point_states();
+  void read_again();
   void book_stop_tests();
   void refuse_other_engine(const std::string& identity) const;
   bool takes_part(SeedId id) const {

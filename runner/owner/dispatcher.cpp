@@ -464,6 +464,7 @@ bool Dispatcher::book() {
     for (const WorkerEvent& event : news_.events()) {
       std::visit([this](const auto& happened) { handle(happened); }, event);
     }
+    if (state_.choose_values()) find_running_seeds();
     give_out_seeds();
     show_leases();
     booking.commit();

@@ -139,7 +139,8 @@ std::string difference_from_file(const fs::path& given, const fs::path& chosen,
                                  const CampaignRecord& campaign) {
   if (!fs::is_regular_file(given)) return "";
   try {
-    if (read_campaign(given).document == campaign.document) return "";
+    if (keeping_chosen_values(read_campaign(given).document, campaign.document) == campaign.document)
+      return "";
     return fmt::format(
         "{0} has changed since it was last run; `peclet set {1}` or `peclet run {1}` takes it over",
         given.string(), words_for(given, chosen));

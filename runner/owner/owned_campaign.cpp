@@ -121,7 +121,8 @@ Database open_for_owner(const ClaimedCampaign& claimed, const std::function<void
   try {
     Database database = Database::open_owner(directory.database());
     refuse_older_copy(directory, database);
-    PointStore(database).adopt(claimed.campaign);
+    PointStore points(database);
+    points.adopt(points.with_chosen_values(claimed.campaign));
     keep_vocabulary(database, *claimed.scenes.front().words);
     tell_of_points_left_behind(database, tell);
     return database;
@@ -132,7 +133,13 @@ Database open_for_owner(const ClaimedCampaign& claimed, const std::function<void
 
 OwnedCampaign::OwnedCampaign(const fs::path& file, const fs::path& chosen, bool force,
                              const std::string& accepted_engine)
-    : ClaimedCampaign(file, chosen, force, accepted_engine), database(open_for_owner(*this)) {}
+    : ClaimedCampaign(file, chosen, force, accepted_engine), database(open_for_owner(*this)) {
+  campaign = adopted_campaign(database);
+}
+
+Campaign adopted_campaign(Database& database) {
+  return parse_campaign(database.campaign().document, database.connection().path());
+}
 
 void accept_engine(CampaignState& state, const Json& engine, RunListener& listener) {
   if (state.accept_engine(engine_identity(engine)) == 0) {

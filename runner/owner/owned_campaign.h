@@ -43,8 +43,13 @@ struct ClaimedCampaign {
 Database open_for_owner(
     const ClaimedCampaign& claimed, const std::function<void(const std::string&)>& tell = [](const auto&) {});
 
+// Returns the campaign that the database has adopted: that of the file, with the values that runs have
+// chosen.
+Campaign adopted_campaign(Database& database);
+
+// Here `campaign` is the one that the database has adopted.
 struct OwnedCampaign : ClaimedCampaign {
-  Database database;  // has adopted the campaign
+  Database database;
   OwnedCampaign(const fs::path& file, const fs::path& chosen, bool force,
                 const std::string& accepted_engine = "");
 };

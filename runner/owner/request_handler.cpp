@@ -277,7 +277,8 @@ RequestHandler::Done RequestHandler::apply(const TakeOver& wish) {
                 "not taken over: {} changed after it was checked; `peclet set` or `peclet run` takes it over",
                 wish.file.string())};
   }
-  const Campaign campaign = parse_campaign(parse_json(text, wish.file.string()), wish.file.string());
+  const Campaign campaign = PointStore(database_).with_chosen_values(
+      parse_campaign(parse_json(text, wish.file.string()), wish.file.string()));
   if (state_.has_engine() && campaign.engine != state_.campaign().engine) {
     throw InputError(wish.file.string(), "/engine", Json(campaign.engine).dump(),
                      "cannot be changed while the campaign runs: stop it, and start it again");

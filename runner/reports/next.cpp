@@ -29,7 +29,7 @@ struct Planned {
   double width() const { return plan->proposals.empty() ? plan->width : plan->proposals.back().width; }
   double seconds() const {
     double sum = 0;
-    for (const CurveProposal& proposal : plan->proposals) sum += proposal.seconds;
+    for (const CurveProposal& proposal : plan->proposals) sum += proposal.cost;
     return sum;
   }
 };
@@ -65,15 +65,12 @@ std::vector<KnownOnCurve> known_on(const Curve& curve, const std::vector<PointSu
 Planned planned(const Curve& curve, const std::vector<PointSummary>& points, const TargetRecord& target,
                 const NextOptions& options) {
   Planned made{name_of(curve, points)};
-  std::vector<KnownOnCurve> known = known_on(curve, points);
-  std::vector<CurveFit::Datum> data(known.size());
-  std::ranges::transform(known, data.begin(), &KnownOnCurve::datum);
   const bool is_even = target.target.tolerance.is_even;
-  if (is_even && !CurveFit::serves_as_anchor(data))
-    std::erase_if(known, [](const KnownOnCurve& point) { return point.datum.axis == 0; });
+  const std::vector<KnownOnCurve> known = without_idle_rest(known_on(curve, points), is_even);
   made.known = known.size();
   if (known.size() < CurveFit::fewest_points) return made;
-  ProposalBounds bounds{target.target.tolerance.value, options.budget, options.points};
+  const ProposalBounds bounds{
+      .width = target.target.tolerance.value, .cost = options.budget, .new_points = options.points};
   made.plan =
       plan_curve(known, is_even, stop_test_schedule(target.minimum, target.maximum), target.level(), bounds);
   return made;
@@ -101,7 +98,7 @@ std::string text_of(const Planned& curve, const Target& target) {
     table.add_column(title);
   for (const CurveProposal& proposal : plan.proposals) {
     table.add_row({rough(proposal.axis), proposal.is_new ? "new" : "old",
-                   fmt::format("{} to {}", proposal.from, proposal.to), duration_text(proposal.seconds),
+                   fmt::format("{} to {}", proposal.from, proposal.to), duration_text(proposal.cost),
                    percent(proposal.width)});
   }
   return text + table.text("  ") +
@@ -119,7 +116,7 @@ Json to_json(const Planned& curve) {
     json["proposals"].push_back({{"axis", proposal.axis},
                                  {"new", proposal.is_new},
                                  {"seeds", {proposal.from, proposal.to}},
-                                 {"cpu_seconds", proposal.seconds},
+                                 {"cpu_seconds", proposal.cost},
                                  {"width_then", proposal.width},
                                  {"widest_at", proposal.widest_at}});
   }
@@ -165,8 +162,9 @@ Proposal propose_next(const NextOptions& options) {
   std::vector<Planned> curves;
   for (const Curve& curve : curves_of(campaign.document, target))
     curves.push_back(planned(curve, points, campaign.target, options));
-  const Json written = parse_json_input(source.text, source.file.string());
-  const Json patch = patch_of(curves, target, written.value("sweep", Json::array()));
+  const Json written =
+      keeping_chosen_values(parse_json_input(source.text, source.file.string()), campaign.document);
+  const Json patch = patch_of(curves, target, whole_sweep(written, target));
 
   Proposal answer;
   if (const std::string note = difference_from_file(options.campaign, options.directory, campaign);

@@ -341,6 +341,19 @@ std::string handed_over_text(const CampaignStatus& status) {
                      all > shown ? fmt::format(" and {} more", all - shown) : "");
 }
 
+// Returns a line about the values of the curves' axis that runs choose, or "" if they choose none.
+std::string chosen_text(const CampaignStatus& status) {
+  const Json& document = status.campaign.document;
+  if (!document.contains("choose")) return "";
+  const Target& target = status.campaign.target.target;
+  const std::size_t values = curves_of(document, target).front().axis.size();
+  std::vector<std::string> chosen;
+  for (const Json& value : chosen_values(document)) chosen.push_back(rough(value.get<double>()));
+  return fmt::format("{} of at most {} values of {}; chosen: {}\n", values,
+                     document["choose"]["points"].get<int>(), target.over(),
+                     chosen.empty() ? "none yet" : fmt::format("{}", fmt::join(chosen, ", ")));
+}
+
 std::string set_aside_text(const CampaignStatus& status) {
   std::string text;
   for (const PointSummary& point : status.points) {
@@ -415,8 +428,8 @@ std::string status_table(const CampaignStatus& status, std::size_t width) {
     row.insert(row.end(), rest.begin(), rest.end());
     table.add_row(std::move(row));
   }
-  const std::string totals = point_totals(status) + '\n' + seed_totals(status) + losses_text(status) +
-                             earlier_stop_test_text(status) + set_aside_text(status) +
+  const std::string totals = point_totals(status) + '\n' + seed_totals(status) + chosen_text(status) +
+                             losses_text(status) + earlier_stop_test_text(status) + set_aside_text(status) +
                              predictions_text(status.points);
   return folded(heading(status), width) + table.text_within(width) + '\n' +
          legend(status, table.left_out(width), width) + '\n' + folded(totals, width);

@@ -16,7 +16,7 @@ struct Place {
   bool is_new = true;
   int seeds = 0;        // ended; 0 at a new place
   double variance = 0;  // of the logarithm of one seed's value
-  double seconds = 0;   // of one seed
+  double cost = 0;      // of one seed
 };
 
 constexpr int parts = 4;  // of the distance between neighbours
@@ -35,7 +35,7 @@ std::vector<Place> places_of(std::vector<KnownOnCurve> points, bool is_even) {
   std::vector<Place> places;
   for (const KnownOnCurve& point : points) {
     const CurveFit::Datum& datum = point.datum;
-    const Place own{datum.axis, false, point.seeds, datum.count * CurveFit::variance(datum), point.seconds};
+    const Place own{datum.axis, false, point.seeds, datum.count * CurveFit::variance(datum), point.cost};
     const bool has_neighbour = !places.empty() && !(is_even && places.back().axis == 0);
     if (has_neighbour) {
       const Place before = places.back();
@@ -45,7 +45,7 @@ std::vector<Place> places_of(std::vector<KnownOnCurve> points, bool is_even) {
         const double axis = round_number(between(before.axis, own.axis, share, is_logarithmic));
         if (!(places.back().axis < axis && axis < own.axis)) continue;
         places.push_back({axis, true, 0, between(before.variance, own.variance, share, true),
-                          between(before.seconds, own.seconds, share, true)});
+                          between(before.cost, own.cost, share, true)});
       }
     }
     places.push_back(own);
@@ -53,7 +53,37 @@ std::vector<Place> places_of(std::vector<KnownOnCurve> points, bool is_even) {
   return places;
 }
 
+// Returns what the last stop tests say of a curve's points, for the criterion at `place`; nothing if one of
+// them contradicts the curve.
+std::vector<KnownOnCurve> known_to(const Scheduler& scheduler, const Curve& curve, std::size_t place) {
+  std::vector<KnownOnCurve> known;
+  bool has_steps = true;
+  for (std::size_t k = 0; k < curve.points.size(); ++k) {
+    const int point = static_cast<int>(curve.points[k]);
+    if (scheduler.stop_tests(point).empty()) continue;
+    const StopTest& last = scheduler.stop_tests(point).back();
+    const ObservableStopTest& one = last.each[place];
+    if (one.curve->refused) return {};
+    if (!CurveFit::takes(one.estimate)) continue;
+    const double steps = scheduler.steps(point);
+    has_steps = has_steps && steps > 0;
+    known.push_back({{curve.axis[k], one.estimate.mean, one.estimate.standard_error, one.estimate.count},
+                     last.seeds,
+                     steps});
+  }
+  if (!has_steps) std::ranges::for_each(known, [](KnownOnCurve& point) { point.cost = 1; });
+  return known;
+}
+
 }  // namespace
+
+std::vector<KnownOnCurve> without_idle_rest(std::vector<KnownOnCurve> points, bool is_even) {
+  std::vector<CurveFit::Datum> data(points.size());
+  std::ranges::transform(points, data.begin(), &KnownOnCurve::datum);
+  if (is_even && !CurveFit::serves_as_anchor(data))
+    std::erase_if(points, [](const KnownOnCurve& point) { return point.datum.axis == 0; });
+  return points;
+}
 
 CurvePlan plan_curve(const std::vector<KnownOnCurve>& points, bool is_even, const std::vector<int>& schedule,
                      double confidence, const ProposalBounds& bounds) {
@@ -74,7 +104,7 @@ CurvePlan plan_curve(const std::vector<KnownOnCurve>& points, bool is_even, cons
   };
   Eigen::Index worst = widest();
   CurvePlan plan{width_at(worst), axes[static_cast<std::size_t>(worst)]};
-  double seconds = 0;
+  double cost = 0;
   int new_points = 0;
   for (int step = 0; step < bounds.steps && width_at(worst) > bounds.width; ++step) {
     std::optional<std::size_t> best;
@@ -85,9 +115,9 @@ CurvePlan plan_curve(const std::vector<KnownOnCurve>& points, bool is_even, cons
     for (std::size_t k = 0; k < places.size(); ++k) {
       const Place& place = places[k];
       const int more = seeds_after(place) - place.seeds;
-      if (more <= 0 || (place.is_new && bounds.new_points == 0)) continue;
-      if (bounds.seconds && seconds + more * place.seconds > *bounds.seconds) continue;
-      const double gain = outlook.gain(k, place.variance / more)[worst] / (more * place.seconds);
+      if (more <= 0 || !(place.is_new ? bounds.new_points > 0 : bounds.old_points)) continue;
+      if (bounds.cost && cost + more * place.cost > *bounds.cost) continue;
+      const double gain = outlook.gain(k, place.variance / more)[worst] / (more * place.cost);
       if (gain > most) {
         most = gain;
         best = k;
@@ -100,10 +130,10 @@ CurvePlan plan_curve(const std::vector<KnownOnCurve>& points, bool is_even, cons
     const double widest_at = axes[static_cast<std::size_t>(worst)];
     new_points += is_further(chosen) ? 1 : 0;
     outlook.take(*best, chosen.variance / more);
-    seconds += more * chosen.seconds;
+    cost += more * chosen.cost;
     worst = widest();
     plan.proposals.push_back(
-        {chosen.axis, chosen.is_new, chosen.seeds, after, more * chosen.seconds, width_at(worst), widest_at});
+        {chosen.axis, chosen.is_new, chosen.seeds, after, more * chosen.cost, width_at(worst), widest_at});
     chosen.seeds = after;
   }
   for (std::size_t k = 0; k < places.size(); ++k) {
@@ -111,6 +141,37 @@ CurvePlan plan_curve(const std::vector<KnownOnCurve>& points, bool is_even, cons
       plan.width_at_points = std::max(plan.width_at_points, width_at(static_cast<Eigen::Index>(k)));
   }
   return plan;
+}
+
+std::optional<ChosenValue> choose_value(const Scheduler& scheduler, const Campaign& campaign) {
+  if (campaign.most_values == 0 || std::ssize(campaign.curves.front().axis) >= campaign.most_values)
+    return {};
+  for (int point = 0; point < scheduler.points(); ++point) {
+    if (!scheduler.decided(point) && !scheduler.cancelled(point)) return {};
+  }
+  const std::vector<int> schedule =
+      stop_test_schedule(campaign.minimum_realisations, campaign.maximum_realisations);
+  const double confidence = adjusted_confidence(campaign.target.confidence, campaign.minimum_realisations,
+                                                campaign.maximum_realisations);
+  const std::vector<Criterion> criteria = campaign.target.criteria();
+  std::optional<ChosenValue> chosen;
+  double largest_share = 1;
+  for (const Curve& curve : campaign.curves) {
+    for (std::size_t place = 0; place < criteria.size(); ++place) {
+      const Tolerance& tolerance = criteria[place].tolerance;
+      if (!tolerance.is_of_curve()) continue;
+      const std::vector<KnownOnCurve> known =
+          without_idle_rest(known_to(scheduler, curve, place), tolerance.is_even);
+      if (known.size() < CurveFit::fewest_points) continue;
+      const CurvePlan plan =
+          plan_curve(known, tolerance.is_even, schedule, confidence,
+                     {.width = tolerance.value, .new_points = 1, .old_points = false, .steps = 1});
+      if (plan.proposals.empty() || !(plan.width / tolerance.value > largest_share)) continue;
+      largest_share = plan.width / tolerance.value;
+      chosen = {plan.proposals.front().axis, criteria[place].observable, plan.width};
+    }
+  }
+  return chosen;
 }
 
 }  // namespace peclet::runner

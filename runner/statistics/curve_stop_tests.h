@@ -36,6 +36,8 @@ class CurveStopTests {
 
   // Returns the stop tests of a point. The last one decides unless its verdict is `more`.
   const std::vector<StopTest>& stop_tests(std::size_t member) const { return members_[member].stop_tests; }
+  // Returns the mean steps of the realisations of a point's first stop test; 0 if unknown.
+  double steps(std::size_t member) const { return members_[member].steps; }
   // True if the point has made its stop test of this round, and others have not.
   bool is_waiting(std::size_t member) const { return !is_decided_ && !members_[member].is_next; }
 
@@ -44,7 +46,7 @@ class CurveStopTests {
     std::vector<StopTest> stop_tests{};
     Verdict own = Verdict::more;  // of the last stop test, by the point's own intervals
     bool is_next = true;          // makes its next stop test in this round
-    double steps = 0;             // mean of the realisations of its first stop test; 0 if unknown
+    double steps = 0;             // as steps()
   };
   // One criterion with a curve, at the end of a round.
   struct Round;

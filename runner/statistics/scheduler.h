@@ -103,6 +103,11 @@ class Scheduler {
   bool cancelled(int point) const { return point_at(point).cancelled; }
   // True if the point needs no seeds until other points of its curve have made their stop tests.
   bool is_waiting(int point) const { return is_waiting(point_at(point)); }
+  // Returns the steps of a realisation of a point on a curve; 0 if unknown.
+  double steps(int point) const {
+    const Point& about = point_at(point);
+    return curves_[about.curve.value()].stop_tests.steps(about.member);
+  }
   // Returns true if every point is decided or cancelled, or all its seeds below the ceiling have ended.
   bool finished() const;
 

@@ -56,10 +56,15 @@ void PointStore::adopt(const Campaign& campaign) {
   adoption.commit();
 }
 
+Campaign PointStore::with_chosen_values(Campaign campaign) {
+  if (is_first()) return campaign;
+  const Json kept = keeping_chosen_values(campaign.document, database_.campaign().document);
+  return kept == campaign.document ? campaign : parse_campaign(kept, connection_.path());
+}
+
 void PointStore::take_over(const Campaign& campaign) {
-  const bool is_first = connection_.integer("SELECT count(*) FROM campaign") == 0;
   const bool sees_the_same =
-      is_first || database_.campaign().target.target.observables() == campaign.target.observables();
+      is_first() || database_.campaign().target.target.observables() == campaign.target.observables();
   const std::int64_t target = adopt_target(campaign);
   adopt_points(campaign);
   if (!sees_the_same) observe_again(campaign);

@@ -41,6 +41,8 @@ class PointStore {
   explicit PointStore(Database& database)
       : database_(database), connection_(database.connection()), events_(connection_) {}
 
+  // Returns the campaign with the values that runs have chosen for its curves (keeping_chosen_values()).
+  Campaign with_chosen_values(Campaign campaign);
   // Stores the campaign, its points in their order and its target. Points that are no longer in the sweep
   // stay, inactive. Throws InputError, with nothing written, if finished realisations lack the observable.
   void adopt(const Campaign& campaign);
@@ -56,6 +58,7 @@ class PointStore {
   void set_aside(const PointRecord& point, const std::string& engine);
 
  private:
+  bool is_first() { return connection_.integer("SELECT count(*) FROM campaign") == 0; }
   std::int64_t adopt_target(const Campaign& campaign);
   void adopt_points(const Campaign& campaign);
   void observe_again(const Campaign& campaign);
