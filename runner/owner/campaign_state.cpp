@@ -431,8 +431,8 @@ bool CampaignState::choose_values() {
   bool any = false;
   while (const std::optional<ChosenValue> chosen = choose_value(scheduler(), campaign())) {
     const std::string message =
-        fmt::format("{} = {}: there the band of {} is the widest, {}", campaign().target.over(),
-                    rough(chosen->value), chosen->observable, percent(chosen->width));
+        fmt::format("{} = {:g}: seeds there narrow the widest band of {}, {}, most", campaign().target.over(),
+                    chosen->value, chosen->observable, percent(chosen->width));
     take_over(parse_campaign(with_chosen_value(campaign().document, chosen->value), campaign().name));
     read_again();
     events_.write("chosen", message);

@@ -84,7 +84,7 @@ std::string text_of(const Planned& curve, const Target& target) {
   }
   const CurvePlan& plan = *curve.plan;
   std::string text = fmt::format("{}the largest half-width of the band is {}, at {} = {}\n", heading,
-                                 percent(plan.width), target.over(), rough(plan.at));
+                                 percent(plan.width), target.over(), fmt::format("{:g}", plan.at));
   if (plan.proposals.empty()) {
     return text +
            (plan.width <= target.tolerance.value
@@ -97,7 +97,7 @@ std::string text_of(const Planned& curve, const Target& target) {
   for (const char* const title : {"seeds", "processor time", "largest half-width then"})
     table.add_column(title);
   for (const CurveProposal& proposal : plan.proposals) {
-    table.add_row({rough(proposal.axis), proposal.is_new ? "new" : "old",
+    table.add_row({fmt::format("{:g}", proposal.axis), proposal.is_new ? "new" : "old",
                    fmt::format("{} to {}", proposal.from, proposal.to), duration_text(proposal.cost),
                    percent(proposal.width)});
   }

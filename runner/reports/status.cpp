@@ -348,7 +348,8 @@ std::string chosen_text(const CampaignStatus& status) {
   const Target& target = status.campaign.target.target;
   const std::size_t values = curves_of(document, target).front().axis.size();
   std::vector<std::string> chosen;
-  for (const Json& value : chosen_values(document)) chosen.push_back(rough(value.get<double>()));
+  for (const Json& value : chosen_values(document))
+    chosen.push_back(fmt::format("{:g}", value.get<double>()));
   return fmt::format("{} of at most {} values of {}; chosen: {}\n", values,
                      document["choose"]["points"].get<int>(), target.over(),
                      chosen.empty() ? "none yet" : fmt::format("{}", fmt::join(chosen, ", ")));
