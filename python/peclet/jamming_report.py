@@ -1,21 +1,11 @@
 """Makes the output of `peclet jamming`, as text or JSON.
 
-The program runs this file, which reads a JSON document with curves and options from standard input and writes its
-answer to standard output.
+The program asks by answer.py, with a document of curves and options.
 """
 import dataclasses
 import json
-import sys
 import textwrap
-from pathlib import Path
 
-if __name__ == "__main__":
-    # NumPy is imported before the folder of the package is on the path, which might have another one.
-    try:
-        import numpy  # noqa: F401
-    except ModuleNotFoundError as missing:
-        sys.exit(f"{sys.executable} has no module {missing.name}")
-    sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from peclet.jamming import Refused, added_to_sweep, estimate_all, is_found, propose
 
 WIDTH = 100  # of the text [characters]
@@ -224,7 +214,3 @@ def answer(document):
     write = document_json if document["json"] else table
     text = write(document, estimates, common, proposed)
     return {"text": in_json(text) if document["json"] else text, "sweep": sweep}
-
-
-if __name__ == "__main__":
-    json.dump(answer(json.load(sys.stdin)), sys.stdout)

@@ -4,10 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <map>
-#include <stdexcept>
 
 #include "contract/durable_file.h"
 #include "contract/errors.h"
@@ -15,11 +13,10 @@
 #include "runner/campaign/campaign.h"
 #include "runner/campaign/campaign_file.h"
 #include "runner/campaign/quoting.h"
-#include "runner/engines/engine_process.h"
 #include "runner/owner/open_campaign.h"
+#include "runner/page/package_module.h"
 #include "runner/page/swept.h"
 #include "runner/statistics/cohorts.h"
-#include "runner/store/campaign_directory.h"
 
 namespace peclet::runner {
 namespace {
@@ -126,8 +123,6 @@ Json read_curves(Database& database, const CurveChoice& choice) {
 
 namespace {
 
-namespace fs = std::filesystem;
-
 void check_usage(const JammingOptions& options) {
   if (options.common_exponent && options.exponent)
     throw InputError("", "", "--common-exponent", "does not go together with --exponent");
@@ -137,8 +132,6 @@ void check_usage(const JammingOptions& options) {
   if (options.budget) throw InputError("", "", "--budget", "is for --propose");
   if (!options.write.empty()) throw InputError("", "", "--write", "is for --propose");
 }
-
-Json json_or_null(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
 
 // Returns the document that the script reads: the curves and the options. `sweep` is for proposals.
 Json document_of(const JammingOptions& options, Json curves, const Json& sweep) {
@@ -155,30 +148,6 @@ Json document_of(const JammingOptions& options, Json curves, const Json& sweep) 
   return curves;
 }
 
-// Returns the command of the script in the package that is installed with this program or in its source;
-// otherwise that in a package which Python finds by itself.
-std::vector<std::string> script_command() {
-  const fs::path package = own_folder().parent_path() / "lib/python3/dist-packages/peclet";
-  if (fs::exists(package / "jamming_report.py")) return {"python3", (package / "jamming_report.py").string()};
-  if (const std::optional<fs::path> source = own_file("python/peclet/jamming_report.py"))
-    return {"python3", source->string()};
-  return {"python3", "-m", "peclet.jamming_report"};
-}
-
-// Runs the script and returns its answer. Throws std::runtime_error if Python, NumPy or the script is absent.
-Json fitted(const Json& document) {
-  constexpr std::chrono::minutes patience(60);
-  const std::vector<std::string> command = script_command();
-  // Keeps Python from importing a file of the present folder in place of a module.
-  std::vector<std::string> words{"env", "PYTHONSAFEPATH=1"};
-  words.insert(words.end(), command.begin(), command.end());
-  const CommandAnswer said = run_command(words, patience, document.dump());
-  if (said.succeeded()) return Json::parse(said.output);
-  throw std::runtime_error(
-      fmt::format("jamming: the fits need python3 with NumPy (Debian: python3-numpy); `{}` has not run: {}",
-                  fmt::join(command, " "), said.complaint()));
-}
-
 }  // namespace
 
 Proposal find_jamming(const JammingOptions& options) {
@@ -193,11 +162,8 @@ Proposal find_jamming(const JammingOptions& options) {
     source = source_of(options.campaign, campaign);
     sweep = parse_json_input(source.text, source.file.string()).value("sweep", sweep);
   }
-  const Json found = fitted(document_of(options, curves, sweep));
-  if (found.contains("refused")) {
-    const auto [place, value, rule] = found["refused"].get<std::array<std::string, 3>>();
-    throw InputError(source.file.string(), place, value, rule);
-  }
+  const Json found = answer_of_package("jamming", "jamming_report", "NumPy (Debian: python3-numpy)",
+                                       document_of(options, curves, sweep), source.file.string());
   Proposal answer{found.at("text").get<std::string>(), ""};
   if (const std::string note = difference_from_file(options.campaign, options.directory, campaign);
       !note.empty()) {

@@ -48,8 +48,8 @@ Json read_curves(Database& database, const CurveChoice& choice);
 
 // `peclet jamming`: the jamming point of a campaign's curves, and which volume fractions would tell more.
 //
-// The fits, the proposal and the texts are in python/peclet/jamming.py and jamming_report.py. The latter runs
-// as a child: it reads one document of curves and options and writes one answer.
+// The fits, the proposal and the texts are in python/peclet/jamming.py and jamming_report.py, which runs as a
+// child (package_module.h).
 struct JammingOptions {
   std::filesystem::path campaign, directory;
   CurveChoice curves;

@@ -13,16 +13,6 @@
 namespace peclet::runner {
 namespace {
 
-// Puts Debian's interpreter, which has NumPy, first on PATH.
-class PythonOfDebian : public testing::Test {
- protected:
-  PythonOfDebian() { setenv("PATH", ("/usr/bin:" + path_).c_str(), 1); }
-  ~PythonOfDebian() override { setenv("PATH", path_.c_str(), 1); }
-
- private:
-  const std::string path_ = std::getenv("PATH");
-};
-
 using Jamming = PythonOfDebian;
 
 TEST_F(Jamming, GivesTheLawOfTheSeedsBackToPeopleAndPrograms) {
@@ -130,7 +120,8 @@ TEST_F(JammingProposal, SaysWhatItWouldHaveRunWithoutPython) {
     said = fault.what();
   }
   EXPECT_TRUE(says(said, "jamming: the fits need python3 with NumPy (Debian: python3-numpy)")) << said;
-  EXPECT_TRUE(says(said, "`python3 " PECLET_SOURCE_DIR "/python/peclet/jamming_report.py` has not run: "))
+  EXPECT_TRUE(says(said, "`python3 " PECLET_SOURCE_DIR "/python/peclet/answer.py jamming_report` has not "
+                         "run: "))
       << said;
   EXPECT_FALSE(std::filesystem::exists(options.write));
 }

@@ -1,7 +1,10 @@
-// Campaigns over the volume fraction, with viscosities that follow a law.
+// Campaigns over the volume fraction, with viscosities that follow a law, and Python for their fits.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cmath>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -9,6 +12,16 @@
 #include "tests/runner/stored_campaign.h"
 
 namespace peclet::runner {
+
+// Puts Debian's interpreter, which has NumPy, first on PATH.
+class PythonOfDebian : public testing::Test {
+ protected:
+  PythonOfDebian() { setenv("PATH", ("/usr/bin:" + path_).c_str(), 1); }
+  ~PythonOfDebian() override { setenv("PATH", path_.c_str(), 1); }
+
+ private:
+  const std::string path_ = std::getenv("PATH");
+};
 
 struct TrueLaw {
   double fraction = 0.65, exponent = 1.6, prefactor = 1.4;
