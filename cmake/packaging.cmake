@@ -20,10 +20,10 @@ set(CPACK_GENERATOR TGZ DEB)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
-# No `Depends`: the programs are linked statically. Python is needed for `peclet jamming`, the studies, the adapter of
-# LAMMPS, and figures.
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3, python3-numpy")
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "lammps, python3-matplotlib, python3-scipy")
+# No `Depends`: the programs are linked statically. Python is needed for `peclet jamming` and `fit`, the studies, the
+# adapter of LAMMPS, and figures.
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3, python3-numpy, python3-scipy")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "lammps, python3-matplotlib")
 set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/as_debian_wants.cmake)
 
 if(PECLET_STATIC)

@@ -24,6 +24,7 @@ The interval of phi_m is the range in which
 with z = 1 for the standard error (half its width) and z = 1.96 for 95 %. A poor fit has wider intervals. The interval
 is not symmetric: points far from jamming bound phi_m better from below than from above.
 """
+import copy
 import dataclasses
 import json
 import math
@@ -163,6 +164,18 @@ class Fit:
         outside = self.gaps[places[beyond[0]]]
         inside = self.gaps[places[beyond[0] - 1]] if beyond[0] > 0 else best
         return self.flowing + math.exp(crossing(lambda gaps: self.chi_squared(gaps, exponent), inside, outside, bound))
+
+    def of_rows(self, logarithms, exponent=None):
+        """Returns phi_m, beta, A and chi^2, arrays (rows,), fitted to other ln eta (rows, n) at the same fractions.
+
+        A phi_m that is not bounded lies at an end of the search.
+        """
+        own = copy.copy(self)
+        own.logarithms = logarithms[:, None, :]
+        _, best, _ = own.least(None if exponent is None else [exponent])
+        line = own.line((self.flowing + np.exp(best))[:, None], exponent)
+        numbers = (line.slope, np.exp(line.constant), line.chi_squared)
+        return self.flowing + np.exp(best), *(np.broadcast_to(one, (len(best), 1))[:, 0] for one in numbers)
 
     def law(self, exponent=None):
         """Returns the fitted Law. Raises NotDetermined."""

@@ -273,6 +273,16 @@ class Results:
         """
         return json.loads(self._ask("jamming", "--json", *options))
 
+    def fit(self, law, *options):
+        """Returns the parameters of a law with intervals, as `peclet fit --json` does.
+
+        law        "divergence", "wyart-cates", "mu-of-j", "herschel-bulkley", "cross" or "maxwell"
+        options    further options of this verb, such as "--fix=exponent=2"
+
+        Returns a dictionary. The modules peclet.laws and peclet.spectrum have the fits alone. Raises PecletError.
+        """
+        return json.loads(self._ask("fit", "--json", "--law", law, *options))
+
     def plot(self, quantity=None, x=None, by=None, axes=None, label=None, log=None, where=None):
         """Plots the estimate of every point over one swept parameter, with confidence intervals, as `peclet plot` does.
 

@@ -9,6 +9,7 @@
 #include "runner/command_line/verb_set.h"
 #include "runner/command_line/watch.h"
 #include "runner/page/figure.h"
+#include "runner/page/fit.h"
 #include "runner/page/jamming.h"
 #include "runner/page/page_html.h"
 #include "runner/page/supplement.h"
@@ -261,33 +262,56 @@ struct PlotOptions : ViewOptions {
   FigureChoice choice;
 };
 
-// Writes the script first, so that the numbers are there even if the picture cannot be drawn.
+// The files of a figure: the picture and the script beside it.
+class FigureFiles {
+ public:
+  // Throws InputError for a name that no picture can have, and for files that must not be replaced. "" is
+  // standard output.
+  explicit FigureFiles(const std::filesystem::path& output)
+      : output_(output),
+        form_(output.empty() ? PictureForm::svg : picture_form(output)),
+        script_(output.empty() ? "" : script_beside(output)) {
+    if (output.empty()) return;
+    check_output(output);
+    check_output(script_);
+  }
+
+  // Writes the script first, so that the numbers are there even if the picture cannot be drawn. Throws
+  // NotDrawn.
+  void write(const Json& figure, bool quiet) const {
+    const std::string script = figure_script(figure);
+    if (!output_.empty()) deliver(script, script_, quiet);
+    if (form_ == PictureForm::script) return;
+    try {
+      const Picture picture = drawn(script, form_);
+      deliver(picture.bytes, output_, quiet);
+      if (!quiet) say(picture.said);
+    } catch (const NotDrawn& fault) {
+      throw NotDrawn(
+          output_.empty()
+              ? fmt::format("{}; --json prints the numbers", fault.what())
+              : fmt::format("{}; {} has the numbers, and draws them with matplotlib: python3 {} {}",
+                            fault.what(), script_.string(), shell_word(script_.string()),
+                            shell_word(output_.string())));
+    }
+  }
+
+ private:
+  std::filesystem::path output_;
+  PictureForm form_;
+  std::filesystem::path script_;
+};
+
 void draw_campaign(const PlotOptions& options) {
-  const bool into_file = !options.output.empty() && !options.json;
-  const PictureForm form = into_file ? picture_form(options.output) : PictureForm::svg;
-  const std::filesystem::path beside = into_file ? script_beside(options.output) : "";
-  if (!options.output.empty()) check_output(options.output);
-  if (into_file) check_output(beside);
-  OpenCampaign open = open_for_viewing(options.campaign, options.directory);
-  const Json data = figure_data(open.database, options.choice);
   if (options.json) {
-    deliver(data.dump(1) + '\n', options.output, options.quiet);
+    if (!options.output.empty()) check_output(options.output);
+    OpenCampaign open = open_for_viewing(options.campaign, options.directory);
+    deliver(figure_data(open.database, options.choice).dump(1) + '\n', options.output, options.quiet);
     return;
   }
-  const std::string script = figure_script(data);
-  if (into_file) deliver(script, beside, options.quiet);
-  if (form == PictureForm::script) return;
-  try {
-    const Picture picture = drawn(script, form);
-    deliver(picture.bytes, options.output, options.quiet);
-    if (!options.quiet) say(picture.said);
-  } catch (const NotDrawn& fault) {
-    throw NotDrawn(into_file
-                       ? fmt::format("{}; {} has the numbers, and draws them with matplotlib: python3 {} {}",
-                                     fault.what(), beside.string(), shell_word(beside.string()),
-                                     shell_word(options.output.string()))
-                       : fmt::format("{}; --json prints the numbers", fault.what()));
-  }
+  const FigureFiles files(options.output);
+  OpenCampaign open = open_for_viewing(options.campaign, options.directory);
+  files.write(figure_data(open.database, options.choice), options.quiet);
 }
 
 void add_plot(VerbSet& verbs) {
@@ -326,6 +350,75 @@ script that was changed is never replaced. Axes are logarithmic if the numbers t
   add_option(verb, "--output FILE", options->output,
              "File to write, ending in .svg, .png, .pdf or .py; SVG on standard output unless given");
   verb->add_flag("--json", options->json, "Print the numbers as JSON, and draw nothing");
+  add_quiet(verb, options->quiet);
+}
+
+// The options of `peclet fit`: `output` is a picture beside the text on standard output.
+struct FitOptions : ViewOptions {
+  FitChoice choice;
+};
+
+void fit_campaign(const FitOptions& options) {
+  std::optional<FigureFiles> files;
+  if (!options.output.empty()) files.emplace(options.output);
+  OpenCampaign open = open_for_viewing(options.campaign, options.directory);
+  const FitAnswer answer = fit_law(open.database, options.choice, options.json);
+  print(answer.text);
+  if (!files) return;
+  if (answer.figure.is_null()) throw NotDrawn("there is no picture: no curve determines the law");
+  files->write(answer.figure, options.quiet);
+}
+
+void add_fit(VerbSet& verbs) {
+  const auto [verb, options] = verbs.add<FitOptions>(
+      fit_campaign, "fit", "Fit a law to the points of a sweep, with intervals from the seeds", {0, 1, 2, 6},
+      R"(
+Fits a law to each curve of the campaign, and prints its parameters with intervals of 95 %, chi^2 with its
+probability p, and the parameters without the points at either end of the axis. Intervals are those of
+redraws: every point is drawn again with the error of its seeds. A parameter whose interval reaches the end of
+its search is not determined. A small p says that the law does not describe the points.
+
+  divergence        viscosity over volume fraction: prefactor (1 - phi / phi_m)^-exponent
+  wyart-cates       viscosity over volume fraction and given stress; jammed points are lower bounds
+  mu-of-j           friction and volume fraction over the viscous number, of relative_viscosity and pressure
+  herschel-bulkley  stress over rate: yield_stress + consistency rate^flow_index; a viscosity is multiplied by
+                    the axis
+  cross             viscosity over rate, between two plateaus
+  maxwell           spectrum of relaxation times of storage_modulus and loss_modulus over frequency
+
+The fits need python3 in PATH with NumPy and SciPy, and the package peclet, which is installed with this
+program. If one of them is missing, the verb exits with 1 and says what is missing. --output also draws the
+points and the law with its band of 95 %, with matplotlib, as `peclet plot` does.
+
+  peclet fit dense.json --law divergence
+  # the form of Maron and Pierce, at dense points only
+  peclet fit dense.json --law divergence --fix prefactor=1 --fix exponent=2 --from 0.5
+  peclet fit thickening.json --law wyart-cates --free exponent --output thickening.pdf
+  # with the pressure along the gradient
+  peclet fit dense.json --law mu-of-j --quantity stress/total/yy
+  # for programs; schema/README.md
+  peclet fit flow-curve.json --law cross --json
+)");
+  add_campaign(verb, *options);
+  add_option(verb, "--law NAME", options->choice.law, "Law to fit")
+      ->required()
+      ->check(CLI::IsMember(law_names()));
+  add_option(verb, "--quantity NAME", options->choice.quantity,
+             "Number to fit, as `export` calls it, with mu-of-j the pressure; that of the law or the target "
+             "unless given");
+  add_option(
+      verb, "--over PARAMETER", options->choice.over,
+      "Swept parameter on the axis: its pointer or the last word of it; that of the law or the one with "
+      "most values unless given");
+  add_option(verb, "--fix NAME=VALUE", options->choice.fixed, "Parameter that is not fitted; may be repeated")
+      ->allow_extra_args(false);
+  add_option(verb, "--free NAME", options->choice.free,
+             "Parameter that is fitted although the law has a value for it; may be repeated")
+      ->allow_extra_args(false);
+  add_number(verb, "--from", options->choice.from, number_from(0), "Smallest value of the axis");
+  add_number(verb, "--to", options->choice.to, number_from(0), "Largest value of the axis");
+  add_option(verb, "--output FILE", options->output, "Picture to write, ending in .svg, .png, .pdf or .py");
+  add_json(verb, options->json);
   add_quiet(verb, options->quiet);
 }
 
@@ -442,6 +535,7 @@ void add_viewing_verbs(VerbSet& verbs) {
   add_serve(verbs);
   add_plot(verbs);
   add_jamming(verbs);
+  add_fit(verbs);
   add_next(verbs);
 }
 

@@ -112,8 +112,10 @@ std::string figure_script(const Json& data) {
   for (const auto& [name, value] : data.items()) {
     if (name != "points") lines.push_back(fmt::format("\"{}\": {}", name, canonical_json(value)));
   }
-  for (const Json& point : data.at("points")) points.push_back("  " + canonical_json(point));
-  lines.push_back(fmt::format("\"points\": [\n{}]", fmt::join(points, ",\n")));
+  if (data.contains("points")) {
+    for (const Json& point : data["points"]) points.push_back("  " + canonical_json(point));
+    lines.push_back(fmt::format("\"points\": [\n{}]", fmt::join(points, ",\n")));
+  }
   std::string script = drawing_script;
   script += fmt::format(
       "\n\nFIGURE = json.loads(r\"\"\"{{{}}}\"\"\")\n\nif __name__ == \"__main__\":\n    main(FIGURE)\n",

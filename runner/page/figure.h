@@ -26,8 +26,8 @@ struct FigureChoice {
 // show no point. Throws IntegrityError.
 Json figure_data(Database& database, const FigureChoice& choice);
 
-// Returns drawing.py with these data in it, one line for each point. The last line has the SHA-256 of all
-// before it. The same data give the same bytes.
+// Returns drawing.py with these data in it, one line for each member and each point. The last line has the
+// SHA-256 of all before it. The same data give the same bytes.
 std::string figure_script(const Json& data);
 
 // True if figure_script() has made the text and it has not been changed since.

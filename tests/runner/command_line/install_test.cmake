@@ -13,7 +13,8 @@ foreach(file
     bin/peclet
     bin/peclet-engine
     lib/python3/dist-packages/peclet/__init__.py
-    lib/python3/dist-packages/peclet/jamming_report.py
+    lib/python3/dist-packages/peclet/answer.py
+    lib/python3/dist-packages/peclet/laws_report.py
     share/doc/peclet/LICENSE
     ${pages}
     share/bash-completion/completions/peclet
