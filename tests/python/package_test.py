@@ -235,6 +235,12 @@ class OfACampaign(unittest.TestCase):
         self.assertEqual([curve["settings"] for curve in found["curves"]], [{"/peclet": 10}, {"/peclet": 1000}])
         self.assertRegex(found["curves"][0]["law"]["obstacle"], "^0 of the 4 flowing points")
 
+    def test_laws_are_asked_of_the_program_by_this_python(self):
+        found = self.results.fit("divergence", "--fix=exponent=2")
+        self.assertEqual((found["over"], found["given"]["fixed"]), ("/volume_fraction", {"exponent": 2}))
+        self.assertEqual([curve["settings"] for curve in found["curves"]], [{"/peclet": 10}, {"/peclet": 1000}])
+        self.assertRegex(found["curves"][0]["law"]["obstacle"], " points with an error for 2 parameters: at least 3 ")
+
     def test_what_is_not_there_is_said(self):
         with self.assertRaisesRegex(peclet.PecletError, "viscosty: not measured; there are .*relative_viscosity"):
             self.results.profile("viscosty")
