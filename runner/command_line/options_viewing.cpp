@@ -378,13 +378,11 @@ probability p, and the parameters without the points at either end of the axis. 
 redraws: every point is drawn again with the error of its seeds. A parameter whose interval reaches the end of
 its search is not determined. A small p says that the law does not describe the points.
 
-  divergence        viscosity over volume fraction: prefactor (1 - phi / phi_m)^-exponent
-  wyart-cates       viscosity over volume fraction and given stress; jammed points are lower bounds
-  mu-of-j           friction and volume fraction over the viscous number, of relative_viscosity and pressure
-  herschel-bulkley  stress over rate: yield_stress + consistency rate^flow_index; a viscosity is multiplied by
-                    the axis
-  cross             viscosity over rate, between two plateaus
-  maxwell           spectrum of relaxation times of storage_modulus and loss_modulus over frequency
+Over the volume fraction, divergence fits a viscosity, and mu-of-j friction and volume fraction over the
+viscous number, from relative_viscosity and pressure. wyart-cates fits a viscosity over volume fraction and
+given stress; jammed points are lower bounds. Over a rate, cross fits a viscosity between two plateaus, and
+herschel-bulkley a stress, or a viscosity that is multiplied by the axis. maxwell fits a spectrum of relaxation
+times to storage_modulus and loss_modulus over the frequency.
 
 The fits need python3 in PATH with NumPy and SciPy, and the package peclet, which is installed with this
 program. If one of them is missing, the verb exits with 1 and says what is missing. --output also draws the
