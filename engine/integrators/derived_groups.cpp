@@ -87,6 +87,15 @@ void add_mixture_groups(const Scene& scene, DerivedGroups& groups) {
   }
 }
 
+void add_stresses(const Physics& physics, double a, DerivedGroups& groups) {
+  if (physics.flow.steady_rate() > 0) groups.viscous_stress = unit_of_stress(physics);
+  if (physics.thermal_energy > 0) groups.thermal_stress = physics.thermal_energy / (a * a * a);
+  if (physics.contact && physics.contact->critical_load > 0) {
+    groups.critical_stress = physics.contact->critical_load / (a * a);
+  }
+  if (physics.repulsion) groups.repulsion_stress = -of_pair(*physics.repulsion, a, a).slope(0.0) / (a * a);
+}
+
 void add_size_moments(const Particles& particles, DerivedGroups& groups) {
   const std::vector<std::size_t> number = species_numbers(particles);
   const auto count = static_cast<double>(particles.count);
@@ -125,6 +134,10 @@ constexpr NamedGroup named_groups[] = {
     {"inertial_time", "", "τ_I", "time", &Groups::inertial_time},
     {"brownian_time", "Brownian time", "τ_B", "time", &Groups::brownian_time},
     {"shear_time", "", "τ_S", "time", &Groups::shear_time},
+    {"viscous_stress", "", viscous_stress_symbol, "stress", &Groups::viscous_stress, &Groups::viscous_stress},
+    {"thermal_stress", "", "k_B T / a^3", "stress", &Groups::thermal_stress, &Groups::thermal_stress},
+    {"critical_stress", "", "F_CL / a^2", "stress", &Groups::critical_stress, &Groups::critical_stress},
+    {"repulsion_stress", "", "F_R / a^2", "stress", &Groups::repulsion_stress, &Groups::repulsion_stress},
     {"largest_inertia_over_brownian", "", "(τ_I/τ_B)_max", "1", &Groups::largest_inertia_over_brownian},
     {"flow_over_rest", "flow/rest", "", "1", &Groups::flow_over_rest}};
 
@@ -246,6 +259,7 @@ DerivedGroups derived_groups(const Scene& scene) {
       return rho * physics.thermal_energy / (physics.viscosity * physics.viscosity * radius);
     });
   }
+  add_stresses(physics, a, groups);
   if (scene.particles.mixture) add_mixture_groups(scene, groups);
   if (scene.particles.distributed) add_size_moments(scene.particles, groups);
   return groups;

@@ -18,6 +18,9 @@ struct DerivedGroups {
   std::optional<double> peclet, stokes, relative_stiffness;
   // tau_C = sqrt(rho a^3 / k_n),  tau_I = rho a^2 / eta,  tau_B = eta a^3 / kT,  tau_S = 1 / rate  [time].
   std::optional<double> contact_time, inertial_time, brownian_time, shear_time;
+  // Stresses: eta rate of a steady flow, kT / a^3, critical load / a^2, and F_R / a^2 with the repulsion F_R
+  // of two spheres of radius a that touch.
+  std::optional<double> viscous_stress, thermal_stress, critical_stress, repulsion_stress;
   std::optional<double> flow_over_rest;  // see nearly_at_rest
   // The largest rho_i a_i^2 rate / eta and rho_i kT / (eta^2 a_i) of all sizes.
   std::optional<double> largest_stokes, largest_inertia_over_brownian;

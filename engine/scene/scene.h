@@ -31,12 +31,15 @@ struct Physics : EachConservativeLaw<std::optional> {
   std::optional<LubricationParameters> lubrication;
 };
 
+// Name of the viscous stress, the product of viscosity and shear rate.
+inline constexpr const char* viscous_stress_symbol = "η γ̇";
+
 // Return the unit of stresses: viscosity times rate if the flow has a steady part, else the scene's.
 inline double unit_of_stress(const Physics& physics) {
   return physics.flow.steady_rate() > 0 ? physics.viscosity * physics.flow.steady_rate() : 1;
 }
 inline const char* name_of_stress_unit(const Physics& physics) {
-  return physics.flow.steady_rate() > 0 ? "η γ̇" : "stress";
+  return physics.flow.steady_rate() > 0 ? viscous_stress_symbol : "stress";
 }
 
 // Returns why the equilibrium at rest does not have the probabilities exp(-H / kT); empty if it has.

@@ -63,6 +63,26 @@ TEST(DerivedGroups, ScaleWithTheReferenceRadius) {
   EXPECT_NEAR(*groups.peclet, 37.699111843077517, 1e-12);  // 12 pi
 }
 
+// a = 2: eta rate = 0.1 * 0.5, kT / 8, F_CL / 4, and the force at contact over 4. It is A / (0.01 * 4) of the
+// exponential repulsion, F_ER a / a_0 of the screened one.
+TEST(DerivedGroups, StressesAreThoseOfFlowHeatAndForces) {
+  Scene scene = scene_of(0.5, 0.2);
+  scene.particles.reference_radius = 2;
+  scene.physics.contact->friction = 0.5;
+  scene.physics.contact->critical_load = 3;
+  scene.physics.repulsion = RepulsionParameters{.strength = 0.6, .relative_length = 0.01};
+  Json groups = to_json(derived_groups(scene));
+  EXPECT_NEAR(groups.at("viscous_stress").get<double>(), 0.05, 1e-15);
+  EXPECT_NEAR(groups.at("thermal_stress").get<double>(), 0.025, 1e-15);
+  EXPECT_NEAR(groups.at("critical_stress").get<double>(), 0.75, 1e-15);
+  EXPECT_NEAR(groups.at("repulsion_stress").get<double>(), 0.6 / 0.04 / 4, 1e-12);
+  scene.physics.repulsion = RepulsionParameters{
+      .form = RepulsionParameters::Form::screened, .force = 5, .debye_length = 0.1, .reference_radius = 4};
+  EXPECT_NEAR(derived_groups(scene).repulsion_stress.value(), 5 * 2.0 / 4 / 4, 1e-12);
+  EXPECT_FALSE(derived_groups(scene_of(0, 0)).viscous_stress);
+  EXPECT_FALSE(derived_groups(scene_of(0.5, 0)).critical_stress);
+}
+
 TEST(DerivedGroups, WhatHasNoMeaningIsNull) {
   Scene scene = scene_of(0, 0);
   scene.physics.contact.reset();
