@@ -5,14 +5,16 @@ Without a file the figure is shown. This file is a module of the Python package 
 `peclet plot` writes and the page of a campaign saves; the script ends with its numbers, FIGURE. `peclet plot` replaces
 a script only if it has not been changed.
 
-A figure is a dictionary with panels, or with points over a sweep, which over_sweep() turns into panels:
+A figure is a dictionary with panels, or the output of `peclet plot --json`, which figure_of() turns into panels:
 x, y     {about: {words, symbol, unit}, log, categories: words at 0, 1 ... instead of numbers}
 panels   [{title, marks, lines, bands, columns, levels}]
          marks {series, x, y, half, kind, small}; kind: decided, undecided, provisional, jammed (y may be null)
-         lines {series, style, places: [x, y]}; style: guide, line, dashed
+         lines {series, style, places: [x, y]}; style: guide, line, dashed, provisional
          bands {series, places: [x, low, high]}; columns, which are boxes {series, from, to, low, high}
          levels {series, value, across}
-legend   [{series, name, kind}]; kinds: of the marks; hasBand, bandName; notes: texts about omitted points
+legend   [{series, name, kind}], kind: column, line or that of a mark; kinds: of the marks; hasBand, bandName
+notes    texts about omitted points
+Series, lines and bands may have a shade from 0 to 1 in place of the colour of their series.
 Symbols, names and titles are lists of parts {text, level}: level -1 is a subscript, 1 a superscript.
 """
 import json
@@ -78,10 +80,56 @@ def words_of(name):
 
 
 def about_quantity(quantity):
-    """Returns {words, symbol, unit} of a quantity {name, element, symbol, unit}."""
+    """Returns {words, symbol, unit} of a quantity {name, element, symbol, unit, scale}."""
     words = words_of(quantity["name"]) + (f", {quantity['element']}" if quantity["element"] else "")
     symbol = parts_of(quantity["symbol"], quantity["element"]) if quantity["symbol"] else []
+    symbol += scale_of(quantity, symbol)
     return {"words": words, "symbol": symbol, "unit": unit_of(quantity["unit"])}
+
+
+def scale_of(one, symbol):
+    """Returns the parts of the scale of a quantity, key or axis, " / τ_B"; without blanks if no symbol precedes."""
+    scale = one.get("scale", "")
+    return parts_of(scale if symbol else scale.strip())
+
+
+def short_of(about):
+    """Returns the symbol of a description, or its words if it has none."""
+    return about["symbol"] or plain(about["words"])
+
+
+def joined(names, between=", "):
+    """Returns lists of parts as one, with a text between them."""
+    return [part for at, name in enumerate(names) for part in (plain(between) if at else []) + name]
+
+
+def about_quantities(quantities):
+    """Returns the description of an axis of quantities that have one unit, and the name of each in a legend.
+
+    The axis of several has the words that their names begin with alike, if any, and the symbol of each.
+    """
+    abouts = [about_quantity(one) for one in quantities]
+    if len(abouts) == 1:
+        return abouts[0], [[]]
+    steps = [one["name"].split("/") for one in quantities]
+    alike = 0
+    while all(len(own) > alike and own[alike] == steps[0][alike] for own in steps):
+        alike += 1
+    scale, symbols = parts_of(quantities[0].get("scale", "")), [
+        parts_of(one["symbol"], one["element"]) for one in quantities
+    ]
+    if all(symbols):
+        symbol = joined(symbols)
+        symbol = plain("(") + symbol + plain(")") + scale if scale else symbol
+    else:
+        symbol = scale
+    words = words_of("/".join(steps[0][:alike])) or (
+        "" if all(symbols) else " and ".join(one["words"] for one in abouts)
+    )
+    names = [short_of({"symbol": own, "words": one["words"]}) for own, one in zip(symbols, abouts)]
+    if len({json.dumps(name) for name in names}) < len(names):
+        names = [plain(one["words"]) for one in abouts]
+    return {"words": words, "symbol": symbol, "unit": abouts[0]["unit"]}, names
 
 
 def about_key(key):
@@ -91,7 +139,9 @@ def about_key(key):
     """
     steps = key["pointer"].strip("/").split("/")
     words = key["words"] or words_of(" ".join(steps[-2:] if steps[-1].isdigit() else steps[-1:]))
-    return {"words": words, "symbol": parts_of(key["symbol"]), "unit": unit_of(key["unit"])}
+    symbol = parts_of(key["symbol"])
+    symbol += scale_of(key, symbol)
+    return {"words": words, "symbol": symbol, "unit": unit_of(key["unit"])}
 
 
 def unit_of(unit):
@@ -102,7 +152,7 @@ def title_of(about, longest=math.inf):
     """Returns the title of an axis: words, symbol and unit. A title of more than `longest` characters has two lines."""
     symbol = [*plain(" "), *about["symbol"]] if about["symbol"] else []
     unit = [*plain(" ["), *parts_of(about["unit"]), *plain("]")] if about["unit"] else []
-    title = plain(about["words"]) + symbol + unit
+    title = plain(about["words"]) + symbol + unit if about["words"] else about["symbol"] + unit
     if len(title) > 1 and len("".join(part["text"] for part in title)) > longest:
         title[1:2] = plain(title[1]["text"].replace(" ", "\n", 1))
     return title
@@ -178,7 +228,7 @@ def swept(parameter, points):
     return {
         "pointer": parameter["pointer"],
         "about": about,
-        "name": about["symbol"] or plain(about["words"]),
+        "name": short_of(about_key(parameter | {"scale": ""})),
         "numeric": all(map(is_number, cells)),
         "cells": cells,
         "values": values,
@@ -207,29 +257,84 @@ def ends(mark):
     return [mark["y"], mark["y"] - mark["half"], mark["y"] + mark["half"]]
 
 
+def is_certain(mark):
+    """Returns True for a number of a point that flows whose interval is narrower than the number itself."""
+    return mark["kind"] != "jammed" and mark["half"] is not None and mark["half"] < abs(mark["y"])
+
+
+def reached(panels, log):
+    """Returns the numbers along y that the frame must show.
+
+    A number is uncertain if its point has jammed, or if its interval is wider than the number itself, as the mean of
+    seeds of which a few have nearly jammed. Uncertain numbers stretch the axis to ten times the others at most, and
+    those of curves a logarithmic axis to a tenth of the others.
+    """
+    factor, certain, uncertain, along_curves, always = 10, [], [], [], []
+    for panel in panels:
+        for mark in panel["marks"]:
+            if mark["y"] is not None:
+                (certain if is_certain(mark) else uncertain).extend(ends(mark))
+        for _, low, high in (place for band in panel.get("bands", []) for place in band["places"]):
+            (certain if high - low < abs(high + low) else along_curves).extend((low, high))
+        for line in panel.get("lines", []):
+            along_curves += [y for _, y in line["places"] if line["style"] != "guide"]
+        for box in panel.get("columns", []):
+            certain += [box["low"], box["high"]]
+        always += [level["value"] for level in panel.get("levels", []) if level["across"]]
+    certain, uncertain, along_curves, always = (
+        [y for y in ys if is_number(y) and (y > 0 or not log)] for ys in (certain, uncertain, along_curves, always)
+    )
+    sizes = [abs(y) for y in certain]
+    if any(sizes):
+        uncertain = [y for y in uncertain if abs(y) <= factor * max(sizes)]
+        least = min(sizes) / factor if log else -math.inf
+        along_curves = [y for y in along_curves if least <= y and abs(y) <= factor * max(sizes)]
+    return always + certain + uncertain + along_curves
+
+
+def figure_of(data):
+    """Returns the figure of `peclet plot`, whose numbers `data` are the output of `peclet plot --json`."""
+    return over_axis(data) if "axis" in data else over_sweep(data)
+
+
+def names_by(columns, points, names):
+    """Returns the name of the curve of each point: the name of its quantity and its values of `columns`."""
+    at = {one["path"]: name for one, name in names}
+    named = []
+    for k, point in enumerate(points):
+        own = [one["name"] + plain(" = " + one["words"][k]) for one in columns]
+        named.append(joined([*filter(None, [at[point["quantity"]]]), *own]))
+    return named
+
+
+def columns_of(data):
+    """Returns the swept parameters with their values at each point; the points themselves if nothing is swept."""
+    points = data["points"]
+    if data["parameters"]:
+        return [swept(parameter, points) for parameter in data["parameters"]]
+    itself = {"pointer": "", "words": "point", "symbol": "", "unit": ""}
+    return [swept(itself, [{"settings": {"": point["label"]}} for point in points])]
+
+
 def over_sweep(data):
-    """Returns the figure of `peclet plot`: every point of `data` over the parameter `over`.
+    """Returns the figure of numbers: every point of `data` over the parameter `over`.
 
     There is a curve for each value of the parameter `by`, or, without it, for each combination of all other parameters
-    that vary independently of `over`. `data` is the output of `peclet plot --json`.
+    that vary independently of `over`, of each quantity.
     """
-    points = data["points"]
-    columns = [swept(parameter, points) for parameter in data["parameters"]]
-    if not columns:
-        itself = {"pointer": "", "words": "point", "symbol": "", "unit": ""}
-        columns = [swept(itself, [{"settings": {"": point["label"]}} for point in points])]
+    points, columns = data["points"], columns_of(data)
     axis = next(one for one in columns if one["pointer"] == data["over"])
     others = [one for one in columns if one is not axis and len(one["values"]) > 1 and not follows(one, axis)]
     if data.get("by"):
         others = [one for one in columns if one["pointer"] == data["by"]]
-    series, marks, absent = {}, [], 0
+    about, of_quantities = about_quantities(data["quantities"])
+    named = names_by(others, points, list(zip(data["quantities"], of_quantities)))
+    series, marks, absent = {}, [], data["absent"]
     for k, point in enumerate(points):
         if point["mean"] is None and not point["jammed"]:
             absent += 1
             continue
-        names = [one["name"] + plain(" = " + one["words"][k]) for one in others]
-        name = [part for at, one in enumerate(names) for part in (plain(", ") if at else []) + one]
-        place = series.setdefault(json.dumps(name), {"series": len(series), "name": name})["series"]
+        place = series.setdefault(json.dumps(named[k]), {"series": len(series), "name": named[k]})["series"]
         x = axis["cells"][k] if axis["numeric"] else axis["values"].index(axis["cells"][k])
         mark = {"series": place, "x": x, "y": point["mean"], "half": point["half_width"], "kind": kind_of(point)}
         marks.append({**mark, "good_enough": point["good_enough"], "curve": point.get("curve")})
@@ -237,7 +342,7 @@ def over_sweep(data):
     log = data["log"]
     logs = {
         "x": axis["numeric"] and (is_logarithmic([mark["x"] for mark in marks]) if log is None else "x" in log),
-        "y": is_logarithmic([end for mark in marks for end in ends(mark)]) if log is None else "y" in log,
+        "y": is_logarithmic(reached([{"marks": marks}], False)) if log is None else "y" in log,
     }
     visible = [mark for mark in marks if not is_hidden(mark, logs)]
     panel = {"marks": visible, "lines": [], "bands": []}
@@ -257,14 +362,108 @@ def over_sweep(data):
     categories = None if axis["numeric"] else list(dict.fromkeys(axis["words"]))
     return {
         "x": {"about": axis["about"], "log": logs["x"], "categories": categories},
-        "y": {"about": about_quantity(data["quantity"]), "log": logs["y"]},
+        "y": {"about": about, "log": logs["y"]},
         "panels": [panel],
-        "legend": list(series.values()) if others else [],
+        "legend": list(series.values()) if others or len(of_quantities) > 1 else [],
         "kinds": [mark["kind"] for mark in visible],
         "hasBand": bool(panel["bands"]),
         "bandName": "tolerance" if data["tolerance"] else "band of the curve",
-        "notes": notes(absent, len(marks) - len(visible), data["quantity"]["path"]),
+        "notes": notes(absent, len(marks) - len(visible), data["quantities"][0]["path"]),
     }
+
+
+def distinguishing(columns):
+    """Returns the parameters that vary, without those that follow from one of the others."""
+    found = []
+    for one in columns:
+        if len(one["values"]) > 1 and not any(follows(one, other) for other in found):
+            found = [other for other in found if not follows(other, one)] + [one]
+    return found
+
+
+def over_axis(data):
+    """Returns the figure of quantities along an axis of their own: a curve for each point and quantity.
+
+    Beyond as many curves as there are colours, the parameter with the fewest values has a panel for each; if a single
+    parameter of numbers distinguishes the curves, they have shades instead. A jammed point without a curve is a cross
+    at the upper edge.
+    """
+    points, axis = data["points"], data["axis"]
+    about, of_quantities = about_quantities(data["quantities"])
+    by, panel_by = distinguishing(columns_of(data)), []
+    is_shaded = len(points) > len(COLOURS) and len(by) == 1 and by[0]["numeric"] and len(of_quantities) == 1
+    if len(points) > len(COLOURS) and len(by) > 1:
+        panel_by = [min(by, key=lambda one: len(one["values"]))]
+    by = [one for one in by if one not in panel_by]
+    named = names_by(by, points, list(zip(data["quantities"], of_quantities)))
+    titles = [joined([one["name"] + plain(" = " + one["words"][k]) for one in panel_by]) for k in range(len(points))]
+    in_order = sorted(range(len(points)), key=lambda k: by[0]["cells"][k]) if is_shaded else range(len(points))
+    series, panels, kinds, absent = {}, {}, [], data["absent"]
+    for k in in_order:
+        point, kind = points[k], kind_of(points[k])
+        places = [one for one in zip(point["x"], point["mean"], point["half_width"]) if one[1] is not None]
+        if not places and kind != "jammed":
+            absent += 1
+            continue
+        own = series.setdefault(json.dumps(named[k]), {"series": len(series), "name": named[k], "kind": "line"})
+        if is_shaded:
+            own["shade"] = in_order.index(k) / (len(points) - 1)
+        look = {name: own[name] for name in ("series", "shade") if name in own}
+        panel = panels.setdefault(json.dumps(titles[k]), {"title": titles[k], "marks": [], "lines": [], "bands": []})
+        style = "provisional" if kind == "provisional" else "line"
+        panel["lines"].append({**look, "style": style, "places": [[x, y] for x, y, _ in places]})
+        band = [[x, y - half, y + half] for x, y, half in places if half is not None]
+        if band:
+            panel["bands"].append({**look, "places": band})
+        if kind == "jammed":
+            x, y = places[-1][:2] if places else (None, None)
+            panel["marks"].append({**look, "x": x, "y": y, "half": None, "kind": kind})
+        kinds += [kind] if kind in ("provisional", "jammed") else []
+    panels, log = list(panels.values()), data["log"]
+    xs = [x for panel in panels for line in panel["lines"] for x, _ in line["places"]]
+    logs = {
+        "x": is_logarithmic(set(xs)) if log is None else "x" in log,
+        "y": is_logarithmic(reached(panels, False)) if log is None else "y" in log,
+    }
+    for panel in panels:
+        place_jams(panel["marks"], [x for x in xs if x > 0 or not logs["x"]], logs["x"])
+    hidden = sum(
+        is_hidden({"x": x, "y": y, "kind": "line"}, logs)
+        for panel in panels
+        for line in panel["lines"]
+        for x, y in line["places"]
+    )
+    return {
+        "x": {
+            "about": {"words": words_of(axis["name"]), "symbol": scale_of(axis, []), "unit": unit_of(axis["unit"])},
+            "log": logs["x"],
+            "categories": None,
+        },
+        "y": {"about": about, "log": logs["y"]},
+        "panels": panels,
+        "legend": shown_in_legend(list(series.values())) if len(series) > 1 else [],
+        "kinds": kinds,
+        "hasBand": any(panel["bands"] for panel in panels),
+        "bandName": "interval of the mean",
+        "notes": notes(absent, hidden, data["quantities"][0]["path"]),
+    }
+
+
+def shown_in_legend(series):
+    """Returns at most ten of the series that have shades, at equal distances; all of those that have colours."""
+    step = -(-(len(series) - 1) // 9) if "shade" in series[0] else 1
+    return series[::step]
+
+
+def place_jams(marks, xs, log):
+    """Places jammed points without a curve side by side at the right end of the numbers `xs`."""
+    along = [math.log10(x) for x in xs] if log else xs
+    if not along:
+        along = [0, 1]
+    step = (max(along) - min(along)) / 30
+    for at, mark in enumerate(mark for mark in marks if mark["y"] is None):
+        x = max(along) - at * step
+        mark["x"] = 10**x if log else x
 
 
 def is_hidden(mark, logs):
@@ -309,38 +508,53 @@ def draw(figure):
 
 def draw_panel(axes, figure, panel):
     """Draws one panel of a figure in matplotlib's `axes`."""
-    for band in panel.get("bands", []):
-        x, low, high = zip(*band["places"])
-        axes.fill_between(x, low, high, color=colour_of(band), alpha=0.16, linewidth=0)
     for box in panel.get("columns", []):
         width, height = box["to"] - box["from"], box["high"] - box["low"]
         axes.bar(box["from"], height, width, box["low"], align="edge", color=colour_of(box), alpha=0.55)
     for level in panel.get("levels", []):
         line = axes.axhline if level["across"] else axes.axvline
         line(level["value"], color=colour_of(level), linestyle="--", linewidth=1)
-    logs = {name: figure[name]["log"] for name in "xy"}
+    logs, frame = {name: figure[name]["log"] for name in "xy"}, span(figure, "y")
+    styles = {
+        "guide": {"linewidth": 0.8, "alpha": 0.6},
+        "dashed": {"linewidth": 1, "linestyle": "--"},
+        "provisional": {"linewidth": 1.2, "linestyle": DASHES},
+    }
+    for band in panel.get("bands", []):
+        # A logarithmic axis has no place for an end below zero: the band is cut below the frame.
+        least = 0.1 * frame[0] if logs["y"] and frame else -math.inf
+        shown = [place for place in band["places"] if place[0] > 0 or not logs["x"]]
+        x, low, high = (
+            zip(*((x, max(low, least), max(high, least)) for x, low, high in shown)) if shown else ([], [], [])
+        )
+        axes.fill_between(x, low, high, color=colour_of(band), alpha=0.16, linewidth=0)
     for line in panel.get("lines", []):
-        styles = {"guide": {"linewidth": 0.8, "alpha": 0.6}, "dashed": {"linewidth": 1, "linestyle": "--"}}
         places = [(x, y) for x, y in line["places"] if not is_hidden({"x": x, "y": y, "kind": "line"}, logs)]
         if len(places) > 1:
             x, y = zip(*places)
             axes.plot(x, y, color=colour_of(line), **styles.get(line["style"], {"linewidth": 1.2}))
-    alike = {}
+    alike, at_edge = {}, {}
     for mark in panel["marks"]:
-        if mark["kind"] == "jammed":
-            draw_jam(axes, mark, logs["y"])
-        elif not is_hidden(mark, logs):
+        if is_hidden(mark, logs):
+            continue
+        if mark["kind"] == "jammed" or is_beyond(mark, frame):
+            draw_at_edge(axes, mark, frame, at_edge)
+        else:
             alike.setdefault((mark["series"], mark["kind"], mark.get("small")), []).append(mark)
     for marks in alike.values():
         draw_marks(axes, marks)
-    for name in "xy":
-        set_axis(axes, name, figure[name], span(figure, name))
+    for name, ends_of in (("x", span(figure, "x")), ("y", frame)):
+        set_axis(axes, name, figure[name], ends_of)
     if panel.get("title"):
         axes.set_title(mathtext(panel["title"]), fontsize="medium")
 
 
 def colour_of(one):
-    """Returns the colour of a mark, line, band, column or level, by its series."""
+    """Returns the colour of a mark, line, band, column or level, by its shade or its series."""
+    if "shade" in one:
+        import matplotlib
+
+        return matplotlib.colormaps["viridis"](0.92 * one["shade"])
     return COLOURS[one.get("series", 0) % len(COLOURS)]
 
 
@@ -357,41 +571,45 @@ def draw_marks(axes, marks):
     axes.plot(x, y, marker, color=colour, markersize=size, markerfacecolor=face, zorder=3)
 
 
-def draw_jam(axes, mark, log):
-    """Draws a cross for a jammed point, at its number or at the edge of the frame.
+def is_beyond(mark, frame):
+    """Returns True if the number of a mark lies outside of the frame, whose ends along y are `frame`."""
+    return mark["y"] is not None and frame is not None and not frame[0] <= mark["y"] <= frame[1]
 
-    It is at the upper edge without a number, at the lower edge if the number has no place on a logarithmic axis.
+
+def draw_at_edge(axes, mark, frame, others):
+    """Draws a cross for a jammed point, an arrow head for another one: at its number, or at the edge of the frame.
+
+    A jammed point without a number is at the upper edge. `others` counts the signs at each place of the edges; further
+    ones stand beside them, towards the middle.
     """
-    colour, y, scale = colour_of(mark), mark["y"], {}
-    if y is None or log and y <= 0:
-        y, scale = 1 if y is None else 0, {"transform": axes.get_xaxis_transform(), "clip_on": False}
+    colour, y, scale, sign = colour_of(mark), mark["y"], {}, "x"
+    if y is None or is_beyond(mark, frame):
+        above = y is None or y > frame[1]
+        place = (mark["x"], above)
+        shift, others[place] = 0.035 * others.get(place, 0), others.get(place, 0) + 1
+        y, scale = 1 - shift if above else shift, {"transform": axes.get_xaxis_transform(), "clip_on": False}
+        sign = "x" if mark["kind"] == "jammed" else "^" if above else "v"
     elif is_number(mark.get("half")):
         axes.errorbar(mark["x"], y, mark["half"], fmt="none", ecolor=colour, elinewidth=1, capsize=2.5, zorder=2)
-    axes.plot(mark["x"], y, "x", color=colour, markersize=6, zorder=3, **scale)
+    axes.plot(mark["x"], y, sign, color=colour, markersize=6, zorder=3, **scale)
 
 
 def span(figure, name):
     """Returns the smallest and the largest number that must be visible along an axis, or None without numbers."""
-    log, numbers, centres = figure[name]["log"], [], []
-    for panel in figure["panels"]:
-        if name == "x":
-            numbers += [mark["x"] for mark in panel["marks"]]
-        else:
-            numbers += [end for mark in panel["marks"] for end in ends(mark)]
-            centres += [mark["y"] for mark in panel["marks"] if mark["y"] is not None]
-        for line in panel.get("lines", []):
-            numbers += [place["xy".index(name)] for place in line["places"]]
-        for band in panel.get("bands", []):
-            numbers += [end for place in band["places"] for end in (place[:1] if name == "x" else place[1:])]
-        for box in panel.get("columns", []):
-            numbers += [box["from"], box["to"]] if name == "x" else [box["low"], box["high"]]
-        numbers += [level["value"] for level in panel.get("levels", []) if level["across"] == (name == "y")]
+    log, panels = figure[name]["log"], figure["panels"]
+    numbers = reached(panels, log) if name == "y" else []
+    for panel in panels if name == "x" else []:
+        numbers += [mark["x"] for mark in panel["marks"]]
+        numbers += [place[0] for kind in ("lines", "bands") for one in panel.get(kind, []) for place in one["places"]]
+        numbers += [end for box in panel.get("columns", []) for end in (box["from"], box["to"])]
+        numbers += [level["value"] for level in panel.get("levels", []) if not level["across"]]
     numbers = [number for number in numbers if is_number(number) and (number > 0 or not log)]
     if not numbers:
         return None
-    low, above = min(numbers), [centre for centre in centres if centre > 0]
+    low = min(numbers)
     # A bar that ends near zero is cut off, so that it does not compress the rest of a logarithmic axis.
-    if log and above:
+    above = [mark["y"] for panel in panels for mark in panel["marks"] if mark["y"] is not None and mark["y"] > 0]
+    if name == "y" and log and above:
         low = max(low, min(above) / 3)
     return low, max(numbers)
 
@@ -448,14 +666,23 @@ def legend_of(figure):
     for one in figure.get("legend", []):
         if one.get("kind") == "column":
             say_area(mathtext(one["name"]), colour_of(one), 0.55)
+        elif one.get("kind") == "line":
+            say(mathtext(one["name"]), "", color=colour_of(one), linestyle="-")
         else:
             say(mathtext(one["name"]), MARKERS[one["series"] % len(MARKERS)], color=colour_of(one))
-    kinds = figure.get("kinds", [])
-    for kind, name, line in (("undecided", "not converged", "none"), ("provisional", "provisional", DASHES)):
+    kinds, panels = figure.get("kinds", []), figure["panels"]
+    marker = MARKERS[0] if any(mark["kind"] == "provisional" for panel in panels for mark in panel["marks"]) else ""
+    for kind, name, sign, line in (
+        ("undecided", "not converged", MARKERS[0], "none"),
+        ("provisional", "provisional", marker, DASHES),
+    ):
         if kind in kinds:
-            say(name, MARKERS[0], color=COLOURS[0], markerfacecolor="white", linestyle=line, linewidth=1)
+            say(name, sign, color=COLOURS[0], markerfacecolor="white", linestyle=line, linewidth=1)
     if "jammed" in kinds:
         say("jammed", "x", color=COLOURS[0])
+    frame = span(figure, "y")
+    if any(mark["kind"] != "jammed" and is_beyond(mark, frame) for panel in panels for mark in panel["marks"]):
+        say("beyond the frame", "^", color=COLOURS[0])
     if figure.get("hasBand"):
         say_area(figure.get("bandName", "tolerance"), COLOURS[0], 0.16)
     return handles
@@ -501,7 +728,7 @@ def main(figure):
         sys.exit(f"{sys.executable} cannot import matplotlib ({missing}); install it with {cure}")
     if len(sys.argv) > 1:
         matplotlib.use("Agg")
-    figure = figure if "panels" in figure else over_sweep(figure)
+    figure = figure if "panels" in figure else figure_of(figure)
     drawing, _ = draw(figure)
     for note in figure.get("notes", []):
         print(note)

@@ -4,9 +4,9 @@ import io
 import json
 import os
 
-from peclet.drawing import cure_for, draw_panel, legend_of, over_sweep, plain
+from peclet.drawing import cure_for, draw_panel, figure_of, legend_of, plain
 from peclet.program import PecletError, ask
-from peclet.table import Table, cell_of, is_same
+from peclet.table import Table, cell_of
 
 ESTIMATE = ("mean", "standard_error", "half_width")
 # Columns of the exports that are texts, even if they look like numbers.
@@ -83,6 +83,13 @@ def elements(rows, wanted):
 def cell_value(value):
     """Returns a value of a scene as tables show it: lists and objects as JSON texts."""
     return json.dumps(value, separators=(",", ":")) if isinstance(value, (dict, list)) else value
+
+
+def pointer_of(name, pointers):
+    """Returns the pointer of the swept parameter with this short name."""
+    if name not in pointers:
+        raise PecletError(f"{name}: is not swept; there are {', '.join(pointers)}")
+    return pointers[name]
 
 
 class Results:
@@ -283,36 +290,39 @@ class Results:
         """
         return json.loads(self._ask("fit", "--json", "--law", law, *options))
 
-    def plot(self, quantity=None, x=None, by=None, axes=None, label=None, log=None, where=None):
-        """Plots the estimate of every point over one swept parameter, with confidence intervals, as `peclet plot` does.
+    def plot(
+        self, quantity=None, x=None, by=None, axes=None, label=None, log=None, where=None, scale_x=None, scale_y=None
+    ):
+        """Plots estimates with their confidence intervals, as `peclet plot` does.
 
-        quantity  name of a single number; by default the campaign's target
-        x         name of the swept parameter on the axis; by default the one with most values. Values that are words,
-                  such as "auto", are placed side by side
+        quantity  name of a number, drawn over a swept parameter, or of a quantity with an axis, such as
+                  transient/shear_stress, drawn along it with a curve for each point; by default the campaign's target.
+                  A list draws quantities of one unit together
+        x         name of the swept parameter on the axis, or of a derived number such as "peclet"; by default the
+                  parameter with most values. Values that are words, such as "auto", are placed side by side
         by        name of another swept parameter, with a curve for each value; by default all others that vary
         axes      matplotlib's Axes to draw in; by default new ones
         label     name of the curve in the legend, if there is a single one
         log       logarithmic axes: "", "x", "y" or "xy"; by default chosen by the values
         where     values of swept parameters by name, a dictionary; restricts the points
+        scale_x, scale_y  number, or name of a derived number such as "brownian_time", by which an axis is divided
 
         Open marks are points that have not converged; those without a bar have had no stop test. Crosses are jammed
         points, at the edge of the frame if they have no value. Returns matplotlib's Axes. Raises PecletError if
-        nothing is swept, a name is wrong, or matplotlib is not installed.
+        nothing is swept, a name is wrong, the curves need several panels, or matplotlib is not installed.
         """
         try:
             import matplotlib.pyplot as pyplot
         except ImportError as missing:
             raise PecletError(f"plots need matplotlib: {cure_for('matplotlib', 'python3-matplotlib')}") from missing
-        data = json.loads(self._ask("plot", "--json", *(["--quantity", quantity] if quantity else [])))
-        if not data["parameters"]:
+        data = json.loads(self._ask("plot", "--json", *self._plot_options(quantity, x, where, scale_x, scale_y)))
+        if not data["parameters"] and "axis" not in data:
             raise PecletError("nothing is swept in this campaign: no axis to draw over")
-        pointers = {name: key for key, name in short_names([key["pointer"] for key in data["parameters"]]).items()}
-        for name in [x, by, *(where or {})]:
-            if name is not None and name not in pointers:
-                raise PecletError(f"{name}: is not swept; there are {', '.join(pointers)}")
-        for name, value in (where or {}).items():
-            data["points"] = [p for p in data["points"] if is_same(cell_value(p["settings"][pointers[name]]), value)]
-        figure = over_sweep(data | {"over": pointers.get(x, data["over"]), "by": pointers.get(by), "log": log})
+        if by is not None and "axis" in data:
+            raise PecletError(f"{by}: a quantity with an axis has a curve for each point")
+        figure = figure_of(data | {"by": by and pointer_of(by, self._pointers()), "log": log})
+        if len(figure["panels"]) > 1:
+            raise PecletError(f"{len(figure['panels'])} panels: choose points with where")
         if figure["x"]["categories"] and "x" in (log or ""):
             raise PecletError(f"{x}: has words, and no logarithmic axis")
         if label and not figure["legend"]:
@@ -327,6 +337,23 @@ class Results:
         if handles:
             axes.legend(frameon=False)
         return axes
+
+    def _plot_options(self, quantity, x, where, scale_x, scale_y):
+        """Returns the options of `peclet plot` for the arguments of plot()."""
+        quantities = [] if quantity is None else [quantity] if isinstance(quantity, str) else quantity
+        options = [word for one in quantities for word in ("--quantity", one)]
+        pointers = self._pointers() if x is not None or where else {}
+        for option, value in (("--over", pointers.get(x, x)), ("--scale-x", scale_x), ("--scale-y", scale_y)):
+            options += [] if value is None else [option, str(value)]
+        for name, value in (where or {}).items():
+            text = value if isinstance(value, str) else json.dumps(getattr(value, "item", lambda: value)())
+            options += ["--where", f"{pointer_of(name, pointers)}={text}"]
+        return options
+
+    def _pointers(self):
+        """Returns the pointers of the swept parameters, by their short names."""
+        columns = next(iter(self._rows("csv")), {})
+        return {short: key for key, short in short_names([key for key in columns if key.startswith("/")]).items()}
 
     def __repr__(self):
         return f"peclet.open({self.path!r})"

@@ -316,12 +316,20 @@ void draw_campaign(const PlotOptions& options) {
 
 void add_plot(VerbSet& verbs) {
   const auto [verb, options] = verbs.add<PlotOptions>(
-      draw_campaign, "plot", "Draw a measured quantity over a swept parameter, with the script of the figure",
+      draw_campaign, "plot", "Draw measured quantities over a swept parameter or an axis of their own",
       {0, 1, 2, 6}, R"(
 Draws every point with its interval at the campaign's confidence, and a curve for each combination of values
 of the other swept parameters. Numbers are those of `export`. Those of the target are the deciding ones,
 with the control variate if there is one. Open marks are points that have not converged; those with dashed
 bars are provisional. Crosses are points that have jammed.
+
+A quantity with an axis of numbers (strain, time, frequency, r, y) is drawn along it: a curve for each
+point, with the interval of the mean as a band. Dashed curves are provisional. A quantity with further axes
+needs their elements, as profiles/stress/total/xy.
+
+--scale-x and --scale-y divide an axis by a number, or by a number that follows from the scene: times and
+stresses such as brownian_time, shear_time, thermal_stress, critical_stress, repulsion_stress. An axis in 1 /
+time is multiplied by a time.
 
 The ending of --output chooses the form. Pictures are drawn with matplotlib, by the python3 in PATH. Beside
 the picture a script of the same name and the ending .py is written, which holds the numbers and draws the
@@ -334,17 +342,29 @@ script that was changed is never replaced. Axes are logarithmic if the numbers t
   peclet plot flow-curve.json --band > flow-curve.svg
   # one component of the stress
   peclet plot flow-curve.json --quantity stress/total/xy --output xy.png
+  # a stress over strain, at some of the points
+  peclet plot flow-curve.json --quantity transient/shear_stress --where peclet=10 --output start.svg
+  # both moduli in units of k_B T / a^3 over the frequency in Brownian times
+  peclet plot moduli.json --quantity linear_response/storage --quantity linear_response/loss \
+    --scale-x brownian_time --scale-y thermal_stress --output moduli.pdf
   # the script alone, which needs no matplotlib yet
   peclet plot flow-curve.json --output xy.py
 )");
   add_campaign(verb, *options);
-  add_option(verb, "--quantity NAME", options->choice.quantity,
-             "Number to draw, as `export` calls it; the campaign's target unless given");
+  add_option(verb, "--quantity NAME", options->choice.quantities,
+             "Quantity to draw, as `export` calls it; the campaign's target unless given; may be repeated")
+      ->allow_extra_args(false);
   add_option(verb, "--over PARAMETER", options->choice.over,
-             "Swept parameter on the axis: its pointer or the last word of it; the one with most "
-             "values unless given");
-  add_option(verb, "--log AXES", options->choice.scale,
-             "Logarithmic axes; chosen by the numbers unless given")
+             "Swept parameter on the axis: its pointer or the last word of it; or a derived number, such as "
+             "peclet; the parameter with most values unless given");
+  add_option(verb, "--where NAME=VALUE", options->choice.where,
+             "Draw only points with this value of a swept parameter; may be repeated")
+      ->allow_extra_args(false);
+  add_option(verb, "--scale-x NUMBER", options->choice.scale_x,
+             "Number, or name of a derived number, by which the horizontal axis is divided");
+  add_option(verb, "--scale-y NUMBER", options->choice.scale_y,
+             "Number, or name of a derived number, by which the quantity is divided");
+  add_option(verb, "--log AXES", options->choice.log, "Logarithmic axes; chosen by the numbers unless given")
       ->check(CLI::IsMember({"none", "x", "y", "xy"}));
   verb->add_flag("--band", options->choice.tolerance, "Draw the tolerance as a band around each mean");
   add_option(verb, "--output FILE", options->output,

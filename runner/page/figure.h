@@ -1,5 +1,5 @@
-// A measured quantity over a swept parameter, as numbers and as the script that draws them. Numbers are those
-// of the page, which are those of `peclet export`.
+// Measured quantities over a swept parameter, or along an axis of their own, as numbers and as the script
+// that draws them. Numbers are those of `peclet export`.
 #pragma once
 
 #include <filesystem>
@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "contract/json.h"
 #include "runner/store/database.h"
@@ -14,16 +15,20 @@
 namespace peclet::runner {
 
 struct FigureChoice {
-  std::string quantity;              // "" or a path: "pressure", "stress/total/3", "stress/total/xy"
-  std::string over;                  // "" or a swept parameter: "/volume_fraction", "volume_fraction"
-  std::optional<std::string> scale;  // logarithmic axes: "none", "x", "y", "xy"; those that fit unless given
+  // The target, or quantities of one unit: "pressure", "stress/total/xy", "transient/shear_stress".
+  std::vector<std::string> quantities{};
+  // A swept parameter or a derived number: "/volume_fraction", "volume_fraction", "peclet"; chosen if empty.
+  std::string over{};
+  std::vector<std::string> where{};  // as in read_sweep()
+  std::string scale_x{}, scale_y{};  // as in DerivedNumbers::scale(); "": not scaled
+  std::optional<std::string> log{};  // logarithmic axes: "none", "x", "y", "xy"; those that fit unless given
   bool tolerance = false;            // draw the tolerance as a band around each mean
 };
 
-// Returns the document that python/peclet/drawing.py draws (its docstring lists the members): the quantity,
-// the swept parameters, and the numbers of each point, null if it has none. Throws InputError for a quantity
-// that is not measured or a parameter that is not swept, and names the possible ones; also if the axes can
-// show no point. Throws IntegrityError.
+// Returns the document that python/peclet/drawing.py draws (over_sweep() and over_axis() list the members):
+// the quantities, the swept parameters, and the numbers of each point, null if it has none. Throws InputError
+// for a quantity that is not measured or a parameter that is not swept, and names the possible ones; also if
+// the axes can show no point. Throws IntegrityError.
 Json figure_data(Database& database, const FigureChoice& choice);
 
 // Returns drawing.py with these data in it, one line for each member and each point. The last line has the

@@ -37,6 +37,10 @@ struct KnownPoint {
 };
 using KnownPoints = std::map<std::int64_t, KnownPoint>;  // by PointRecord::id
 
+// Returns the first result of a point that has completed, otherwise the first one that has not; an empty
+// object without results.
+Json first_result(Database& database, std::int64_t point);
+
 struct PagePoints {
   std::vector<Drawable> drawables;
   Json points = Json::array();  // each with "estimates", one for each drawable

@@ -232,12 +232,20 @@ std::vector<Drawable> drawables_of(const Quantity& quantity) {
   return found;
 }
 
-// Returns the first result that has completed, or an empty object.
-Json first_result(Database& database, const PointRecord& point) {
-  const std::vector<int> completed = database.completed(point.id, most_realisations);
-  if (completed.empty()) return Json::object();
-  return database.result(point.id, completed.front()).value_or(Json::object());
+}  // namespace
+
+Json first_result(Database& database, std::int64_t point) {
+  std::vector<int> seeds = database.completed(point, most_realisations);
+  if (seeds.empty()) {
+    for (const RealisationRecord& seed : database.realisations(point)) seeds.push_back(seed.seed);
+  }
+  for (const int seed : seeds) {
+    if (std::optional<Json> result = database.result(point, seed)) return std::move(*result);
+  }
+  return Json::object();
 }
+
+namespace {
 
 // Returns the bands of curves that are known and not refused: {"relative_viscosity": {"mean", "low",
 // "high"}}.
@@ -279,7 +287,7 @@ class PointPage {
     const Target& target = target_.target;
     StopRule rule(target, target_.minimum, target_.maximum);
     const Values found = values_of(database_.outcomes(point_.point.id), end());
-    const Json first = first_result(database_, point_.point);
+    const Json first = first_result(database_, point_.point.id);
     known_.key = key_of(point_, target_);
     known_.warnings = first.value("warnings", Json::array());
     known_.json = {{"groups", first.value("derived", Json())},

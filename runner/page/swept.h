@@ -29,12 +29,20 @@ struct MeasuredSweep {
   std::vector<Swept> swept;  // one for each parameter; the labels of the points if nothing is swept
 };
 
-// Throws IntegrityError.
-MeasuredSweep read_sweep(Database& database);
+// Returns the parameters with their values at the points; the labels of the points if there is none.
+std::vector<Swept> swept_columns(const Json& parameters, const Json& points);
 
-// Returns the place of the drawable with this name, which is its path or quantity and element. Throws
-// InputError at `--quantity` with the names of the measured quantities.
-std::size_t chosen_column(const std::vector<Drawable>& drawables, const std::string& name);
+// Reads the points that have one of the values that `where` gives for each parameter, as NAME=VALUE; all
+// points if it is empty. Throws InputError at --where; throws IntegrityError.
+MeasuredSweep read_sweep(Database& database, const std::vector<std::string>& where = {});
+
+// Returns the name of a drawable for --quantity: "pressure", "stress/total/xy".
+std::string name_of(const Drawable& one);
+
+// Returns the place of the drawable with this name, or with this path. Throws InputError at `--quantity` with
+// the names of the measured quantities, and of `others`.
+std::size_t chosen_column(const std::vector<Drawable>& drawables, const std::string& name,
+                          const std::vector<std::string>& others = {});
 
 // Returns the parameter called `name`: its pointer, or the last step of it if no other parameter has that.
 // Without a name returns the one with the most values, numeric ones first. Throws InputError at --over.

@@ -112,7 +112,9 @@ void QuantityEstimates::add(Sums& sums, const Json& mean, bool has_jammed) {
 }
 
 bool QuantityEstimates::is_wanted(const Quantity& quantity) const {
-  return wanted_ == Wanted::all || quantity.axes.empty();
+  const bool is_named =
+      names_.empty() || std::find(names_.begin(), names_.end(), quantity.name) != names_.end();
+  return is_named && (wanted_ == Wanted::all || quantity.axes.empty());
 }
 
 void QuantityEstimates::add(const Json& result) {

@@ -13,6 +13,8 @@
 #pragma once
 
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "contract/json.h"
@@ -34,6 +36,8 @@ class QuantityEstimates {
  public:
   enum class Wanted { all, scalars };
   explicit QuantityEstimates(Wanted wanted = Wanted::all) : wanted_(wanted) {}
+  // Estimates the quantities with these names alone.
+  explicit QuantityEstimates(std::vector<std::string> names) : names_(std::move(names)) {}
 
   // Adds a result; results come in the order of the seeds. One that has not completed adds nothing. Memory: a
   // few numbers for each element of a mean, two for each element and seed of a ratio.
@@ -63,9 +67,10 @@ class QuantityEstimates {
   static void add(Sums& sums, const Json& mean, bool has_jammed);
   static void add_numbers(Sums& sums, std::span<const double> numbers, bool has_jammed);
 
-  Wanted wanted_;
-  Json descriptions_;       // of the first result; the sums follow it
-  std::vector<Sums> sums_;  // in the order of the names
+  Wanted wanted_ = Wanted::all;
+  std::vector<std::string> names_{};  // empty: any
+  Json descriptions_;                 // of the first result; the sums follow it
+  std::vector<Sums> sums_;            // in the order of the names
 };
 
 // Returns sum of N over sum of D with the jackknife's standard error; NaN if a sum of D is zero.

@@ -22,11 +22,24 @@ KEYS = {
     for name, words, symbol in (("peclet", "Péclet number", "Pe"), ("phi", "", "φ"), ("form", "", ""))
 }
 
+PRESSURE = {"path": "pressure", "name": "pressure", "element": "", "symbol": "P", "unit": "η γ̇", "scale": ""}
+MODULI = [
+    {
+        **PRESSURE,
+        "path": f"linear_response/{name}",
+        "name": f"linear_response/{name}",
+        "symbol": symbol,
+        "unit": "stress",
+    }
+    for name, symbol in (("storage", "G'"), ("loss", "G''"))
+]
+
 
 def point(settings, mean, half=0.5, state="converged", jammed=False, good_enough=None):
     return {
         "label": str(settings),
         "settings": settings,
+        "quantity": "pressure",
         "mean": mean,
         "standard_error": half,
         "half_width": half,
@@ -38,9 +51,20 @@ def point(settings, mean, half=0.5, state="converged", jammed=False, good_enough
 
 
 def data(points, keys=("peclet",), over="/peclet", **more):
-    quantity = {"path": "pressure", "name": "pressure", "element": "", "symbol": "P", "unit": "η γ̇"}
-    figure = {"campaign": "c", "quantity": quantity, "over": over, "confidence": 0.95, "log": None, "tolerance": False}
-    return figure | {"parameters": [KEYS[key] for key in keys], "points": points} | more
+    figure = {"campaign": "c", "quantities": [PRESSURE], "over": over, "confidence": 0.95, "log": None, "absent": 0}
+    return figure | {"tolerance": False, "parameters": [KEYS[key] for key in keys], "points": points} | more
+
+
+def curve(settings, mean, half=None, x=(1, 2, 4), quantity="pressure", state="converged", jammed=False):
+    half = [0.1] * len(mean) if half is None else half
+    known = {"label": str(settings), "settings": settings, "quantity": quantity, "state": state, "jammed": jammed}
+    return known | {"x": list(x), "mean": mean, "standard_error": half, "half_width": half, "count": [8] * len(mean)}
+
+
+def along(points, keys=("peclet",), **more):
+    """Returns the data of a quantity along the strain."""
+    axis = {"name": "strain", "scale": "", "unit": "1"}
+    return {name: value for name, value in data(points, keys, axis=axis, **more).items() if name != "over"}
 
 
 def text_of(parts):
@@ -141,6 +165,152 @@ class OverASweep(unittest.TestCase):
                 "left out: 1 number that is not positive, for which a logarithmic axis has no place",
             ],
         )
+
+    def test_several_quantities_are_named_by_their_symbols(self):
+        points = [point({"/peclet": pe}, 1) | {"quantity": one["path"]} for pe in (1, 2) for one in MODULI]
+        figure = drawing.over_sweep(data(points, quantities=MODULI))
+        self.assertEqual([text_of(one["name"]) for one in figure["legend"]], ["G'", "G''"])
+        self.assertEqual(text_of(drawing.title_of(figure["y"]["about"])), "linear response G', G'' [stress]")
+        marks = [(mark["series"], mark["x"]) for mark in figure["panels"][0]["marks"]]
+        self.assertEqual(sorted(marks), [(0, 1), (0, 2), (1, 1), (1, 2)])
+
+    def test_symbols_alone_name_an_axis_of_names_that_begin_differently(self):
+        normal = [PRESSURE | {"name": name, "symbol": symbol} for name, symbol in (("first", "N_1"), ("second", "N_2"))]
+        about, _ = drawing.about_quantities(normal)
+        self.assertEqual(text_of(drawing.title_of(about)), "N1, N2 [η γ̇]")
+        about, names = drawing.about_quantities([one | {"symbol": ""} for one in normal])
+        self.assertEqual(text_of(drawing.title_of(about)), "first and second [η γ̇]")
+        self.assertEqual([text_of(name) for name in names], ["first", "second"])
+
+    def test_a_scale_follows_the_symbol(self):
+        for unit, scale, expected in (
+            ("1", " / (k_B T / a^3)", "linear response (G', G'') / (kB T / a3)"),
+            ("stress", " / 2", "linear response (G', G'') / 2 [stress]"),
+        ):
+            scaled = [one | {"scale": scale, "unit": unit} for one in MODULI]
+            about, _ = drawing.about_quantities(scaled)
+            self.assertEqual(text_of(drawing.title_of(about)), expected)
+        shear = {
+            **PRESSURE,
+            "name": "stress/total",
+            "element": "xy",
+            "symbol": "σ",
+            "scale": " / (F_CL / a^2)",
+            "unit": "1",
+        }
+        about, _ = drawing.about_quantities([shear])
+        self.assertEqual(text_of(drawing.title_of(about)), "stress, total, xy σxy / (FCL / a2)")
+        key = KEYS["phi"] | {"scale": " / 0.64"}
+        self.assertEqual(text_of(drawing.title_of(drawing.about_key(key))), "phi φ / 0.64")
+        key = KEYS["form"] | {"scale": " / 0.64"}
+        self.assertEqual(text_of(drawing.title_of(drawing.about_key(key))), "form / 0.64")
+
+
+class OverAnAxis(unittest.TestCase):
+    def test_each_point_is_a_curve_with_its_interval_as_a_band(self):
+        points = [curve({"/peclet": pe}, [pe, 2 * pe, 3 * pe], [0.1, 0.2, None]) for pe in (1, 10)]
+        figure = drawing.over_axis(along(points))
+        (panel,) = figure["panels"]
+        self.assertEqual(
+            [line["places"] for line in panel["lines"]], [[[1, k], [2, 2 * k], [4, 3 * k]] for k in (1, 10)]
+        )
+        self.assertEqual(panel["bands"][1]["places"], [[1, 9.9, 10.1], [2, 19.8, 20.2]])
+        self.assertEqual([text_of(one["name"]) for one in figure["legend"]], ["Pe = 1", "Pe = 10"])
+        self.assertEqual(text_of(drawing.title_of(figure["x"]["about"])), "strain")
+
+    def test_places_without_a_mean_are_gaps_and_points_without_any_are_said_to_be_left_out(self):
+        points = [curve({"/peclet": 1}, [1, None, 3]), curve({"/peclet": 2}, [], x=())]
+        figure = drawing.over_axis(along(points))
+        self.assertEqual([line["places"] for line in figure["panels"][0]["lines"]], [[[1, 1], [4, 3]]])
+        self.assertEqual(figure["notes"], ["left out: 1 point without a number of pressure yet"])
+
+    def test_more_curves_than_colours_have_shades_in_the_order_of_the_values(self):
+        values = [5, 1, 9, 2, 3, 4, 6, 7, 8, 10]
+        points = [curve({"/peclet": pe}, [pe, pe, pe]) for pe in values]
+        figure = drawing.over_axis(along(points))
+        shades = {line["places"][0][1]: line["shade"] for line in figure["panels"][0]["lines"]}
+        self.assertEqual(shades, {pe: (pe - 1) / 9 for pe in values})
+        self.assertLessEqual(len(figure["legend"]), 10)
+
+    def test_more_curves_of_two_parameters_have_panels(self):
+        points = [curve({"/peclet": pe, "/phi": phi}, [1, 2, 3]) for pe in (1, 2, 3, 4, 5) for phi in (0.3, 0.5)]
+        figure = drawing.over_axis(along(points, ("peclet", "phi")))
+        self.assertEqual([text_of(panel["title"]) for panel in figure["panels"]], ["φ = 0.3", "φ = 0.5"])
+        self.assertEqual(len(figure["legend"]), 5)
+
+    def test_a_jammed_point_is_a_cross_at_the_upper_edge_and_in_the_legend(self):
+        points = [curve({"/peclet": 1}, [1, 2, 3]), curve({"/peclet": 2}, [None] * 3, jammed=True)]
+        _, (axes,) = drawing.draw(drawing.over_axis(along(points)))
+        (cross,) = (line for line in axes.lines if line.get_marker() == "x")
+        at = axes.transAxes.inverted().transform(cross.get_transform().transform(cross.get_xydata()))[0]
+        self.assertAlmostEqual(at[1], 1)
+        self.assertEqual(cross.get_color(), drawing.COLOURS[1])
+        self.assertEqual(
+            [text.get_text() for text in axes.get_legend().get_texts()][-2:], ["jammed", "interval of the mean"]
+        )
+        plt.close("all")
+
+    def test_a_provisional_curve_is_dashed(self):
+        _, (axes,) = drawing.draw(drawing.over_axis(along([curve({}, [1, 2, 3], state="provisional")])))
+        (line,) = (line for line in axes.lines if len(line.get_xdata()) == 3)
+        self.assertTrue(line.is_dashed())
+        self.assertIn("provisional", [text.get_text() for text in axes.get_legend().get_texts()])
+        plt.close("all")
+
+
+# 10 and 20 are certain, so that uncertain numbers stretch the axis up to 200.
+class Uncertain(unittest.TestCase):
+    def drawn(self, mean, half, **more):
+        points = [point({"/peclet": 1}, 10, 1), point({"/peclet": 2}, 19, 1), point({"/peclet": 3}, mean, half, **more)]
+        _, (axes,) = drawing.draw(drawing.over_sweep(data(points, log="none")))
+        self.addCleanup(plt.close, "all")
+        return axes
+
+    def at_edge(self, axes, marker):
+        """Returns the heights, as a share of the frame, of marks with this marker."""
+        heights = []
+        for line in axes.lines:
+            if line.get_marker() == marker and len(line.get_xdata()):
+                places = axes.transAxes.inverted().transform(line.get_transform().transform(line.get_xydata()))
+                heights += [round(height, 6) for height in places[:, 1]]
+        return heights
+
+    def test_numbers_far_beyond_the_others_are_arrows_at_the_edge(self):
+        axes = self.drawn(1e8, 2e8)
+        self.assertEqual(self.at_edge(axes, "^"), [1])
+        self.assertLess(axes.get_ylim()[1], 30)
+        self.assertIn("beyond the frame", [text.get_text() for text in axes.get_legend().get_texts()])
+        self.assertEqual(self.at_edge(self.drawn(-1e8, 2e8), "v"), [0])
+
+    def test_signs_at_one_place_of_the_edge_stand_beside_each_other(self):
+        points = [point({"/peclet": 1, "/phi": 1}, 10)]
+        points += [point({"/peclet": 1, "/phi": phi}, None, jammed=True) for phi in (2, 3, 4)]
+        _, (axes,) = drawing.draw(drawing.over_sweep(data(points, ("peclet", "phi"))))
+        self.assertEqual(self.at_edge(axes, "x"), [1, 0.965, 0.93])
+        plt.close("all")
+
+    def test_numbers_within_ten_times_the_others_are_in_the_frame(self):
+        axes = self.drawn(199, 200)
+        self.assertGreater(axes.get_ylim()[1], 199)
+        self.assertEqual(self.at_edge(axes, "^"), [])
+
+    def test_numbers_narrower_than_themselves_stretch_any_axis(self):
+        self.assertGreater(self.drawn(1e8, 1e7).get_ylim()[1], 1e8)
+
+    def test_jammed_numbers_are_crosses_at_the_edge(self):
+        self.assertEqual(self.at_edge(self.drawn(1e8, 1, jammed=True), "x"), [1])
+        self.assertLess(self.at_edge(self.drawn(100, 1, jammed=True), "x")[0], 1)
+
+    def test_without_a_certain_number_all_are_in_the_frame(self):
+        points = [point({"/peclet": x}, y, 2 * y) for x, y in ((1, 1), (2, 1e6))]
+        _, (axes,) = drawing.draw(drawing.over_sweep(data(points, log="none")))
+        self.assertGreater(axes.get_ylim()[1], 1e6)
+        plt.close("all")
+
+    def test_bands_far_beyond_are_cut(self):
+        axes = drawing.draw(drawing.over_axis(along([curve({}, [5000, 2, 3], [9000, 0.1, 0.1])])))[1][0]
+        self.assertLess(axes.get_ylim()[1], 40)
+        plt.close("all")
 
 
 class Drawn(unittest.TestCase):

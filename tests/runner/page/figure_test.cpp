@@ -49,7 +49,7 @@ TEST_F(CampaignFigure, HasTheEstimateThatDecides) {
   const Json drawn = figure();
   ASSERT_EQ(drawn["points"].size(), 3U);
   EXPECT_EQ(drawn["over"], "/point");
-  EXPECT_EQ(drawn["quantity"]["path"], "relative_viscosity");
+  EXPECT_EQ(drawn["quantities"][0]["path"], "relative_viscosity");
   const Json& capped = drawn["points"][0];
   EXPECT_EQ(capped["settings"]["/point"], 0);
   EXPECT_NEAR(capped["mean"].get<double>(), 10.3, 1e-12);
@@ -66,8 +66,8 @@ TEST_F(CampaignFigure, HasTheEstimateThatDecides) {
 
 TEST_F(CampaignFigure, HasAnyQuantityThatIsMeasured) {
   complete_widely(0);
-  const Json drawn = figure({.quantity = "/pressure", .over = "point", .scale = {}, .tolerance = false});
-  EXPECT_EQ(drawn["quantity"]["path"], "pressure");
+  const Json drawn = figure({.quantities = {"/pressure"}, .over = "point"});
+  EXPECT_EQ(drawn["quantities"][0]["path"], "pressure");
   EXPECT_NEAR(drawn["points"][0]["mean"].get<double>(), 20.1, 1e-12);
   EXPECT_TRUE(drawn["points"][1]["mean"].is_null());
 }
@@ -75,11 +75,10 @@ TEST_F(CampaignFigure, HasAnyQuantityThatIsMeasured) {
 TEST_F(CampaignFigure, RefusesWhatIsNotThere) {
   EXPECT_EQ(refusal({}), "--quantity: relative_viscosity: nothing has been measured yet");
   complete_widely(0);
-  EXPECT_EQ(refusal({.quantity = "presure", .over = {}, .scale = {}, .tolerance = false}),
+  EXPECT_EQ(refusal({.quantities = {"presure"}}),
             "--quantity: presure: must be a measured quantity; did you mean pressure?");
-  EXPECT_EQ(refusal({.quantity = {}, .over = "peclet", .scale = {}, .tolerance = false}),
-            "--over: peclet: must be the name of one swept parameter: /point");
-  EXPECT_EQ(refusal({.quantity = "pressure", .over = {}, .scale = {}, .tolerance = true}),
+  EXPECT_EQ(refusal({.over = "peclet"}), "--over: peclet: must be the name of one swept parameter: /point");
+  EXPECT_EQ(refusal({.quantities = {"pressure"}, .tolerance = true}),
             "--band: pressure: has no tolerance: it is not a target of the campaign");
 }
 
@@ -107,10 +106,10 @@ TEST_F(CampaignFigure, HasTheNumberOfAJamThatAllSeedsHave) {
 
 TEST_F(CampaignFigure, IsRefusedWhereALogarithmicAxisHasAPlaceForNoNumber) {
   complete_widely(0);  // at x = 0
-  EXPECT_EQ(refusal({.quantity = {}, .over = {}, .scale = "x", .tolerance = false}),
+  EXPECT_EQ(refusal({.log = "x"}),
             "--quantity: relative_viscosity: has no number that a logarithmic axis can show");
   complete_widely(1);
-  EXPECT_EQ(refusal({.quantity = {}, .over = {}, .scale = "x", .tolerance = false}), "");
+  EXPECT_EQ(refusal({.log = "x"}), "");
 }
 
 TEST_F(CampaignFigure, ObeysNothingThatANameSays) {
