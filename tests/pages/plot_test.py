@@ -2,12 +2,13 @@
 """plot_test.py BIN: figures of `peclet plot`, compared with the export, the page and matplotlib."""
 
 import json
+import math
 import os
 import re
 import runpy
 import subprocess
 
-from campaign_page import choose, rows, saved
+from campaign_page import SCENE, choose, rows, saved
 from page_case import PageTest, Stage, main
 
 QUANTITIES = ["relative_viscosity", "pressure", "first_normal_difference", "stress/total/xy"]
@@ -33,7 +34,7 @@ def drawn_by(name):
 
     matplotlib.use("Agg")
     script = runpy.run_path(Stage.folder.file(name))
-    figure = script["over_sweep"](script["FIGURE"])
+    figure = script["figure_of"](script["FIGURE"])
     (axes,) = script["draw"](figure)[1]
     return figure, axes
 
@@ -113,6 +114,106 @@ class Figures(PageTest):
             self.assertEqual(marks[label]["state"], "provisional")
             self.assertAlmostEqual(marks[label]["mean"], float(row["all_seeds_mean"]), places=12)
             self.assertIsNone(marks[label]["good_enough"])
+
+
+START = {
+    "name": "start",
+    "scene": {
+        **SCENE,
+        "observables": ["stress", "transient", "pair_distribution"],
+        "transient": {"bins": 12},
+        "pair_distribution": {"range": 2.4, "bin": 0.2},
+    },
+    "sweep": [{"set": "/volume_fraction", "values": [0.1, 0.3]}, {"set": "/peclet", "values": [10, 100]}],
+    "realisations": 5,
+    "show": ["relative_viscosity"],
+}
+
+
+class Curves(PageTest):
+    @classmethod
+    def setUpClass(cls):
+        Stage.folder.peclet("run", Stage.folder.write(START), "--quiet")
+        Stage.folder.report("start.json")
+
+    def draw(self, *words):
+        drawn = peclet("plot", "start.json", "--output", "start.png", *words)
+        self.assertEqual(drawn.returncode, 0, drawn.stderr)
+        return figure_of("start.py")
+
+    def exported(self, quantity, number):
+        """Returns a number of the long export by label, in the order of the axis; None where it is empty."""
+        found = {}
+        for row in rows(Stage.folder.peclet("export", "start.json", "--long")):
+            if row["quantity"] == quantity:
+                found.setdefault(row["label"], []).append(float(row[number]) if row[number] else None)
+        return found
+
+    def test_have_the_numbers_of_the_export(self):
+        for quantity in ("transient/shear_stress", "pair_distribution/radial"):
+            drawn = points_of(self.draw("--quantity", quantity))
+            for name, column in (("x", "axis_1_value"), *((number, number) for number in NUMBERS)):
+                exported = self.exported(quantity, column)
+                self.assertEqual({label: point[name] for label, point in drawn.items()}, exported, (quantity, name))
+
+    # Student's t of five seeds at 95 %: 2.776445.
+    def test_are_means_over_the_seeds_with_student_s_interval(self):
+        drawn = points_of(self.draw("--quantity", "transient/shear_stress"))
+        for point in self.export()["points"]:
+            seeds = [one["mean"]["transient"]["shear_stress"] for one in point["realisations"]]
+            for place, values in enumerate(zip(*seeds)):
+                mean = sum(values) / 5
+                error = (sum((value - mean) ** 2 for value in values) / 4 / 5) ** 0.5
+                self.assertAlmostEqual(drawn[point["label"]]["mean"][place], mean, delta=1e-9 * abs(mean))
+                half = drawn[point["label"]]["half_width"][place]
+                self.assertAlmostEqual(half, 2.776445105 * error, delta=1e-6 * error)
+
+    def test_are_scaled_by_the_formulas(self):
+        plain = points_of(self.draw("--quantity", "transient/shear_stress", "--where", "peclet=10"))
+        scaled = points_of(
+            self.draw("--quantity", "transient/shear_stress", "--where", "peclet=10", "--scale-y", "thermal_stress")
+        )
+        self.assertEqual((set(scaled), len(scaled)), (set(plain), 2))
+        for label, point in scaled.items():
+            # Pe = 6 pi eta a^3 rate / kT, so that eta rate a^3 / kT = Pe / 6 pi.
+            for ours, given in zip(point["mean"], plain[label]["mean"]):
+                self.assertAlmostEqual(ours, given * 10 / (6 * math.pi), delta=1e-9 * abs(ours))
+
+    # Pe = 6 pi eta a^3 rate / kT, so that rate tau_B = Pe / 6 pi.
+    def test_over_a_derived_number_have_its_value(self):
+        figure = self.draw("--quantity", "pressure", "--over", "brownian_time")
+        rates = {point["label"]: point["derived"]["shear_time"] ** -1 for point in self.export()["points"]}
+        for point in figure["points"]:
+            expected = point["settings"]["/peclet"] / (6 * math.pi) / rates[point["label"]]
+            self.assertAlmostEqual(point["settings"]["brownian_time"], expected, delta=1e-9 * expected)
+
+    def export(self):
+        return json.loads(Stage.folder.peclet("export", "start.json"))
+
+    def test_are_those_of_the_page(self):
+        page = self.open("start.json.html")
+        choose(page, "#quantity", "transient, shear stress")
+        table = rows(saved(page, "#sweep", "CSV"))
+        exported = self.exported("transient/shear_stress", "mean")
+        found = {}
+        for row in table:
+            found.setdefault(row["label"], []).append(float(row["mean"]))
+        self.assertEqual(found, exported)
+        self.draw("--quantity", "transient/shear_stress")
+        figure, _ = drawn_by("start.py")
+        shown = page.evaluate("JSON.stringify(campaign.sweep.chart.figure)")
+        on_page = json.loads(shown)
+        for part in ("lines", "bands"):
+            self.assertEqual(
+                [one["places"] for one in on_page["panels"][0][part]],
+                [one["places"] for one in figure["panels"][0][part]],
+            )
+        self.assertEqual(
+            [text_of(one["name"]) for one in on_page["legend"]], [text_of(one["name"]) for one in figure["legend"]]
+        )
+        for axis in "xy":
+            self.assertEqual(on_page[axis]["log"], figure[axis]["log"])
+        self.assertEqual(page.evaluate("document.querySelectorAll('#sweep path.line').length"), 4)
 
 
 class Scripts(PageTest):

@@ -3,7 +3,7 @@
 //   figure   {name, x, y: {about, log, categories}, panels: [{title, marks, lines, bands, columns, levels}], legend,
 //            kinds, hasBand, notes, caption, empty, table, pick, height}
 //   marks    {series, x, y, half, kind, point, text}; y is null for a point that has jammed and has no number
-//   lines    {series, style, places: [x, y]}
+//   lines    {series, style, places: [x, y]}; lines, bands and legend may have a shade from 0 to 1 for a colour
 //   bands    {series, places: [x, low, high]}
 //   columns  boxes: {from, to, low, high, series, text}
 //   levels   {value, across}
@@ -64,6 +64,44 @@ class Chart {
     return kind !== 'provisional' && Format.isNumber(half) ? [y - half, y + half] : [y];
   }
 
+  // True for a number of a point that flows whose interval is narrower than the number itself.
+  static isCertain({ y, half, kind }) {
+    return kind !== 'jammed' && Format.isNumber(half) && half < Math.abs(y);
+  }
+
+  // Returns the numbers along y that the frame must show. A number is uncertain if its point has jammed, or if its
+  // interval is wider than the number itself. Uncertain numbers stretch the axis to ten times the others at most, and
+  // those of curves a logarithmic axis to a tenth of the others.
+  static reached(panels, log) {
+    const factor = 10,
+      usable = (numbers) => numbers.filter((number) => Format.isNumber(number) && (!log || number > 0)),
+      marks = panels.flatMap((panel) => panel.marks.filter((mark) => Format.isNumber(mark.y))),
+      places = panels.flatMap((panel) => (panel.bands || []).flatMap((band) => band.places)),
+      isNarrow = ([, low, high]) => high - low < Math.abs(high + low),
+      ends = ([, low, high]) => [low, high];
+    const certain = usable([
+      ...marks.filter(Chart.isCertain).flatMap(Chart.ends),
+      ...places.filter(isNarrow).flatMap(ends),
+      ...panels.flatMap((panel) => (panel.columns || []).flatMap((column) => [column.low, column.high])),
+    ]);
+    let uncertain = usable(marks.filter((mark) => !Chart.isCertain(mark)).flatMap((mark) => [mark.y, ...Chart.ends(mark)])),
+      along = usable([
+        ...places.filter((place) => !isNarrow(place)).flatMap(ends),
+        ...panels.flatMap(({ lines = [] }) =>
+          lines.filter((line) => line.style !== 'guide').flatMap((line) => line.places.map(([, y]) => y)),
+        ),
+      ]);
+    const sizes = certain.map(Math.abs),
+      most = factor * Math.max(...sizes, 0),
+      least = log ? Math.min(...sizes) / factor : -Infinity;
+    if (most > 0) {
+      uncertain = uncertain.filter((y) => Math.abs(y) <= most);
+      along = along.filter((y) => y >= least && Math.abs(y) <= most);
+    }
+    const levels = panels.flatMap((panel) => (panel.levels || []).filter((level) => level.across));
+    return [...certain, ...uncertain, ...along, ...usable(levels.map((level) => level.value))];
+  }
+
   // True if the axes can show the mark. A logarithmic axis shows positive numbers only; jammed points are at its edge.
   static isVisible({ x, y, kind }, isLogX, isLogY) {
     return (!isLogY || y > 0 || kind === 'jammed') && (!isLogX || x > 0);
@@ -73,13 +111,14 @@ class Chart {
   range(direction) {
     const { log } = this.figure[direction],
       isX = direction === 'x';
-    const numbers = this.panels.flatMap(({ marks, lines, bands, columns, levels }) => [
-      ...marks.flatMap((mark) => (isX ? mark.x : [mark.y, ...Chart.ends(mark)])),
-      ...lines.flatMap((line) => line.places.map(([x, y]) => (isX ? x : y))),
-      ...bands.flatMap((band) => band.places.flatMap(([x, low, high]) => (isX ? x : [low, high]))),
-      ...columns.flatMap((column) => (isX ? [column.from, column.to] : [column.low, column.high])),
-      ...levels.filter((level) => level.across !== isX).map((level) => level.value),
-    ]);
+    const numbers = !isX
+      ? Chart.reached(this.panels, log)
+      : this.panels.flatMap(({ marks, lines, bands, columns, levels }) => [
+          ...marks.map((mark) => mark.x),
+          ...[...lines, ...bands].flatMap((one) => one.places.map(([x]) => x)),
+          ...columns.flatMap((column) => [column.from, column.to]),
+          ...levels.filter((level) => !level.across).map((level) => level.value),
+        ]);
     const usable = numbers.filter((number) => Format.isNumber(number) && (!log || number > 0));
     if (!usable.length) return log ? [1, 10] : [0, 1]; // only marks at the edge
     const low = usable.reduce((a, b) => Math.min(a, b), Infinity),
@@ -125,7 +164,7 @@ class Chart {
   panel(panel, left, top, width, height, ranges) {
     const { figure } = this,
       group = Svg.element('g');
-    const frame = { right: left + width - 12, top: top + 8, bottom: top + height - 48 };
+    const frame = { right: left + width - 12, top: top + 8, bottom: top + height - 48, atEdge: new Map() };
     const y = this.axis('y', ranges.y, frame.bottom, frame.top, 36);
     // Wide numbers at the ticks need more room beside the title.
     const widest = y.categories ? 0 : Math.max(...y.ticks().map((tick) => Svg.width(tick.text)));
@@ -140,9 +179,10 @@ class Chart {
       const places = line.places
         .filter(([px, py]) => visible({ x: px, y: py }))
         .map(([px, py]) => [x.place(px), y.clamped(py)]);
-      if (places.length > 1) group.append(Svg.path(`${line.style} s${line.series % Svg.colours}`, places));
+      if (places.length > 1)
+        group.append(Svg.shaded(Svg.path(`${line.style} s${line.series % Svg.colours}`, places), line, 'stroke'));
     }
-    for (const mark of panel.marks) if (visible(mark)) group.append(this.mark(mark, x, y, frame));
+    for (const mark of panel.marks) if (visible(mark)) group.append(this.mark(mark, x, y, frame, ranges.y));
     return group;
   }
 
@@ -207,7 +247,7 @@ class Chart {
       pixels.splice(0, 1, [place - 14, low, high], [place + 14, low, high]);
     }
     const outline = [...pixels.map(([px, , high]) => [px, high]), ...pixels.map(([px, low]) => [px, low]).reverse()];
-    return Svg.path(`band s${band.series % Svg.colours}`, outline, true);
+    return Svg.shaded(Svg.path(`band s${band.series % Svg.colours}`, outline, true), band, 'fill');
   }
 
   static level(level, frame, x, y) {
@@ -218,26 +258,30 @@ class Chart {
       : Svg.line(style, place, frame.top, place, frame.bottom);
   }
 
-  // Returns the height of a mark. A jammed point without a number is at the upper edge of the frame; one whose number is
-  // not positive is at the lower edge of a logarithmic axis.
-  place(mark, y, frame) {
-    if (mark.kind !== 'jammed') return y.place(mark.y);
-    if (!Format.isNumber(mark.y)) return frame.top;
-    return this.figure.y.log && mark.y <= 0 ? frame.bottom : y.place(mark.y);
+  // Returns the height of a mark, and the kind of its sign. A mark outside of the frame is at its edge, as a cross if its
+  // point has jammed, otherwise as an arrow head. A jammed point without a number is at the upper edge.
+  place(mark, y, frame, [low, high]) {
+    const isAbove = !Format.isNumber(mark.y) || mark.y > high;
+    if (!isAbove && mark.y >= low) return { at: y.place(mark.y), kind: mark.kind, inside: true };
+    const kind = mark.kind === 'jammed' ? 'jammed' : isAbove ? 'above' : 'below',
+      place = `${mark.x} ${isAbove}`,
+      shift = 11 * (frame.atEdge.get(place) || 0); // further signs stand beside the first, towards the middle
+    frame.atEdge.set(place, (frame.atEdge.get(place) || 0) + 1);
+    return { at: isAbove ? frame.top + shift : frame.bottom - shift, kind, inside: false };
   }
 
   static group({ kind }, ...children) {
     return Svg.element('g', kind === 'provisional' ? { class: 'provisional' } : {}, ...children);
   }
 
-  mark(mark, x, y, frame) {
+  mark(mark, x, y, frame, range) {
     const group = Chart.group(mark);
     const px = x.place(mark.x),
-      py = this.place(mark, y, frame),
+      { at: py, kind, inside } = this.place(mark, y, frame, range),
       style = `bar s${mark.series % Svg.colours}`,
       cap = 4;
     if (mark.text) group.append(Svg.element('title', {}, mark.text));
-    if (Format.isNumber(mark.half) && !(this.figure.y.log && mark.y <= 0)) {
+    if (Format.isNumber(mark.half) && inside) {
       for (const end of [mark.y - mark.half, mark.y + mark.half]) {
         const to = y.clamped(end);
         group.append(Svg.line(style, px, py, px, to));
@@ -245,7 +289,7 @@ class Chart {
           group.append(Svg.line(style, px - cap, to, px + cap, to));
       }
     }
-    group.append(Svg.mark(mark.series, px, py, mark.kind, mark.small ? 3 : 4.5));
+    group.append(Svg.mark(mark.series, px, py, kind, mark.small ? 3 : 4.5));
     const circle = (style, r, more = {}) => Svg.element('circle', { class: style, cx: px, cy: py, r, ...more });
     if (this.figure.pick && mark.point === this.chosen) group.append(circle('chosen', 9));
     if (this.figure.pick && this.onPick) group.append(circle('target', 12, { 'data-point': mark.point }));
@@ -279,6 +323,9 @@ class Chart {
     say(kinds.includes('undecided'), 'undecided', 'not converged');
     say(kinds.includes('provisional'), 'provisional', 'provisional');
     say(kinds.includes('jammed'), 'jammed', 'jammed');
+    const [low, high] = this.range('y'),
+      isBeyond = ({ kind, y }) => kind !== 'jammed' && Format.isNumber(y) && (y > high || y < low);
+    say(this.panels.some((panel) => panel.marks.some(isBeyond)), 'above', 'beyond the frame');
     say(hasBand, 'band', bandName);
     let x = 8,
       line = 0;
@@ -296,7 +343,9 @@ class Chart {
           at = (dx, dy) => ({ x: `${item.x + dx}`, y: `${y + dy}` });
         const sign = ['band', 'column'].includes(item.kind)
           ? Svg.element('rect', { class: style, ...at(0, -6), width: 16, height: 12 })
-          : Svg.mark(item.series, item.x + 8, y, item.kind);
+          : item.kind === 'line'
+            ? Svg.shaded(Svg.line(style, item.x, y, item.x + 16, y), item, 'stroke')
+            : Svg.mark(item.series, item.x + 8, y, item.kind);
         svg.append(Chart.group(item, sign, Svg.text(item.name, at(22, 4.5))));
       }
     };

@@ -76,12 +76,19 @@ class Live {
     return known.details;
   }
 
+  // Returns the details of a point that are known on a live page, or null.
+  static known(point) {
+    const known = Live.current && Live.current.known.get(point.hash);
+    return known ? known.details : null;
+  }
+
   async askFor(hash) {
     try {
       const response = await Live.fetch(`point?hash=${encodeURIComponent(hash)}`);
       if (!response.ok) return;
       const details = await response.json();
       this.known.set(hash, { ...this.known.get(hash), details });
+      this.campaign.sweep.show(this.campaign.data);
       if (this.campaign.chosen === hash) this.campaign.pick(this.campaign.place());
     } catch (error) {
       this.lost = this.lost || new Date();

@@ -45,6 +45,12 @@ const Svg = {
     return parts.reduce((sum, part) => sum + part.text.length * (part.level ? 5.4 : 7), 0);
   },
 
+  // Colours an element by the shade of a line or band, from blue to green; returns the element.
+  shaded(element, { shade }, property) {
+    if (shade !== undefined) element.style[property] = `hsl(${Math.round(270 - 200 * shade)} 55% 45%)`;
+    return element;
+  },
+
   // The shapes of marks: corners around the middle, for a radius of 1; null is a circle.
   shapes: [
     null,
@@ -64,8 +70,10 @@ const Svg = {
         d = [1, -1].map((turn) => Svg.through(stroke(turn)));
       return Svg.element('path', { class: `jammed s${series % Svg.colours}`, d: d.join('') });
     }
-    const style = `mark s${series % Svg.colours} ${kind === 'decided' ? 'solid' : 'hollow'}`,
-      shape = Svg.shapes[series % Svg.shapes.length];
+    const beyond = { above: 3, below: 4 }[kind],
+      isSolid = kind === 'decided' || beyond !== undefined;
+    const style = `mark s${series % Svg.colours} ${isSolid ? 'solid' : 'hollow'}`,
+      shape = Svg.shapes[beyond ?? series % Svg.shapes.length];
     if (!shape) return Svg.element('circle', { class: style, cx: x, cy: y, r: radius });
     const corners = shape.map(([dx, dy]) => [x + radius * dx, y + radius * dy]);
     return Svg.path(style, corners, true);

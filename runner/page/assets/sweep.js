@@ -99,7 +99,14 @@ class Sweep {
         about = Format.about(`${Format.words(name)} by term, ${element}`, Format.unit(unit));
       drawn.push({ id: `${name} by term ${element}`, indices, group: 'split by term', about });
     }
-    const order = ['target', 'measured', 'split by term', 'components', 'control variates'];
+    for (const point of this.points) {
+      for (const profile of (point.details || Live.known(point) || { profiles: [] }).profiles) {
+        if (drawn.some((one) => one.id === profile.name)) continue;
+        const about = Format.quantity({ ...profile, element: '' });
+        drawn.push({ id: profile.name, indices: [], isCurve: true, about, group: 'along an axis' });
+      }
+    }
+    const order = ['target', 'measured', 'along an axis', 'split by term', 'components', 'control variates'];
     return drawn.sort((a, b) => order.indexOf(a.group) - order.indexOf(b.group));
   }
 
@@ -184,7 +191,7 @@ class Sweep {
     const marks = list.flatMap((panel) => panel.marks);
     const scales = {
       x: axis.numeric && (log.x ?? isLogarithmic(axis.values)),
-      y: !stacked && (log.y ?? isLogarithmic(marks.flatMap(Chart.ends))),
+      y: !stacked && (log.y ?? isLogarithmic(Chart.reached(list, false))),
     };
     const total = stacked ? choice.indices.findIndex((index) => quantities[index].name.endsWith('/total')) : -1;
     if (stacked) this.addControl(list, total, series, quantities[choice.indices[total]].path);
@@ -217,6 +224,115 @@ class Sweep {
         rows,
       },
     };
+  }
+
+  // Returns the parameters that vary, without those that follow from one of the others.
+  distinguishing() {
+    const varying = this.parameters.filter((one) => one.values.length > 1),
+      found = [];
+    for (const one of varying) {
+      if (found.some((other) => this.isInStep(one, other))) continue;
+      found.splice(0, found.length, ...found.filter((other) => !this.isInStep(other, one)), one);
+    }
+    return found;
+  }
+
+  // Returns the figure of a quantity along its own axis, as over_axis() of drawing.py makes it: a curve for each point
+  // whose details are known, with shades instead of colours if they are many and in an order.
+  curves(choice, panelBy, log = {}) {
+    const by = this.distinguishing(),
+      isMany = this.points.length > Svg.colours,
+      isShaded = isMany && by.length === 1 && by[0].numeric,
+      fewest = (best, one) => (one.values.length < best.values.length ? one : best),
+      panelled = panelBy || (isMany && by.length > 1 ? [by.reduce(fewest)] : []),
+      named = by.filter((one) => !panelled.includes(one)),
+      joined = (parameters, i) =>
+        parameters.flatMap((one, at) => [...(at ? Format.parts(', ') : []), ...this.nameOf(one, i)]);
+    const order = this.points.map((_, i) => i);
+    if (isShaded) order.sort((a, b) => by[0].cells[a] - by[0].cells[b]);
+    const panels = new Map(),
+      series = new Map(),
+      kinds = new Set(),
+      rows = [];
+    let axis = null,
+      absent = 0,
+      seeds = null;
+    for (const i of order) {
+      const point = this.points[i],
+        details = point.details || Live.details(point),
+        profile = details && details.profiles.find((one) => one.name === choice.id),
+        kind = Sweep.kind(point),
+        isKnown = profile && (kind !== 'jammed' || 2 * details.of > point.endings.ended);
+      if (!isKnown && kind !== 'jammed') {
+        absent += 1;
+        continue;
+      }
+      if (profile) axis = axis || profile.axis;
+      if (isKnown && (!seeds || details.of - details.seeds > seeds.of - seeds.seeds)) seeds = details;
+      const name = joined(named, i),
+        id = JSON.stringify(name),
+        title = joined(panelled, i),
+        key = JSON.stringify(title);
+      if (!series.has(id)) series.set(id, { series: series.size, name, kind: 'line' });
+      const own = series.get(id);
+      if (isShaded) own.shade = order.indexOf(i) / (order.length - 1);
+      const look = isShaded ? { series: own.series, shade: own.shade } : { series: own.series };
+      if (!panels.has(key)) panels.set(key, { title, marks: [], lines: [], bands: [] });
+      const panel = panels.get(key),
+        empty = { axis: { values: [] }, mean: [], half_width: [], standard_error: [] },
+        drawn = isKnown ? profile : empty,
+        curve = DetailsView.curve(drawn.axis.values, drawn);
+      for (const line of curve.lines)
+        panel.lines.push({ ...line, ...look, style: kind === 'provisional' ? 'dashed' : 'line' });
+      for (const band of curve.bands) panel.bands.push({ ...band, ...look });
+      if (kind === 'jammed') {
+        const [x, y] = curve.lines[0].places[curve.lines[0].places.length - 1] || [null, null];
+        panel.marks.push({ ...look, x, y, half: null, kind, point: i, text: `${point.label}: jammed` });
+      }
+      if (kind === 'jammed' || kind === 'provisional') kinds.add(kind);
+      drawn.axis.values.forEach((x, k) => {
+        const cells = this.parameters.map((one) => one.cells[i]);
+        rows.push([point.label, ...cells, choice.id, x, drawn.mean[k], drawn.standard_error[k], drawn.half_width[k]]);
+      });
+    }
+    const list = [...panels.values()],
+      xs = list.flatMap((panel) => panel.lines.flatMap((line) => line.places.map(([x]) => x)));
+    const scales = {
+      x: log.x ?? isLogarithmic([...new Set(xs)]),
+      y: log.y ?? isLogarithmic(Chart.reached(list, false)),
+    };
+    for (const panel of list) Sweep.placeJams(panel.marks, xs, scales.x);
+    const names = [...series.values()],
+      step = isShaded ? Math.ceil((names.length - 1) / 9) : 1;
+    return {
+      name: `${this.data.campaign} ${choice.id}`,
+      panels: list,
+      notes: absent ? [`Points without this quantity yet are left out: ${absent}.`] : [],
+      x: { about: axis ? Format.about(Format.words(axis.name), Format.unit(axis.unit)) : Format.about(''), log: scales.x },
+      y: { about: choice.about, log: scales.y },
+      legend: names.length > 1 ? names.filter((_, i) => i % step === 0) : [],
+      kinds: [...kinds],
+      hasBand: list.some((panel) => panel.bands.length),
+      bandName: 'interval of the mean',
+      caption: seeds && seeds.seeds < seeds.of ? `Means of ${DetailsView.seeds(seeds)} of a point, or fewer.` : '',
+      table: {
+        columns: ['label', ...this.parameters.map((one) => one.pointer || 'point'), 'quantity', axis ? axis.name : 'x',
+          'mean', 'standard_error', 'half_width'],
+        rows,
+      },
+    };
+  }
+
+  // Places jammed points without a curve side by side at the right end of the numbers `xs`.
+  static placeJams(marks, xs, log) {
+    const along = xs.filter((x) => !log || x > 0).map((x) => (log ? Math.log10(x) : x)),
+      [low, high] = along.length ? [Math.min(...along), Math.max(...along)] : [0, 1];
+    marks
+      .filter((mark) => mark.y === null)
+      .forEach((mark, at) => {
+        const x = high - (at * (high - low)) / 30;
+        mark.x = log ? 10 ** x : x;
+      });
   }
 
   // Adds the control variate as a part of a stacked sum: the mean of the sum includes it, those of the parts do not.
@@ -363,6 +479,11 @@ class SweepView {
       this.chart.show({ panels: [] });
       return;
     }
+    this.axis.disabled = Boolean(choice.isCurve);
+    if (choice.isCurve) {
+      this.drawCurves(choice);
+      return;
+    }
     const canStack = sweep.isSum(choice) && sweep.isAlone(axis, by),
       stacked = canStack && this.stacked.checked;
     this.stacking.hidden = choice.indices.length < 2;
@@ -380,6 +501,21 @@ class SweepView {
       (figure.kinds.includes('provisional')
         ? ' Provisional: the point is not decided yet, and its number may still change.'
         : '');
+    this.chart.show(figure);
+  }
+
+  // Draws a quantity along its own axis. Panels are chosen as for numbers.
+  drawCurves(choice) {
+    const { sweep } = this,
+      chosen = sweep.parameters[Number(this.panels.value)],
+      by = this.panels.value === 'usual' ? null : [chosen].filter(Boolean),
+      log = this.setByHand ? { x: this.logX.checked, y: this.logY.checked } : {},
+      figure = sweep.curves(choice, by, log);
+    this.stacking.hidden = true;
+    this.logX.disabled = this.logY.disabled = false;
+    [this.logX.checked, this.logY.checked] = [figure.x.log, figure.y.log];
+    const confidence = Format.rough(100 * this.data.target.confidence);
+    figure.caption = `A curve for each point; bands are ${confidence} % confidence intervals. ${figure.caption}`;
     this.chart.show(figure);
   }
 }
