@@ -697,7 +697,10 @@ def place_legend(axes, figure):
         legend = axes.legend(handles=handles, loc=corner, frameon=False)
         axes.figure.draw_without_rendering()
         box = legend.get_window_extent()
-        drawn = (axes.transData.transform(place) for place in drawn_places(figure["panels"][0]))
+        drawn = [axes.transData.transform(place) for place in drawn_places(figure["panels"][0])]
+        for line in axes.lines:  # with the signs at the edges
+            if line.get_marker() in ("x", "^", "v") and len(line.get_xdata()):
+                drawn += list(line.get_transform().transform(line.get_xydata()))
         if not any(box.contains(x, y) for x, y in drawn):
             return
     legend = axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(1, 1.02), frameon=False)
@@ -715,6 +718,8 @@ def drawn_places(panel):
         for (x, y), (to_x, to_y) in zip(line["places"], line["places"][1:]):
             for part in range(21):
                 yield x + part / 20 * (to_x - x), y + part / 20 * (to_y - y)
+    for band in panel.get("bands", []):
+        yield from ((x, end) for x, *ends_of in band["places"] for end in ends_of)
     for box in panel.get("columns", []):
         yield from ((x, y) for x in (box["from"], box["to"]) for y in (box["low"], box["high"]))
 

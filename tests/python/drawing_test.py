@@ -378,6 +378,19 @@ class Drawn(unittest.TestCase):
         self.assertGreaterEqual(box.x0, axes.get_window_extent().x1 - 1)
         self.assertLessEqual(box.x1, axes.figure.bbox.x1 + 1)
 
+    # Ten values from 1 to 10 leave the upper left corner free, unless a cross is there.
+    def test_a_legend_covers_no_cross_at_the_edge(self):
+        points = [point({"/peclet": x}, x, 0.01, "undecided") for x in range(1, 11)]
+        free = drawing.draw(drawing.over_sweep(data(points, log="none")))[1][0].get_legend().get_window_extent()
+        points += [point({"/peclet": x}, None, jammed=True) for x in (1, 2)]
+        _, (axes,) = drawing.draw(drawing.over_sweep(data(points, log="none")))
+        box = axes.get_legend().get_window_extent()
+        crosses = [line for line in axes.lines if line.get_marker() == "x" and len(line.get_xdata())]
+        places = [place for line in crosses for place in line.get_transform().transform(line.get_xydata())]
+        self.assertEqual(len(places), 2)
+        self.assertGreater(free.y0, axes.get_window_extent().y0 + axes.get_window_extent().height / 2)
+        self.assertFalse(any(box.contains(x, y) for x, y in places))
+
 
 if __name__ == "__main__":
     unittest.main()
