@@ -97,7 +97,7 @@ def of_one_curve(function, series, document):
     used = series.used()
     x, (mean, error, count) = series.x[used], series.numbers[0][:, used]
     factor = np.ones(len(series.x))
-    if function is laws.herschel_bulkley and "viscosity" in document["quantities"][0]["quantity"]["path"]:
+    if function is laws.herschel_bulkley and "viscosity" in document["quantities"][0]["quantities"][0]["path"]:
         factor = series.x
     options = {"fixed": document["fixed"], "free": document["free"]}
     fit = function(x, mean * factor[used], error * factor[used], count, **options)
@@ -129,7 +129,7 @@ def of_wyart_cates(series, document):
 def of_mu_of_j(series, document):
     """J = 1 / P and mu = eta_r / P, with the pressure P in units of viscosity times rate."""
     viscosity, pressure = series.numbers
-    known = document["quantities"][1]["quantity"]
+    known = document["quantities"][1]["quantities"][0]
     if known["unit"] != RATE_UNIT:
         raise Refused("--law", document["law"], f"needs flow at a given rate, where {known['path']} is in {RATE_UNIT}")
     sign = -1 if known["path"].startswith("stress/") else 1
@@ -206,7 +206,7 @@ def about_axes(document):
     """Returns what the axes of the figure are called: {words, symbol, unit} of x and y."""
     data = document["quantities"]
     key = next(one for one in data[0]["parameters"] if one["pointer"] == document["over"])
-    x, y = about_key(key), about_quantity(data[0]["quantity"])
+    x, y = about_key(key), about_quantity(data[0]["quantities"][0])
     if document["law"] == "wyart-cates":
         x = about_key(next(one for one in data[0]["parameters"] if one["pointer"] == STRESS))
     if document["law"] == "mu-of-j":
@@ -214,7 +214,7 @@ def about_axes(document):
         y = {"words": "friction and volume fraction", "symbol": [], "unit": ""}
     if document["law"] == "maxwell":
         y = {"words": "moduli", "symbol": [], "unit": y["unit"]}
-    if document["law"] == "herschel-bulkley" and "viscosity" in data[0]["quantity"]["path"]:
+    if document["law"] == "herschel-bulkley" and "viscosity" in data[0]["quantities"][0]["path"]:
         y = {"words": f"{y['words']} × {x['words']}", "symbol": [], "unit": ""}
     return x, y
 
@@ -289,7 +289,7 @@ def table(fits):
 
 def text_of(document, fits):
     """Returns the output for people."""
-    names = ", ".join(one["quantity"]["path"] for one in document["quantities"])
+    names = ", ".join(one["quantities"][0]["path"] for one in document["quantities"])
     equation = next((fit.equation for _, fit, _ in fits if isinstance(fit, laws.Fitted)), "")
     text = f"{document['campaign']}: {names} over {document['over']}, {counted(len(fits), 'curve')}\n"
     text += f"{document['law']}{': ' + equation if equation else ''}\n\n{table(fits)}\n"
@@ -356,7 +356,7 @@ def document_json(document, fits):
         curves.append({"settings": series.settings, "law": fit_json(fit), "points": points, "lines": lines})
     given = {name: document[name] for name in ("fixed", "free", "from", "to")}
     head = {"schema_version": 1, "campaign": document["campaign"], "law": document["law"], "over": document["over"]}
-    names = [one["quantity"]["path"] for one in document["quantities"]]
+    names = [one["quantities"][0]["path"] for one in document["quantities"]]
     return {**head, "quantities": names, "given": given, "curves": curves}
 
 

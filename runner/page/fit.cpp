@@ -70,8 +70,14 @@ FitAnswer fit_law(Database& database, const FitChoice& choice, bool in_json) {
                    {"json", in_json},
                    {"quantities", Json::array()}};
   for (const std::string& quantity : quantities) {
-    figure.quantity = quantity;
-    document["quantities"].push_back(figure_data(database, figure));
+    figure.quantities.clear();
+    if (!quantity.empty()) figure.quantities.push_back(quantity);
+    const Json data = figure_data(database, figure);
+    if (data.contains("axis")) {
+      throw InputError("", "--quantity", quantity,
+                       "has an axis of its own: a law is fitted to numbers over a swept parameter");
+    }
+    document["quantities"].push_back(data);
   }
   document["campaign"] = document["quantities"][0]["campaign"];
   document["over"] = document["quantities"][0]["over"];
