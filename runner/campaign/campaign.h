@@ -80,12 +80,12 @@ struct Campaign {
   Json document;                   // as read, with defaults
   std::vector<StatePoint> points;  // in the order of the sweep: the last entry varies fastest
   std::vector<Curve> curves{};     // if the target has any
-  int most_values = 0;             // of the curves' axis, up to which a run chooses some; 0: it chooses none
   Target target;
   int minimum_realisations;
   int maximum_realisations;                  // equal to the minimum if the number is fixed
   std::vector<std::string> engine;           // program and arguments
   int seeds_with_files = most_realisations;  // first seeds of each point whose files are kept
+  int most_values = 0;  // of the curves' axis, up to which a run chooses some; 0: it chooses none
 
   bool keeps_files_of(int seed) const { return seed < seeds_with_files; }
 };

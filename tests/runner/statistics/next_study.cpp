@@ -166,7 +166,7 @@ Result study(const Truth& truth, std::vector<double> grid, int at_once, Source& 
   for (const KnownOnCurve& point : known) {
     data.push_back(point.datum);
     outcome.seeds += point.seeds;
-    outcome.steps += point.seeds * point.seconds;
+    outcome.steps += point.seeds * point.cost;
   }
   outcome.points = static_cast<int>(grid.size());
   const std::vector<double> dense = even_grid(truth, 200);
