@@ -1,9 +1,23 @@
 #include "engine/observables/structure.h"
 
+#include <cmath>
+
 #include "engine/flow/deformation.h"
 #include "engine/terms/drag.h"
 
 namespace peclet::engine {
+
+std::vector<std::uint32_t> places_of_ids(const ParticleState& particles) {
+  std::vector<std::uint32_t> place(particles.count());
+  for (std::uint32_t i = 0; i < place.size(); ++i) place[particles.id[i]] = i;
+  return place;
+}
+
+LatticeShift cells_from_origin(const CellFrame& cell, const Vector3& point) {
+  const Vector3 place = cell.fractional(point);
+  const auto whole = [](double x) { return static_cast<std::int32_t>(std::floor(x + 0.5)); };
+  return {whole(place.x), whole(place.y), whole(place.z)};
+}
 
 SymmetricTensor structural_brownian_stress(const System& system, const std::vector<PairKind>& kinds,
                                            double thermal_energy) {

@@ -30,6 +30,12 @@ void for_each_near_pair(const System& system, double range, const Visit& visit) 
   }
 }
 
+// Returns the place in memory of each id.
+std::vector<std::uint32_t> places_of_ids(const ParticleState& particles);
+
+// Returns the cells from the one around the origin, -1/2 <= fractional < 1/2, to the one of a point.
+LatticeShift cells_from_origin(const CellFrame& cell, const Vector3& point);
+
 // The mobilisation above which a contact slides: below 1, as a step changes the spring after it was cut.
 constexpr double sliding_from = 0.99;
 

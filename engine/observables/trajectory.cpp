@@ -10,9 +10,7 @@
 // vectors in the axes of the flow. Stress is in the axes of the flow.
 //
 // Positions, motion and contacts are those at the end of a step. Stress is that of the step, which the means
-// of the result add up. log/particles/stress is V sigma_i, xx yy zz xy xz yz, tension positive. It has half
-// of sym(r F_i) of each pair, the stresslet of the sphere as if alone and, with noise, -m sym(v v). Hence
-//   log/stress/total = solvent + (1/V) sum_i V sigma_i
+// of the result add up. log/particles/stress is V sigma_i (sphere_stress.h), xx yy zz xy xz yz.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,6 +21,7 @@
 #include "contract/errors.h"
 #include "engine/kernels/pair_recipes.h"
 #include "engine/observables/observable.h"
+#include "engine/observables/sphere_stress.h"
 #include "engine/observables/structure.h"
 #include "engine/terms/drag.h"
 
@@ -56,12 +55,6 @@ std::vector<std::int8_t> names_of_species(std::uint32_t count, std::uint32_t& co
   return names;
 }
 
-std::vector<std::uint32_t> places_of_ids(const ParticleState& particles) {
-  std::vector<std::uint32_t> place(particles.count());
-  for (std::uint32_t i = 0; i < place.size(); ++i) place[particles.id[i]] = i;
-  return place;
-}
-
 void check_frames(const Plan& plan, bool contacts) {
   const std::uint64_t bytes =
       of_frame + plan.scene.particles.count * (of_sphere + (contacts ? contacts_of_sphere * of_contact : 0));
@@ -73,12 +66,13 @@ void check_frames(const Plan& plan, bool contacts) {
                   bytes, plan.window.steps));
 }
 
-class Trajectory : public Observable, private PairWatcher {
+class Trajectory : public Observable {
  public:
   Trajectory(const Plan& plan, bool with_contacts)
       : Observable(plan),
         particles_(plan.scene.particles),
         physics_(plan.scene.physics),
+        stress_(physics_),
         kinds_(pair_kinds_in(plan.scene)),
         with_contacts_(with_contacts),
         turns_(!plain_flow(physics_.flow.deformation().velocity_gradient(0)).is_simple_shear) {
@@ -86,7 +80,7 @@ class Trajectory : public Observable, private PairWatcher {
     keep(frames_);
   }
 
-  PairWatcher* watcher() override { return this; }
+  PairWatcher* watcher() override { return &stress_; }
   gsd::Frames* frames() override { return &frames_; }
 
   void sample(const System& system, std::size_t /*block*/) override {
@@ -98,29 +92,10 @@ class Trajectory : public Observable, private PairWatcher {
     add_stress(system);
     add_contacts(system);
     frames_.end_frame();
-    sums_ = {};
-    motion_ = {};
-    std::ranges::fill(shares_, SymmetricTensor{});
+    stress_.clear();
   }
 
  private:
-  void begin(const System& system, double weight) override {
-    weight_ = weight;
-    shares_.resize(system.particles.count());
-  }
-
-  void take(const System& system, const Pair& pair, const PairSums& sums, const Vector3& /*force*/) override {
-    for (std::size_t t = 0; t < count_of_stress_terms; ++t) sums_.stress[t] += weight_ * sums.stress[t];
-    const SymmetricTensor half = (0.5 * weight_) * total_stress(sums);
-    shares_[system.particles.id[pair.first]] += half;
-    shares_[system.particles.id[pair.second]] += half;
-  }
-
-  void take_motion(const System& system, std::size_t particle, const SymmetricTensor& stress) override {
-    motion_ += weight_ * stress;
-    shares_[system.particles.id[particle]] += weight_ * stress;
-  }
-
   void add_kinds_of_spheres(const System& system) {
     const ParticleState& particles = system.particles;
     const std::vector<std::size_t> number = species_numbers(particles_);
@@ -153,9 +128,7 @@ class Trajectory : public Observable, private PairWatcher {
     append(shape, cell.lengths);
     append(shape, {cell.tilt_xy / cell.lengths.y, cell.xz / cell.lengths.z, cell.yz / cell.lengths.z});
     for (const std::uint32_t i : places_of_ids(particles)) {
-      const Vector3 place = cell.fractional(particles.position[i]);
-      const auto cells = [](double x) { return static_cast<std::int32_t>(std::floor(x + 0.5)); };
-      const LatticeShift removed = {cells(place.x), cells(place.y), cells(place.z)};
+      const LatticeShift removed = cells_from_origin(cell, particles.position[i]);
       const LatticeShift all = particles.image[i] + removed;
       append(position, turned(particles.position[i] - box.displacement(removed)));
       append(velocity, turned(particles.velocity[i] - box.velocity(removed)));
@@ -175,34 +148,32 @@ class Trajectory : public Observable, private PairWatcher {
   }
 
   void add_stress(const System& system) {
-    const ParticleState& particles = system.particles;
     const double volume = system.box.volume();
-    const BackgroundFlow flow = physics_.flow.at(system.box);
-    const SymmetricTensor uniform = strain_of(system.box.velocity_gradient());
     const SymmetricTensor solvent = solvent_stress(physics_.viscosity, system.box.velocity_gradient());
+    const std::vector<SymmetricTensor> own = stress_.stresslets(system);
     SymmetricTensor alone;
     std::vector<float> of_spheres;
-    for (const std::uint32_t i : places_of_ids(particles)) {
-      const double a = particles.radius[i];
-      const SymmetricTensor own =
-          stresslet_of_sphere(physics_.viscosity, a, uniform + flow.varying_strain(particles.position[i], a));
-      alone += own;
-      for (const double x : components_of(own + shares_[particles.id[i]])) {
+    for (std::size_t id = 0; id < own.size(); ++id) {
+      alone += own[id];
+      for (const double x : components_of(own[id] + stress_.shares()[id])) {
         of_spheres.push_back(static_cast<float>(x));
       }
     }
     const SymmetricTensor stresslet = (1 / volume) * alone;
     frames_.add("log/particles/stress", of_spheres, 6);
     frames_.add("log/stress/total",
-                components_of(solvent + stresslet + (1 / volume) * (total_stress(sums_) + motion_)));
+                components_of(solvent + stresslet +
+                              (1 / volume) * (total_stress(stress_.pairs()) + stress_.motion())));
     frames_.add("log/stress/solvent", components_of(solvent));
     frames_.add("log/stress/stresslet", components_of(stresslet));
     for (std::size_t t = 0; t < count_of_stress_terms; ++t) {
       const auto term = static_cast<StressTerm>(t);
       if (!has_stress_term(physics_, term)) continue;
-      frames_.add(std::string("log/stress/") + name_of(term), components_of((1 / volume) * sums_.of(term)));
+      frames_.add(std::string("log/stress/") + name_of(term),
+                  components_of((1 / volume) * stress_.pairs().of(term)));
     }
-    if (physics_.thermal_energy > 0) frames_.add("log/stress/motion", components_of((1 / volume) * motion_));
+    if (physics_.thermal_energy > 0)
+      frames_.add("log/stress/motion", components_of((1 / volume) * stress_.motion()));
   }
 
   void add_contacts(const System& system) {
@@ -258,14 +229,10 @@ class Trajectory : public Observable, private PairWatcher {
 
   Particles particles_;
   Physics physics_;
+  SphereStress stress_;
   std::vector<PairKind> kinds_;
   bool with_contacts_;
   bool turns_;  // true if the cell is turned relative to the axes of the flow
-  // Sums over the step that is sampled; shares are by id.
-  double weight_ = 0;
-  PairSums sums_;
-  SymmetricTensor motion_;
-  std::vector<SymmetricTensor> shares_;
   gsd::Frames frames_;
 };
 
