@@ -33,10 +33,15 @@ std::string name_of(const Drawable& one) {
 std::size_t chosen_column(const std::vector<Drawable>& drawables, const std::string& name,
                           const std::vector<std::string>& others) {
   if (drawables.empty()) throw InputError("", "--quantity", name, "nothing has been measured yet");
-  std::vector<std::string> names;
-  for (std::size_t column = 0; column < drawables.size(); ++column) {
-    names.push_back(name_of(drawables[column]));
-    if (drawables[column].path == name || names.back() == name) return column;
+  std::vector<std::string> names, paths;
+  for (const Drawable& one : drawables) {
+    names.push_back(name_of(one));
+    paths.push_back(one.path);
+  }
+  // A path may be the name of another element, whose value on the axis is a whole number: paths come first.
+  for (const std::vector<std::string>& known : {paths, names}) {
+    const auto found = std::ranges::find(known, name);
+    if (found != known.end()) return static_cast<std::size_t>(found - known.begin());
   }
   names.insert(names.end(), others.begin(), others.end());
   const std::string meant = suggestion(name, names),

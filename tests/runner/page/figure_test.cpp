@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "contract/errors.h"
+#include "runner/page/swept.h"
 #include "tests/runner/stored_campaign.h"
 
 namespace peclet::runner {
@@ -149,6 +150,16 @@ TEST(FigurePicture, TakesNoScriptOfAnothersAway) {
   EXPECT_EQ(script_beside(picture), folder.path() / "curve.py");
   std::ofstream(folder.path() / "curve.py") << "print('mine')\n";
   EXPECT_THROW(script_beside(picture), InputError);
+}
+
+// The elements of a list over k = 1, 2: the target measure/k_core/1 is that of k = 2.
+TEST(ChosenColumn, IsThatOfThePathBeforeThatOfAnAxisValue) {
+  const std::vector<Drawable> list{
+      {.path = "k_core/0", .name = "k_core", .element = "1", .symbol = "", .unit = "1"},
+      {.path = "k_core/1", .name = "k_core", .element = "2", .symbol = "", .unit = "1"}};
+  EXPECT_EQ(chosen_column(list, "k_core/0"), 0u);
+  EXPECT_EQ(chosen_column(list, "k_core/1"), 1u);
+  EXPECT_EQ(chosen_column(list, "k_core/2"), 1u);
 }
 
 }  // namespace
