@@ -17,7 +17,8 @@ constexpr const char* result_rows = R"(
 /seed | integer >= 0 and < {0}
 /ending | object
 /ending/cause | word | completed and jammed (at a given stress) have means. Any other word is the engine's
-    reason for having none; of peclet-engine: overlap, displacement, non-finite, packing, timestep.
+    reason for having none; of peclet-engine: overlap, displacement, non-finite, packing, timestep,
+    script.
 /ending/step | count | The last step.
 /ending/message? | string
 /ending/state? | string or null | File with the last state of a realisation that broke off.

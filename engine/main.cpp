@@ -18,6 +18,7 @@
 #include "contract/frames.h"
 #include "contract/named_files.h"
 #include "contract/provenance.h"
+#include "contract/scene_script.h"
 #include "contract/usage_fault.h"
 #include "engine/forces/configuration.h"
 #include "engine/pictures/colouring.h"
@@ -218,10 +219,11 @@ int run(const RunOptions& options) {
     if (!one.output.empty()) check_output(one.output);
     if (!one.checkpoint.empty()) check_output(one.checkpoint);
   }
-  const Json scene = read_json_input(options.scene);
+  Json scene = read_json_input(options.scene);
   if (scene.is_object() && scene.contains("scene")) {
     throw InputError(options.scene, "", "", "is a campaign, not a scene; `peclet run` runs campaigns");
   }
+  add_script(scene, options.scene, "");
   std::unique_ptr<Ensemble> ensemble;
   Device device = Device::processor;
   if (options.device != "none") {

@@ -16,7 +16,8 @@ const std::vector<ObservableKind>& observable_kinds() {
                                                linear_response(),
                                                oscillation(),
                                                transient(),
-                                               trajectory()};
+                                               trajectory(),
+                                               measure()};
   return all;
 }
 

@@ -54,8 +54,11 @@ class Observable : public Accumulators {
   virtual void take_flux(const MomentumFlux& /*flux*/) {}
   // Returns the watcher that receives the pairs of each sampled step before sample(), or null.
   virtual PairWatcher* watcher() { return nullptr; }
-  // Requires a complete step (integrator.h). `block` counts the 32 blocks of the window from 0.
+  // Requires a complete step (integrator.h). `block` counts the 32 blocks of the window from 0. Throws
+  // ScriptError if a script of the user fails.
   virtual void sample(const System& /*system*/, std::size_t /*block*/) {}
+  // Returns the processor time that other processes have spent for it since the last call [s].
+  virtual double take_seconds() { return 0; }
   // Returns the frames that are written beside the result, or null.
   virtual gsd::Frames* frames() { return nullptr; }
 
@@ -74,7 +77,8 @@ MakeFromPlan maker(const Settings&... settings) {
 enum class Sampling {
   of_every_step,  // without a key for the interval
   often,          // at every step unless the scene has an interval
-  seldom  // at every 256th of the window unless the scene has an interval: costly, and changing slowly
+  seldom,         // at every 256th of the window unless the scene has an interval: costly, changing slowly
+  rarely          // at every 64th: as costly as several steps
 };
 
 struct ObservableKind {
@@ -101,6 +105,7 @@ ObservableKind linear_response();
 ObservableKind oscillation();
 ObservableKind transient();
 ObservableKind trajectory();
+ObservableKind measure();
 
 const std::vector<ObservableKind>& observable_kinds();
 

@@ -12,6 +12,12 @@
 namespace peclet::engine {
 namespace {
 
+// Returns the number of samples in the window if the scene has no interval; 0: one at each step.
+std::uint64_t samples_unless_given(Sampling sampling) {
+  if (sampling == Sampling::seldom) return 256;
+  return sampling == Sampling::rarely ? 64 : 0;
+}
+
 // Returns the key rows of "/observables/*" and of the settings of all observables.
 std::string observable_keys() {
   std::string meaning = "stress: the stress tensor by term, always measured.", names = "stress", blocks;
@@ -21,9 +27,11 @@ std::string observable_keys() {
     if (!kind.has_settings()) continue;
     blocks += fmt::format("/{0}? | object | Settings of the observable {0}.\n", kind.name);
     const std::string interval = fmt::format("/{}/interval?", kind.name);
-    const std::string unless_given =
-        fmt::format("in whole steps; {} unless given.",
-                    kind.sampling == Sampling::often ? "one step" : "a 256th of the production window");
+    const std::string unless_given = fmt::format(
+        "in whole steps; {} unless given.",
+        samples_unless_given(kind.sampling) == 0
+            ? "one step"
+            : fmt::format("a {}th of the production window", samples_unless_given(kind.sampling)));
     if (kind.interval_is_a_duration) {
       blocks += fmt::format(
           "{} | object; as /duration/production | Interval between samples, {} The shortest of its limits "
@@ -39,11 +47,11 @@ std::string observable_keys() {
 
 // Returns the steps between samples, at least 1 and at most 1e18, which is longer than any window.
 std::uint64_t steps_between(Sampling sampling, const std::optional<double>& interval, const Window& window) {
-  constexpr std::uint64_t seldom_samples = 256;
   if (interval) {
     return static_cast<std::uint64_t>(std::clamp(std::round(*interval / window.timestep), 1.0, 1e18));
   }
-  return sampling == Sampling::seldom ? std::max<std::uint64_t>(1, window.steps / seldom_samples) : 1;
+  const std::uint64_t samples = samples_unless_given(sampling);
+  return samples == 0 ? 1 : std::max<std::uint64_t>(1, window.steps / samples);
 }
 
 void read_observable(const ObservableKind& kind, const SceneDocument& document, Scene& scene) {
@@ -77,7 +85,11 @@ void read_observables(const std::string& file, Scene& scene) {
       continue;
     }
     if (kind.has_settings() && !has_block) {
-      filled[kind.name] = scene_keys().validate(Json::object(), file, '/' + kind.name);
+      try {
+        filled[kind.name] = scene_keys().validate(Json::object(), "", '/' + kind.name);
+      } catch (const InputError& error) {
+        throw error.within(file, '/' + kind.name);
+      }
     }
     read_observable(kind, document, scene);
   }

@@ -264,7 +264,9 @@ class Job {
         Clock::now() +
         std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(job_.checkpoint_seconds));
     while (true) {
-      if (std::optional<Ending> ending = make_steps(next_checkpoint)) return ending;
+      const std::optional<Ending> ending = make_steps(next_checkpoint);
+      meter_.add(simulation_->take_seconds());
+      if (ending) return ending;
       const System& system = simulation_->system();
       events_.progress(progress_of(*simulation_, system.step, system.box.net_strain()));
       if (!relieve_memory()) return std::nullopt;

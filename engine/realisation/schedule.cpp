@@ -92,9 +92,9 @@ Schedule make_schedule(const Scene& scene, const std::string& file) {
 }
 
 const char* name_of(Ending::Cause cause) {
-  constexpr const char* names[] = {"completed",  "jammed",  "overlap", "displacement",
-                                   "non-finite", "packing", "timestep"};
-  static_assert(std::size(names) == static_cast<std::size_t>(Ending::Cause::timestep) + 1);
+  constexpr const char* names[] = {"completed",  "jammed",  "overlap",  "displacement",
+                                   "non-finite", "packing", "timestep", "script"};
+  static_assert(std::size(names) == static_cast<std::size_t>(Ending::Cause::script) + 1);
   return names[static_cast<std::size_t>(cause)];
 }
 

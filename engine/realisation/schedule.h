@@ -25,7 +25,7 @@ Schedule make_schedule(const Scene& scene, const std::string& file);
 
 // Why, and at which step, a realisation ended.
 struct Ending {
-  enum class Cause { completed, jammed, overlap, displacement, non_finite, packing, timestep };
+  enum class Cause { completed, jammed, overlap, displacement, non_finite, packing, timestep, script };
   Cause cause = Cause::completed;
   std::uint64_t step = 0;
   std::string message;

@@ -9,6 +9,7 @@
 #include "engine/integrators/implicit.h"
 #include "engine/integrators/velocity_verlet.h"
 #include "engine/kernels/pair_recipes.h"
+#include "engine/observables/script_process.h"
 #include "engine/observables/structure.h"
 #include "engine/realisation/packing.h"
 #include "engine/realisation/schedule.h"
@@ -122,7 +123,9 @@ std::optional<Ending> Simulation::advance(std::uint64_t steps) {
       integrator_->complete(system_);
       return ending;
     }
-    if (system_.step > schedule_.equilibration) observe(report);
+    if (system_.step > schedule_.equilibration) {
+      if (std::optional<Ending> ending = observe(report)) return ending;
+    }
     if (std::optional<Ending> ending = driver_->ending(system_, schedule_)) return ending;
   }
   integrator_->complete(system_);
@@ -144,6 +147,12 @@ PairWatcher* Simulation::watchers_of_step() {
   return watchers_.empty() ? nullptr : &watchers_;
 }
 
+double Simulation::take_seconds() {
+  double seconds = 0;
+  for (const std::unique_ptr<Observable>& observable : observables_) seconds += observable->take_seconds();
+  return seconds;
+}
+
 gsd::Frames* Simulation::frames() {
   for (const std::unique_ptr<Observable>& observable : observables_) {
     if (gsd::Frames* const frames = observable->frames()) return frames;
@@ -151,7 +160,7 @@ gsd::Frames* Simulation::frames() {
   return nullptr;
 }
 
-void Simulation::observe(const StepReport& report) {
+std::optional<Ending> Simulation::observe(const StepReport& report) {
   const std::uint64_t index = system_.step - schedule_.equilibration - 1;
   production_.add_step(index, report.sums, report.motion, system_.box.velocity_gradient().column[1].x);
   largest_overlap_ = std::max(largest_overlap_, report.sums.largest_overlap);
@@ -167,8 +176,13 @@ void Simulation::observe(const StepReport& report) {
     observable->take_flux(flux);
     if (index % observable->interval() != 0) continue;
     integrator_->complete(system_);
-    observable->sample(system_, production_.block_at(index));
+    try {
+      observable->sample(system_, production_.block_at(index));
+    } catch (const ScriptError& error) {
+      return Ending{Ending::Cause::script, system_.step, error.what()};
+    }
   }
+  return std::nullopt;
 }
 
 std::optional<Ending> Simulation::check_stability() {

@@ -56,6 +56,8 @@ class Simulation {
 
   // Returns strains in which both directions count as positive; at a given stress net strains.
   Strains strains() const { return driver_->strains(system_, schedule_); }
+  // Returns the processor time that other processes have spent on it since the last call [s].
+  double take_seconds();
   const Driver& driver() const { return *driver_; }
 
   // Returns the frames that an observable writes to a file beside the result, or null.
@@ -75,7 +77,8 @@ class Simulation {
   PairWatcher* watchers_of_step();
   // Returns the ending if the packing is too stiff for the step; checks at the first and every few thousand.
   std::optional<Ending> check_stability();
-  void observe(const StepReport& report);
+  // Returns the ending if a script of the user fails.
+  std::optional<Ending> observe(const StepReport& report);
   // Returns the interval, shortened to a block of the production window, so that each block has samples.
   std::uint64_t at_most_a_block(std::uint64_t interval) const {
     return std::min(interval, schedule_.production / count_of_blocks);

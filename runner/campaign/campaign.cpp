@@ -7,6 +7,7 @@
 
 #include "contract/errors.h"
 #include "contract/named_files.h"
+#include "contract/scene_script.h"
 #include "runner/campaign/campaign_file.h"
 #include "runner/campaign/sweep.h"
 
@@ -73,6 +74,17 @@ Target aimed_at(const Json& document, const std::string& file) {
 int seeds_with_files(const Json& document) {
   const Json rule = document.value("keep_files", Json("all"));
   return rule == "all" ? most_realisations : rule == "none" ? 0 : rule.get<int>();
+}
+
+// Throws InputError if the sweep sets the name of the script, whose text is added to the scene once.
+void refuse_swept_script(const std::vector<SweepEntry>& sweep, const std::string& file) {
+  for (std::size_t entry = 0; entry < sweep.size(); ++entry) {
+    for (const std::string& pointer : sweep[entry].pointers) {
+      if (pointer != "/measure" && !pointer.starts_with("/measure/")) continue;
+      throw InputError(file, fmt::format("/sweep/{}/set", entry), pointer,
+                       "must not be swept: one script measures all points, and may look at frame.scene");
+    }
+  }
 }
 
 // Throws InputError if the file is a scene without a campaign, a common first mistake, and says what to add.
@@ -259,9 +271,11 @@ Campaign parse_campaign(const Json& written, const std::string& file) {
     }
     campaign.most_values = document["choose"]["points"].get<int>();
   }
+  add_script(campaign.document["scene"], file, "/scene");
   campaign.curves = curves_of(document, campaign.target, file);
-  campaign.points = sweep_points(document["scene"], read_sweep(whole_sweep(document, campaign.target), file),
-                                 campaign.name, file);
+  const std::vector<SweepEntry> sweep = read_sweep(whole_sweep(document, campaign.target), file);
+  refuse_swept_script(sweep, file);
+  campaign.points = sweep_points(document["scene"], sweep, campaign.name, file);
   return campaign;
 }
 
