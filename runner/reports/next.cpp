@@ -162,9 +162,9 @@ Proposal propose_next(const NextOptions& options) {
   std::vector<Planned> curves;
   for (const Curve& curve : curves_of(campaign.document, target))
     curves.push_back(planned(curve, points, campaign.target, options));
-  const Json written =
-      keeping_chosen_values(parse_json_input(source.text, source.file.string()), campaign.document);
-  const Json patch = patch_of(curves, target, whole_sweep(written, target));
+  const Json written = parse_json_input(source.text, source.file.string()).value("sweep", Json::array());
+  const bool is_the_same = written == campaign.document.at("sweep");
+  const Json patch = patch_of(curves, target, is_the_same ? whole_sweep(campaign.document, target) : written);
 
   Proposal answer;
   if (const std::string note = difference_from_file(options.campaign, options.directory, campaign);
