@@ -1,4 +1,4 @@
-"""Clusters of spheres that touch: the largest one, and the distribution of sizes."""
+"""Clusters of spheres that touch: the share of the largest one, and the number of clusters."""
 
 import numpy as np
 from scipy.sparse import coo_array

@@ -45,9 +45,17 @@ def write_script(folder, text):
         file.write(text)
 
 
-def example():
-    with open(os.path.join(EXAMPLES, "clusters.py")) as file:
+def text_of(*names):
+    with open(os.path.join(EXAMPLES, *names)) as file:
         return file.read()
+
+
+def example():
+    return text_of("clusters.py")
+
+
+def line_of(piece):
+    return example()[: example().index(piece)].count("\n") + 1
 
 
 def campaign_in(programs, folder, script, **changes):
@@ -70,7 +78,11 @@ def refusals(programs, folder):
     for number, (script, changes, pieces) in enumerate(
         [
             (None, {}, ["flow.json: /scene/measure/script:", "scripts/mine.py", "cannot be read: No such file"]),
-            (good.replace("def measure(frame):", "def measure(frame)"), {}, ["scripts/mine.py, line 13: SyntaxError"]),
+            (
+                good.replace("def measure(frame):", "def measure(frame)"),
+                {},
+                [f"scripts/mine.py, line {line_of('def measure')}: SyntaxError"],
+            ),
             (good.replace("def measure", "def count"), {}, ["/scene/measure/script: ", "must have a function measure"]),
             (good, target, ["/target/observable: measure/largest_clutser", "did you mean measure/largest_cluster?"]),
             (good, swept, ["/sweep/0/set: /measure/script: must not be swept"]),
@@ -123,7 +135,7 @@ def failing_seed(programs, folder):
     said = campaign.say("run", campaign.file, "--workers=2", text=True)
     check(said.returncode == 3, said.returncode, said.stdout, said.stderr)
     said = campaign.say("explain", campaign.file, text=True)
-    wanted = "scripts/mine.py, line 15: ZeroDivisionError: division by zero"
+    wanted = f"scripts/mine.py, line {line_of('links =')}: ZeroDivisionError: division by zero"
     check(wanted in said.stdout, repr(wanted), "is not in", said.stdout)
 
 
@@ -163,6 +175,7 @@ def no_orphan(programs, folder):
 
 def main():
     programs = sys.argv[1]
+    check(example() in text_of("..", "measure.md"), "the page shows another clusters.py")
     with tempfile.TemporaryDirectory() as folder:
         for case in refusals, same_numbers, failing_seed, no_orphan:
             case(programs, os.path.join(folder, case.__name__))
