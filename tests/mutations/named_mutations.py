@@ -209,8 +209,8 @@ NAMED = [
     (
         "window that begins one step late",
         SIMULATION,
-        "if (system_.step > schedule_.equilibration) observe(report);",
-        "if (system_.step > schedule_.equilibration + 1) observe(report);",
+        "if (system_.step > schedule_.equilibration) {",
+        "if (system_.step > schedule_.equilibration + 1) {",
         "engine_tests:Result.MeansAreTakenOverEveryStepOfTheProductionWindow",
     ),
     (
