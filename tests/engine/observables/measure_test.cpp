@@ -8,6 +8,7 @@
 #include <cstdlib>
 
 #include "contract/scene_script.h"
+#include "tests/contract/python_of_debian.h"
 #include "tests/contract/refusal.h"
 #include "tests/engine/observables/loose_spheres.h"
 #include "tests/engine/realisation/small_result.h"
@@ -15,20 +16,13 @@
 namespace peclet::engine {
 namespace {
 
-// Puts Debian's python3, which has NumPy and SciPy, first in PATH, and expects that no process is left.
-class Measure : public testing::Test {
+// Expects that no process is left.
+class Measure : public PythonOfDebian {
  protected:
-  Measure() {
-    setenv("PATH", ("/usr/bin:" + path_).c_str(), 1);  // NOLINT(concurrency-mt-unsafe): there is one thread
-  }
   ~Measure() override {
-    setenv("PATH", path_.c_str(), 1);  // NOLINT(concurrency-mt-unsafe)
     EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1);
     EXPECT_EQ(errno, ECHILD);
   }
-
- private:
-  std::string path_ = std::getenv("PATH");  // NOLINT(concurrency-mt-unsafe)
 };
 
 // Returns the settings for a script of docs/measure.

@@ -1,27 +1,17 @@
-// Campaigns over the volume fraction, with viscosities that follow a law, and Python for their fits.
+// Campaigns over the volume fraction, with viscosities that follow a law.
 #pragma once
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <string>
 #include <vector>
 
 #include "runner/page/jamming.h"
+#include "tests/contract/python_of_debian.h"
 #include "tests/runner/stored_campaign.h"
 
 namespace peclet::runner {
-
-// Puts Debian's interpreter, which has NumPy, first on PATH.
-class PythonOfDebian : public testing::Test {
- protected:
-  PythonOfDebian() { setenv("PATH", ("/usr/bin:" + path_).c_str(), 1); }
-  ~PythonOfDebian() override { setenv("PATH", path_.c_str(), 1); }
-
- private:
-  const std::string path_ = std::getenv("PATH");
-};
 
 struct TrueLaw {
   double fraction = 0.65, exponent = 1.6, prefactor = 1.4;
