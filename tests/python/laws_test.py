@@ -265,7 +265,7 @@ def point(value, mean, count=8, jammed=False, **more):
 def document(points, law="cross", **options):
     parameters = [{"pointer": key, "words": "", "symbol": "", "unit": ""} for key in points[0]["settings"]]
     quantity = {"path": "relative_viscosity", "name": "relative_viscosity", "element": "", "symbol": "η_r", "unit": ""}
-    data = {"campaign": "flow", "quantity": quantity, "parameters": parameters, "points": points}
+    data = {"campaign": "flow", "quantities": [quantity], "parameters": parameters, "points": points}
     form = {"fixed": {}, "free": [], "from": None, "to": None, "json": False, "beside": ""}
     head = {"law": law, "campaign": "flow", "over": "/peclet", "quantities": [data]}
     return {**head, **form, **options}
