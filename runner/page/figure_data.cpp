@@ -314,10 +314,10 @@ class Figure {
     for (const auto& [is_given, option, value] :
          {std::tuple{!choice_.over.empty(), "--over", choice_.over},
           std::tuple{choice_.tolerance, "--band", chosen_.about.front().path}}) {
-      if (is_given)
-        throw InputError("", option, value,
-                         fmt::format("must not be given: {} has an axis of its own, {}",
-                                     chosen_.about.front().path, axis.name));
+      if (!is_given) continue;
+      throw InputError("", option, value,
+                       fmt::format("must not be given: {} has an axis of its own, {}",
+                                   chosen_.about.front().path, axis.name));
     }
     const AxisScale of_x = scale("--scale-x", choice_.scale_x, axis.unit);
     Visible visible(choice_.log);
