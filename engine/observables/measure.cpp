@@ -62,8 +62,9 @@ class PairForces final : public PairWatcher {
     if (!is_sorted_) std::ranges::stable_sort(forces_, {}, &Force::ids);
     is_sorted_ = true;
     Vector3 sum{};
-    for (const Force& force : std::ranges::equal_range(forces_, ids, {}, &Force::ids)) {
-      if (norm(force.separation - separation) < near) sum += force.force;
+    for (auto force = std::ranges::lower_bound(forces_, ids, {}, &Force::ids);
+         force != forces_.end() && force->ids == ids; ++force) {
+      if (norm(force->separation - separation) < near) sum += force->force;
     }
     return sum;
   }
@@ -172,7 +173,8 @@ class Measure : public Observable {
     }
     std::vector<std::int64_t> species;
     const std::vector<std::size_t> number = species_numbers(particles_);
-    for (std::size_t s = 0; s < number.size(); ++s) species.insert(species.end(), number[s], s);
+    for (std::size_t s = 0; s < number.size(); ++s)
+      species.insert(species.end(), number[s], static_cast<std::int64_t>(s));
     const std::size_t count = particles.count();
     arrays.add("box", box, {3, 3});
     arrays.add("positions", position, {count, 3});

@@ -27,6 +27,7 @@ constexpr int socket_of_driver = 3, cannot_be_run = 127;
 
 std::vector<char*> pointers(std::vector<std::string>& words) {
   std::vector<char*> all;
+  all.reserve(words.size() + 1);
   for (std::string& word : words) all.push_back(word.data());
   all.push_back(nullptr);
   return all;
