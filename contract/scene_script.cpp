@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "contract/errors.h"
 #include "contract/key_table.h"
 #include "contract/named_files.h"
@@ -31,11 +29,12 @@ std::string content_of(const std::filesystem::path& path) {
 
 }  // namespace
 
-void add_script(Json& scene, const std::string& file, const std::string& pointer) {
+void add_script(Json& scene, const std::filesystem::path& folder, const std::string& file,
+                const std::string& pointer) {
   const Json::json_pointer name("/measure/script"), text("/measure/text");
   const bool names_one = scene.is_object() && scene.contains(name) && scene.at(name).is_string();
   if (!names_one || scene.contains(text)) return;
-  const auto path = std::filesystem::path(file).parent_path() / scene.at(name).get<std::string>();
+  const auto path = folder / scene.at(name).get<std::string>();
   try {
     std::string content = content_of(path);
     if (content.size() > longest_script)

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <string>
 
 #include "contract/json.h"
@@ -15,9 +16,10 @@ namespace peclet {
 // Longest script [bytes].
 constexpr std::size_t longest_script = std::size_t{1} << 16;
 
-// Adds the text of the script that `scene` names, unless the scene names none or has the text. The name is
-// relative to the folder of `file`. Throws InputError at `pointer` + "/measure/script" if the script cannot
-// be read, is too long or is not in UTF-8.
-void add_script(Json& scene, const std::string& file, const std::string& pointer);
+// Adds the text of the script that `scene` names, relative to `folder`, unless the scene names none or has
+// the text. Throws InputError at `pointer` + "/measure/script" of `file` if the script cannot be read, is too
+// long or is not in UTF-8.
+void add_script(Json& scene, const std::filesystem::path& folder, const std::string& file,
+                const std::string& pointer);
 
 }  // namespace peclet

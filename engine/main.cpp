@@ -223,7 +223,7 @@ int run(const RunOptions& options) {
   if (scene.is_object() && scene.contains("scene")) {
     throw InputError(options.scene, "", "", "is a campaign, not a scene; `peclet run` runs campaigns");
   }
-  add_script(scene, options.scene, "");
+  add_script(scene, std::filesystem::path(options.scene).parent_path(), options.scene, "");
   std::unique_ptr<Ensemble> ensemble;
   Device device = Device::processor;
   if (options.device != "none") {

@@ -16,6 +16,8 @@
 #include <thread>
 #include <vector>
 
+#include "contract/exec_words.h"
+
 namespace peclet::engine {
 namespace {
 
@@ -24,14 +26,6 @@ using Monotonic = std::chrono::steady_clock;
 constexpr int socket_of_driver = 3, cannot_be_run = 127;
 
 [[noreturn]] void fail(const char* what) { throw std::system_error(errno, std::generic_category(), what); }
-
-std::vector<char*> pointers(std::vector<std::string>& words) {
-  std::vector<char*> all;
-  all.reserve(words.size() + 1);
-  for (std::string& word : words) all.push_back(word.data());
-  all.push_back(nullptr);
-  return all;
-}
 
 // Becomes python3 with the driver, in a child of fork(2). Only calls that are safe there.
 [[noreturn]] void become_driver(int socket, pid_t parent, char* const* words, char* const* variables) {
@@ -65,7 +59,7 @@ ScriptProcess::ScriptProcess(const Script& script)
   // The first of two equal names counts. The order of sets must not change from process to process.
   std::vector<std::string> variables = {"PYTHONHASHSEED=0"};
   for (char** variable = environ; *variable != nullptr; ++variable) variables.emplace_back(*variable);
-  const std::vector<char*> arguments = pointers(words), environment = pointers(variables);
+  const std::vector<char*> arguments = exec_words(words), environment = exec_words(variables);
   const pid_t parent = getpid();
   process_ = fork();
   if (process_ < 0) fail("fork");

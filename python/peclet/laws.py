@@ -712,7 +712,6 @@ def mu_of_j(
 ):
     """Returns the Fitted laws of F. Boyer, E. Guazzelli and O. Pouliquen (Phys. Rev. Lett. 107, 188301, 2011).
 
-
         phi = phi_m / (1 + sqrt(J))
         mu = mu_1 + (mu_2 - mu_1) / (1 + I_0 / J) + J + 2.5 phi_m sqrt(J)
 

@@ -211,13 +211,16 @@ Json with_chosen_value(Json document, double value) {
 }
 
 Json keeping_chosen_values(Json document, const Json& before) {
-  const Json::json_pointer over("/target/curve/over");
+  const auto over = [](const Json& campaign) {
+    const Json& target = campaign.at("target");
+    return target_of("", target, usual_confidence).over();
+  };
   const auto is_alike = [&](const char* key) {
     return document.value(key, Json()) == before.value(key, Json());
   };
   const Json known = chosen_values(before);
   if (!known.empty() && document.contains("choose") && !document["choose"].contains("values") &&
-      is_alike("sweep") && is_alike("scene") && document.value(over, Json()) == before.value(over, Json())) {
+      is_alike("sweep") && is_alike("scene") && over(document) == over(before)) {
     document["choose"]["values"] = known;
   }
   return document;
@@ -271,7 +274,7 @@ Campaign parse_campaign(const Json& written, const std::string& file) {
     }
     campaign.most_values = document["choose"]["points"].get<int>();
   }
-  add_script(campaign.document["scene"], file, "/scene");
+  add_script(campaign.document["scene"], home_of(file), file, "/scene");
   campaign.curves = curves_of(document, campaign.target, file);
   const std::vector<SweepEntry> sweep = read_sweep(whole_sweep(document, campaign.target), file);
   refuse_swept_script(sweep, file);

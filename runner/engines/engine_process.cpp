@@ -21,6 +21,7 @@
 #include <utility>
 
 #include "contract/errors.h"
+#include "contract/exec_words.h"
 #include "runner/campaign/campaign_file.h"
 #include "runner/store/campaign_directory.h"
 
@@ -85,15 +86,6 @@ Descriptor file_with(const std::string& text) {
   return file;
 }
 
-// Returns the words as exec(3) takes them; valid as long as `words`.
-std::vector<char*> pointers(std::vector<std::string>& words) {
-  std::vector<char*> pointers;
-  pointers.reserve(words.size() + 1);
-  for (std::string& word : words) pointers.push_back(word.data());
-  pointers.push_back(nullptr);
-  return pointers;
-}
-
 // The settings of posix_spawn(3), which own memory. The child gets a process group of its own, and the
 // default handling of signals that this process has blocked.
 class SpawnSettings {
@@ -132,8 +124,8 @@ class SpawnSettings {
     check(posix_spawnattr_setsigdefault(&attributes_, &usual_), "posix_spawn");
     for (char** variable = environ; *variable != nullptr; ++variable) variables.emplace_back(*variable);
     pid_t process = -1;
-    check(posix_spawnp(&process, words.at(0).c_str(), &actions_, &attributes_, pointers(words).data(),
-                       pointers(variables).data()),
+    check(posix_spawnp(&process, words.at(0).c_str(), &actions_, &attributes_, exec_words(words).data(),
+                       exec_words(variables).data()),
           words[0]);
     return process;
   }

@@ -198,17 +198,9 @@ class Visible {
 
 // Removes the points without a result, which have no derived numbers; returns how many.
 std::size_t leave_out_those_without_result(MeasuredSweep& sweep) {
-  Json points = Json::array();
-  std::vector<PointSummary> summaries;
-  for (std::size_t i = 0; i < sweep.page.points.size(); ++i) {
-    if (!sweep.page.points[i].at("groups").is_object()) continue;
-    points.push_back(std::move(sweep.page.points[i]));
-    summaries.push_back(std::move(sweep.status.points[i]));
-  }
-  const std::size_t absent = sweep.page.points.size() - points.size();
-  sweep.page.points = std::move(points);
-  sweep.status.points = std::move(summaries);
-  return absent;
+  const std::size_t all = sweep.page.points.size();
+  keep_points(sweep, [](const Json& point) { return point.at("groups").is_object(); });
+  return all - sweep.page.points.size();
 }
 
 // One figure, made of the points of a sweep.
@@ -250,10 +242,8 @@ class Figure {
   }
 
   bool is_swept(const std::string& name) const {
-    return std::any_of(sweep_.parameters.begin(), sweep_.parameters.end(), [&](const Json& parameter) {
-      const std::string pointer = parameter.at("pointer");
-      return pointer == name || pointer == '/' + name || pointer.ends_with('/' + name);
-    });
+    return std::any_of(sweep_.swept.begin(), sweep_.swept.end(),
+                       [&](const Swept& one) { return is_called(one, name); });
   }
 
   // Adds the derived number `over` to the parameters. A name that is not one is left to chosen_axis().

@@ -96,9 +96,25 @@ Swept points_themselves(const Json& points) {
   return made;
 }
 
+}  // namespace
+
 bool is_called(const Swept& one, const std::string& name) {
   return one.pointer == name || one.pointer == '/' + name || last_step(one.pointer) == name;
 }
+
+void keep_points(MeasuredSweep& sweep, const std::function<bool(const Json& point)>& is_kept) {
+  Json points = Json::array();
+  std::vector<PointSummary> summaries;
+  for (std::size_t i = 0; i < sweep.page.points.size(); ++i) {
+    if (!is_kept(sweep.page.points[i])) continue;
+    points.push_back(std::move(sweep.page.points[i]));
+    summaries.push_back(std::move(sweep.status.points[i]));
+  }
+  sweep.page.points = std::move(points);
+  sweep.status.points = std::move(summaries);
+}
+
+namespace {
 
 // Returns the only parameter with this name. Throws InputError at `option`.
 const Swept& called(const std::vector<Swept>& swept, const std::string& name, const char* option) {
@@ -173,19 +189,11 @@ bool is_wanted(const Json& point, const Wanted& wanted) {
 // Removes the points that are not wanted.
 void select(MeasuredSweep& sweep, const std::vector<std::string>& where) {
   const Wanted wanted = wanted_values(where, sweep.parameters, sweep.page.points);
-  Json points = Json::array();
-  std::vector<PointSummary> summaries;
-  for (std::size_t i = 0; i < sweep.page.points.size(); ++i) {
-    if (!is_wanted(sweep.page.points[i], wanted)) continue;
-    points.push_back(std::move(sweep.page.points[i]));
-    summaries.push_back(std::move(sweep.status.points[i]));
-  }
-  if (points.empty()) {
+  keep_points(sweep, [&](const Json& point) { return is_wanted(point, wanted); });
+  if (sweep.page.points.empty()) {
     throw InputError("", "--where", fmt::format("{}", fmt::join(where, " ")),
                      "must hold at a point: no point has these values together");
   }
-  sweep.page.points = std::move(points);
-  sweep.status.points = std::move(summaries);
 }
 
 // True if the value of `other` follows from that of `axis`.

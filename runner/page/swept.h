@@ -1,6 +1,7 @@
 // The swept parameters of a campaign, as the axis and the curves of a figure.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,12 @@ std::vector<Swept> swept_columns(const Json& parameters, const Json& points);
 // Reads the points that have one of the values that `where` gives for each parameter, as NAME=VALUE; all
 // points if it is empty. Throws InputError at --where; throws IntegrityError.
 MeasuredSweep read_sweep(Database& database, const std::vector<std::string>& where = {});
+
+// Removes the other points.
+void keep_points(MeasuredSweep& sweep, const std::function<bool(const Json& point)>& is_kept);
+
+// True if `name` is the pointer of the parameter, with or without its first slash, or the last step of it.
+bool is_called(const Swept& one, const std::string& name);
 
 // Returns the name of a drawable for --quantity: "pressure", "stress/total/xy".
 std::string name_of(const Drawable& one);

@@ -28,7 +28,7 @@ class Measure : public PythonOfDebian {
 // Returns the settings for a script of docs/measure.
 Json example(const std::string& name) {
   Json scene = {{"measure", {{"script", "docs/measure/" + name}}}};
-  add_script(scene, PECLET_SOURCE_DIR "/scene.json", "");
+  add_script(scene, PECLET_SOURCE_DIR, "scene.json", "");
   return scene["measure"];
 }
 
@@ -325,7 +325,7 @@ TEST(SceneScript, IsReadBesideTheScene) {
   const auto refusal = [](const std::string& name) {
     return refusal_by([&] {
       Json scene = {{"measure", {{"script", name}}}};
-      add_script(scene, PECLET_SOURCE_DIR "/docs/flow.json", "/scene");
+      add_script(scene, PECLET_SOURCE_DIR "/docs", PECLET_SOURCE_DIR "/docs/flow.json", "/scene");
     });
   };
   EXPECT_EQ(refusal("measure/fabric.py"), "");

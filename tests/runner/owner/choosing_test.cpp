@@ -65,11 +65,16 @@ TEST(Choosing, NarrowsTheBandBetweenThePointsForAnyNumberOfWorkers) {
   EXPECT_EQ(other.answer(), campaign.answer());
 }
 
-TEST(Choosing, EndsAtTheNumberOfValues) {
-  CampaignOnDisk campaign;
+// A campaign that has chosen one value and would choose more.
+void run_to_its_end(CampaignOnDisk& campaign) {
   make_choosing(campaign, 6);
   campaign.document["target"]["curve"]["relative_tolerance"] = 0.03;
   ASSERT_EQ(campaign.run(), 0) << campaign.log();
+}
+
+TEST(Choosing, EndsAtTheNumberOfValues) {
+  CampaignOnDisk campaign;
+  run_to_its_end(campaign);
   EXPECT_EQ(chosen_by(campaign).size(), 1U);
   EXPECT_GT(width_of(campaign), 0.03);
 }
@@ -137,9 +142,7 @@ TEST(Choosing, GivesTheSameAnswerAfterKills) {
 // The proposed file has what was chosen, as its author may want to run it elsewhere.
 TEST(Choosing, IsInTheFileThatNextWrites) {
   CampaignOnDisk campaign;
-  make_choosing(campaign, 6);
-  campaign.document["target"]["curve"]["relative_tolerance"] = 0.03;
-  ASSERT_EQ(campaign.run(), 0) << campaign.log();
+  run_to_its_end(campaign);
   NextOptions options;
   options.campaign = campaign.options.campaign;
   options.write = campaign.directory().root().parent_path() / "next.json";

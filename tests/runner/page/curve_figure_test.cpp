@@ -6,6 +6,7 @@
 #include "contract/errors.h"
 #include "runner/page/figure.h"
 #include "runner/store/point_store.h"
+#include "tests/contract/refusal.h"
 #include "tests/runner/stored_campaign.h"
 
 namespace peclet::runner {
@@ -59,12 +60,7 @@ class CurveFigure : public testing::Test {
   }
   Json figure(const FigureChoice& choice) { return figure_data(campaign_.database(), choice); }
   std::string refusal(const FigureChoice& choice) {
-    try {
-      figure(choice);
-    } catch (const InputError& fault) {
-      return fault.what();
-    }
-    return "";
+    return refusal_by([&] { figure(choice); });
   }
 
   StoredCampaign campaign_{3, 4, 4};

@@ -8,6 +8,7 @@
 #include "contract/durable_file.h"
 #include "contract/errors.h"
 #include "runner/page/jamming.h"
+#include "tests/contract/refusal.h"
 #include "tests/runner/page/jamming_campaign.h"
 
 namespace peclet::runner {
@@ -49,12 +50,7 @@ class JammingProposal : public PythonOfDebian {
     options.write = folder_.path() / "next.json";
   }
   std::string refusal() {
-    try {
-      find_jamming(options);
-    } catch (const InputError& fault) {
-      return fault.what();
-    }
-    return "";
+    return refusal_by([&] { find_jamming(options); });
   }
 
   const Json document;

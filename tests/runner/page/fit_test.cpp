@@ -5,6 +5,7 @@
 
 #include "contract/errors.h"
 #include "runner/page/figure.h"
+#include "tests/contract/refusal.h"
 #include "tests/runner/page/jamming_campaign.h"
 
 namespace peclet::runner {
@@ -20,12 +21,7 @@ class Fits : public PythonOfDebian {
   }
   FitAnswer answer(bool in_json = false) { return fit_law(campaign_.stored().database(), choice, in_json); }
   std::string refusal() {
-    try {
-      answer();
-    } catch (const InputError& fault) {
-      return fault.what();
-    }
-    return "";
+    return refusal_by([&] { answer(); });
   }
 
   const std::vector<double> fractions{0.45, 0.50, 0.54, 0.57, 0.60, 0.62, 0.66};

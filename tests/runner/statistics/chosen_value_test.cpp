@@ -71,5 +71,19 @@ TEST(ChosenValue, IsAbsentWithinTheTolerance) {
   EXPECT_FALSE(choose_value(decided(campaign, even), campaign));
 }
 
+TEST(ChosenValue, BelongsToTheAxisThatItWasChosenFor) {
+  const auto along = [](const char* over) {
+    Json document = campaign_with(7).document;
+    document["sweep"][0] = {{"set", {"/peclet", "/x"}}, {"values", {{1, 1}, {2, 2}, {3, 3}, {4, 4}}}};
+    document["target"] = Json::parse(R"({"observable": "pressure", "absolute_tolerance": 1})");
+    document["target"]["also"] = {
+        {{"observable", "relative_viscosity"}, {"curve", {{"over", over}, {"relative_tolerance", 0.05}}}}};
+    return document;
+  };
+  const Json before = with_chosen_value(along("/peclet"), 1.5);
+  EXPECT_EQ(chosen_values(keeping_chosen_values(along("/peclet"), before)), Json({1.5}));
+  EXPECT_EQ(chosen_values(keeping_chosen_values(along("/x"), before)), Json::array());
+}
+
 }  // namespace
 }  // namespace peclet::runner
