@@ -6,10 +6,10 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parent), str(HERE.parents[1] / "python")]
-import numpy as np
-from peclet import laws
 from studies.figure import BLACK, BLUE, GREEN, ORANGE, RED, Figure
 from studies.tables import read_rows, where, write_rows
+from peclet import laws
+import numpy as np
 
 STRESS_SEEDS = 3  # of stress-control, fewer than an error needs: the spread is that of all points together
 
