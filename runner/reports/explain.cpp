@@ -227,6 +227,8 @@ std::string next_step(const PointSummary& point, const TargetRecord& target,
           "the stop test at {} seeds; without an interval, the number of seeds needed cannot be predicted",
           point.wanted);
     }
+    if (!target.target.over().empty())
+      return fmt::format("the stop test at {} seeds; `peclet next` says what its curve needs", point.wanted);
     return fmt::format(
         "the stop test at {} seeds; {}", point.wanted,
         that_may_be_zero(known_of(point.stop_tests.back(), target.target)) != nullptr

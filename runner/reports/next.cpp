@@ -66,9 +66,8 @@ Planned planned(const Curve& curve, const std::vector<PointSummary>& points, con
                 const NextOptions& options) {
   Planned made{name_of(curve, points)};
   const bool is_even = target.target.tolerance.is_even;
-  const std::vector<KnownOnCurve> known = without_idle_rest(known_on(curve, points), is_even);
+  const std::vector<KnownOnCurve> known = known_on(curve, points);
   made.known = known.size();
-  if (known.size() < CurveFit::fewest_points) return made;
   const ProposalBounds bounds{
       .width = target.target.tolerance.value, .cost = options.budget, .new_points = options.points};
   made.plan =

@@ -9,6 +9,8 @@
 #include "runner/campaign/number_text.h"
 #include "runner/campaign/text_table.h"
 #include "runner/reports/status.h"
+#include "runner/statistics/curve_forecast.h"
+#include "runner/statistics/scheduler.h"
 
 namespace peclet::runner {
 namespace {
@@ -26,28 +28,107 @@ double common_degrees(const Plan& plan) {
   return sum * sum / squares;
 }
 
-Totals totals_of(const Plan& plan, const Target& target) {
-  Totals totals;
-  StopRule rule(target, plan.minimum, plan.maximum);
-  std::vector<const PointPlan*> points;
+// Returns the stop test of each point at which it is expected to be decided, if the truth deviates from its
+// values by this; points of curves together.
+std::vector<int> stops_of(const Plan& plan, const Campaign& campaign, const TruthOf& truth_of) {
+  StopRule rule(campaign.target, plan.minimum, plan.maximum);
+  std::vector<int> stops;
+  std::vector<SeedsSoFar> so_far;
   for (const PointPlan& point : plan.points) {
+    const Prediction& made = point.prediction;
+    stops.push_back(point.ended);
+    if (point.is_predicted() && campaign.curves.empty())
+      stops.back() = stop_after(made.estimates, made.pilot, rule, truth_of(made.fewest_values()));
+    const std::vector<Estimate> unknown(campaign.target.observables().size());
+    so_far.push_back({made.estimates.empty() ? unknown : made.estimates, made.pilot,
+                      std::isfinite(point.cost.cpu_seconds) ? point.cost.cpu_seconds : 0, !!point.decided});
+    if (!point.decided) continue;
+    so_far.back().estimates.clear();
+    for (const ObservableStopTest& one : point.decided->each) so_far.back().estimates.push_back(one.estimate);
+    so_far.back().ended = point.ended;
+  }
+  for (const Curve& curve : campaign.curves) {
+    const std::vector<int> joint =
+        seeds_on_curve(curve, so_far, campaign.target, plan.minimum, plan.maximum, truth_of);
+    for (std::size_t k = 0; k < joint.size(); ++k) stops[curve.points[k]] = joint[k];
+  }
+  for (std::size_t i = 0; i < stops.size(); ++i) stops[i] = std::max(plan.points[i].ended, stops[i]);
+  return stops;
+}
+
+// Sets the prediction of a point that is not decided from the known outcomes, by itself.
+void predict_point(PointPlan& point, const Campaign& campaign,
+                   const std::vector<std::optional<Outcome>>& outcomes) {
+  point.ended = static_cast<int>(std::count_if(outcomes.begin(), outcomes.end(),
+                                               [](const auto& outcome) { return outcome.has_value(); }));
+  point.prediction =
+      predict(outcomes, campaign.target, campaign.minimum_realisations, campaign.maximum_realisations);
+}
+
+// Predicts the points of curves together.
+void predict_curves(Plan& plan, const Campaign& campaign) {
+  if (campaign.curves.empty()) return;
+  const auto at = [&](double quantile) {
+    return stops_of(plan, campaign, [&](int values) { return truth_at(values - 1, quantile); });
+  };
+  constexpr int futures = 20;
+  std::vector<int> capped(plan.points.size());
+  for (int future = 0; future < futures; ++future) {
+    const std::vector<int> stops = at((future + 0.5) / futures);
+    for (std::size_t i = 0; i < stops.size(); ++i) capped[i] += stops[i] == plan.maximum ? 1 : 0;
+  }
+  const Expected<std::vector<int>> all = expected(at);
+  for (std::size_t i = 0; i < plan.points.size(); ++i) {
+    if (!plan.points[i].is_predicted()) continue;
+    Prediction& made = plan.points[i].prediction;
+    const auto [lower, upper] = std::minmax({all.lower[i], all.likely[i], all.upper[i]});
+    made.seeds = {all.likely[i], lower, upper};
+    made.capped = static_cast<double>(capped[i]) / futures;
+  }
+}
+
+// Sets the deciding stop test of each point, or else its prediction.
+void predict_points(Plan& plan, const Campaign& campaign,
+                    const std::vector<std::vector<std::optional<Outcome>>>& outcomes) {
+  const Scheduler scheduler(outcomes, campaign.target, plan.minimum, plan.maximum, campaign.curves);
+  for (std::size_t i = 0; i < plan.points.size(); ++i) {
+    PointPlan& point = plan.points[i];
+    const auto number = static_cast<int>(i);
+    if (scheduler.decided(number)) {
+      point.decided = scheduler.stop_tests(number).back();
+      point.ended = point.decided->seeds;
+    } else {
+      predict_point(point, campaign, outcomes[i]);
+    }
+  }
+  predict_curves(plan, campaign);
+}
+
+Totals totals_of(const Plan& plan, const Campaign& campaign) {
+  Totals totals;
+  const std::vector<int> schedule = stop_test_schedule(plan.minimum, plan.maximum);
+  std::vector<std::size_t> points;
+  for (std::size_t i = 0; i < plan.points.size(); ++i) {
+    const PointPlan& point = plan.points[i];
     const bool counts = point.is_predicted() || (point.decided && std::isfinite(point.cost.cpu_seconds));
     if (!counts) continue;
-    points.push_back(&point);
+    points.push_back(i);
     totals.predicted += point.is_predicted() ? 1 : 0;
     totals.likely_capped += point.is_predicted() && point.prediction.capped > 0.5 ? 1 : 0;
   }
   totals.points = static_cast<int>(points.size());
   const double degrees = common_degrees(plan);
-  const auto stop_of = [&](const PointPlan& point, double quantile) {
-    const Prediction& made = point.prediction;
-    if (point.decided) return point.ended;
-    return std::max(point.ended, stop_after(made.estimates, made.pilot, rule, truth_at(degrees, quantile)));
+  std::map<double, std::vector<int>> stops;  // by quantile
+  const auto stops_at = [&](double quantile) -> const std::vector<int>& {
+    std::vector<int>& known = stops[quantile];
+    if (known.empty()) known = stops_of(plan, campaign, [&](int) { return truth_at(degrees, quantile); });
+    return known;
   };
   const auto sum_of = [&](const auto& of_point) {
     return expected([&](double quantile) {
+      const std::vector<int>& at = stops_at(quantile);
       double sum = 0;
-      for (const PointPlan* const point : points) sum += of_point(*point, stop_of(*point, quantile));
+      for (const std::size_t i : points) sum += of_point(plan.points[i], at[i]);
       return sum;
     });
   };
@@ -57,12 +138,13 @@ Totals totals_of(const Plan& plan, const Target& target) {
       sum_of([](const PointPlan& point, int stop) { return (stop - point.ended) * point.cost.cpu_seconds; });
   const int places = plan.workers * plan.capacity;
   totals.wall_seconds_to_come = expected([&](double quantile) {
+    const std::vector<int>& at = stops_at(quantile);
     double work = 0, longest = 0;
-    for (const PointPlan* const point : points) {
-      const int stop = stop_of(*point, quantile);
-      const double rounds = rounds_until(point->ended, stop, rule.schedule(), places);
-      work += (stop - point->ended) * point->cost.wall_seconds;
-      longest = std::max(longest, rounds * point->cost.wall_seconds);
+    for (const std::size_t i : points) {
+      const PointPlan& point = plan.points[i];
+      const double rounds = rounds_until(point.ended, at[i], schedule, places);
+      work += (at[i] - point.ended) * point.cost.wall_seconds;
+      longest = std::max(longest, rounds * point.cost.wall_seconds);
     }
     return std::max(work / places, longest);
   });
@@ -70,22 +152,6 @@ Totals totals_of(const Plan& plan, const Target& target) {
   totals.wall_seconds_to_come.lower /= machine_allowance;
   totals.wall_seconds_to_come.upper *= machine_allowance;
   return totals;
-}
-
-// Sets the deciding stop test of a point, or else its prediction, from the known outcomes.
-void predict_point(PointPlan& point, const Campaign& campaign,
-                   const std::vector<std::optional<Outcome>>& outcomes) {
-  const std::vector<StopTest> stop_tests = replay_stop_tests(
-      outcomes, campaign.target, campaign.minimum_realisations, campaign.maximum_realisations);
-  if (!stop_tests.empty() && stop_tests.back().verdict != Verdict::more) {
-    point.decided = stop_tests.back();
-    point.ended = stop_tests.back().seeds;
-    return;
-  }
-  point.ended = static_cast<int>(std::count_if(outcomes.begin(), outcomes.end(),
-                                               [](const auto& outcome) { return outcome.has_value(); }));
-  point.prediction =
-      predict(outcomes, campaign.target, campaign.minimum_realisations, campaign.maximum_realisations);
 }
 
 }  // namespace
@@ -104,6 +170,7 @@ Plan make_plan(const Campaign& campaign, const std::vector<double>& particle_ste
   Plan plan{campaign.name, campaign.minimum_realisations, campaign.maximum_realisations, workers, capacity};
   MeasuredCost all;  // summed over all ended realisations
   double known_steps = 0;
+  std::vector<std::vector<std::optional<Outcome>>> outcomes;  // of each point
   for (std::size_t i = 0; i < campaign.points.size(); ++i) {
     PointPlan point{campaign.points[i].label, particle_steps[i], {}};
     const auto found = known.find(campaign.points[i].hash);
@@ -112,7 +179,7 @@ Plan make_plan(const Campaign& campaign, const std::vector<double>& particle_ste
     all.cpu_seconds += point.cost.cpu_seconds * point.cost.count;
     all.wall_seconds += point.cost.wall_seconds * point.cost.count;
     known_steps += point.particle_steps * point.cost.count;
-    predict_point(point, campaign, history.outcomes);
+    outcomes.push_back(history.outcomes);
     plan.points.push_back(std::move(point));
   }
   if (known_steps == 0 && guess && plan.points.at(guess->point).particle_steps > 0) {
@@ -125,7 +192,8 @@ Plan make_plan(const Campaign& campaign, const std::vector<double>& particle_ste
     const double share = known_steps > 0 ? point.particle_steps / known_steps : std::nan("");
     point.cost = {0, all.cpu_seconds * share, all.wall_seconds * share};
   }
-  plan.totals = totals_of(plan, campaign.target);
+  predict_points(plan, campaign, outcomes);
+  plan.totals = totals_of(plan, campaign);
   return plan;
 }
 

@@ -81,8 +81,9 @@ CampaignStatus read_status(Database& database, std::optional<std::int64_t> owner
   status.handed_over = BundleStore(database.connection()).handed_over();
   if (status.handed_over.empty()) {
     const TargetRecord& target = status.campaign.target;
-    status.to_go = time_to_go(status.forecasts, target.target, target.minimum, target.maximum,
-                              std::max(1, database.last_workers()));
+    status.to_go =
+        time_to_go(status.forecasts, target.target, target.minimum, target.maximum,
+                   std::max(1, database.last_workers()), curves_of(status.campaign.document, target.target));
   }
   return status;
 }

@@ -5,6 +5,8 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 namespace peclet::runner {
 namespace {
@@ -153,6 +155,30 @@ bool CurveFit::serves_as_anchor(std::span<const Datum> data) {
   return rest != data.end() && shift(data) <= variance(*rest);
 }
 
+std::optional<CurveFit::Through> CurveFit::through(std::span<const Datum> data, bool is_even) {
+  std::vector<std::size_t> used(data.size());
+  std::iota(used.begin(), used.end(), 0);
+  const auto rest = std::ranges::find(data, 0.0, &Datum::axis) - data.begin();
+  bool has_rest = is_even && rest < std::ssize(data);
+  const auto leave_out_rest = [&] {
+    used.erase(used.begin() + rest);
+    has_rest = false;
+  };
+  const auto fit = [&] {
+    std::vector<Datum> chosen;
+    for (const std::size_t place : used) chosen.push_back(data[place]);
+    return CurveFit(std::move(chosen), is_even);
+  };
+  if (has_rest && !serves_as_anchor(data)) leave_out_rest();
+  if (used.size() < fewest_points) return {};
+  CurveFit made = fit();
+  if (made.is_refused() && has_rest && used.size() > fewest_points) {
+    leave_out_rest();
+    made = fit();
+  }
+  return Through{std::move(made), std::move(used)};
+}
+
 Eigen::VectorXd CurveFit::places(std::span<const double> axes) const {
   Eigen::VectorXd all(static_cast<Eigen::Index>(axes.size()));
   std::ranges::transform(axes, all.begin(), [this](double axis) { return place(axis); });
@@ -239,20 +265,36 @@ Eigen::VectorXd CurveFit::Outlook::variances() const {
 }
 
 // A value of variance u at place q lowers the variance at place i by cov(i, q)^2 / (cov(q, q) + u).
-Eigen::VectorXd CurveFit::Outlook::gain(std::size_t place, double noise) const {
-  const auto q = static_cast<Eigen::Index>(place);
-  Eigen::VectorXd gain = Eigen::VectorXd::Zero(between_.size());
-  for (const auto& [weight, covariance] : models_)
-    gain += weight / (covariance(q, q) + noise) * covariance.col(q).cwiseAbs2();
-  return gain;
+std::vector<std::size_t> CurveFit::Outlook::best(std::span<const std::optional<Offer>> offers) const {
+  std::vector<std::size_t> best(offers.size());
+  std::iota(best.begin(), best.end(), 0);
+  std::vector<double> most(offers.size());
+  for (std::size_t offered = 0; offered < offers.size(); ++offered) {
+    if (!offers[offered]) continue;
+    const auto& [noise, cost] = *offers[offered];
+    const auto q = static_cast<Eigen::Index>(offered);
+    Eigen::VectorXd gain = Eigen::VectorXd::Zero(between_.size());
+    for (const auto& [weight, covariance] : models_)
+      gain += weight / (covariance(q, q) + noise) * covariance.col(q).cwiseAbs2();
+    for (std::size_t place = 0; place < best.size(); ++place) {
+      const double per_cost = gain[static_cast<Eigen::Index>(place)] / cost;
+      if (!(per_cost > most[place])) continue;
+      most[place] = per_cost;
+      best[place] = offered;
+    }
+  }
+  return best;
 }
 
 void CurveFit::Outlook::take(std::size_t place, double noise) {
   const auto q = static_cast<Eigen::Index>(place);
+  const Eigen::VectorXd before = variances() - between_;
   for (auto& [weight, covariance] : models_) {
     const Eigen::VectorXd column = covariance.col(q);
     covariance -= column * column.transpose() / (column[q] + noise);
   }
+  const Eigen::VectorXd after = variances() - between_;
+  between_ = between_.cwiseProduct((before.array() > 0).select(after.cwiseQuotient(before), 1.0).matrix());
 }
 
 }  // namespace peclet::runner

@@ -23,6 +23,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -52,6 +53,10 @@ class CurveFit {
 
   // True if the datum at 0, for a quantity that is even in the axis, differs so little from those above 0.
   static bool serves_as_anchor(std::span<const Datum> data);
+  // The curve through all data, or through those but the one at rest: if it does not serve as an anchor, and
+  // if it or another contradicts the curve. Nothing if fewer than fewest_points are left.
+  struct Through;
+  static std::optional<Through> through(std::span<const Datum> data, bool is_even);
 
   // The curve at one place: mean and standard deviation of ln y.
   struct Value {
@@ -76,10 +81,15 @@ class CurveFit {
     std::vector<Value> values() const;
     // Returns the variances of ln y.
     Eigen::VectorXd variances() const;
-    // Returns by how much a value at one of the places would lower the variances; `noise` is the variance of
-    // its logarithm. A mean of several values counts as one.
-    Eigen::VectorXd gain(std::size_t place, double noise) const;
-    // Takes such a value for known, as if it were the mean of the curve.
+    // A value that could be had: `noise` is the variance of its logarithm. A mean of several counts as one.
+    struct Offer {
+      double noise = 0, cost = 1;
+    };
+    // Returns for each place the one whose value would lower the variance there most for its cost, the first
+    // of equal ones; the place itself if no offer lowers it.
+    std::vector<std::size_t> best(std::span<const std::optional<Offer>> offers) const;
+    // Takes such a value for known, as if it were the mean of the curve. By how much the models differ at a
+    // place is taken to fall with their own variance there.
     void take(std::size_t place, double noise);
 
    private:
@@ -126,6 +136,11 @@ class CurveFit {
   Eigen::VectorXd x_, y_, noise_;
   std::vector<Model> models_;
   std::vector<Residual> residuals_;
+};
+
+struct CurveFit::Through {
+  CurveFit fit;
+  std::vector<std::size_t> data;  // the places of its data among those given
 };
 
 }  // namespace peclet::runner

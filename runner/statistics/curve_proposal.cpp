@@ -77,22 +77,19 @@ std::vector<KnownOnCurve> known_to(const Scheduler& scheduler, const Curve& curv
 
 }  // namespace
 
-std::vector<KnownOnCurve> without_idle_rest(std::vector<KnownOnCurve> points, bool is_even) {
+std::optional<CurvePlan> plan_curve(const std::vector<KnownOnCurve>& points, bool is_even,
+                                    const std::vector<int>& schedule, double confidence,
+                                    const ProposalBounds& bounds) {
   std::vector<CurveFit::Datum> data(points.size());
   std::ranges::transform(points, data.begin(), &KnownOnCurve::datum);
-  if (is_even && !CurveFit::serves_as_anchor(data))
-    std::erase_if(points, [](const KnownOnCurve& point) { return point.datum.axis == 0; });
-  return points;
-}
-
-CurvePlan plan_curve(const std::vector<KnownOnCurve>& points, bool is_even, const std::vector<int>& schedule,
-                     double confidence, const ProposalBounds& bounds) {
-  std::vector<CurveFit::Datum> data(points.size());
-  std::ranges::transform(points, data.begin(), &KnownOnCurve::datum);
-  std::vector<Place> places = places_of(points, is_even);
+  const std::optional<CurveFit::Through> through = CurveFit::through(data, is_even);
+  if (!through) return {};
+  std::vector<KnownOnCurve> used;
+  for (const std::size_t datum : through->data) used.push_back(points[datum]);
+  std::vector<Place> places = places_of(std::move(used), is_even);
   std::vector<double> axes(places.size());
   std::ranges::transform(places, axes.begin(), &Place::axis);
-  CurveFit::Outlook outlook = CurveFit(data, is_even).outlook(axes);
+  CurveFit::Outlook outlook = through->fit.outlook(axes);
   const double normal = boost::math::quantile(boost::math::normal(), (1 + confidence) / 2);
   const auto width_at = [&](Eigen::Index place) {
     return std::expm1(normal * std::sqrt(std::max(0.0, outlook.variances()[place])));
@@ -107,29 +104,25 @@ CurvePlan plan_curve(const std::vector<KnownOnCurve>& points, bool is_even, cons
   double cost = 0;
   int new_points = 0;
   for (int step = 0; step < bounds.steps && width_at(worst) > bounds.width; ++step) {
-    std::optional<std::size_t> best;
-    double most = 0;
     const auto seeds_after = [&](const Place& place) {
       return *std::upper_bound(schedule.begin(), schedule.end() - 1, place.seeds);
     };
-    for (std::size_t k = 0; k < places.size(); ++k) {
-      const Place& place = places[k];
+    std::vector<std::optional<CurveFit::Outlook::Offer>> offers;
+    for (const Place& place : places) {
+      offers.emplace_back();
       const int more = seeds_after(place) - place.seeds;
       if (more <= 0 || !(place.is_new ? bounds.new_points > 0 : bounds.old_points)) continue;
       if (bounds.cost && cost + more * place.cost > *bounds.cost) continue;
-      const double gain = outlook.gain(k, place.variance / more)[worst] / (more * place.cost);
-      if (gain > most) {
-        most = gain;
-        best = k;
-      }
+      offers.back() = {place.variance / more, more * place.cost};
     }
+    const std::size_t best = outlook.best(offers)[static_cast<std::size_t>(worst)];
     const auto is_further = [&](const Place& place) { return place.is_new && place.seeds == 0; };
-    if (!best || (is_further(places[*best]) && new_points == bounds.new_points)) break;
-    Place& chosen = places[*best];
+    if (!offers[best] || (is_further(places[best]) && new_points == bounds.new_points)) break;
+    Place& chosen = places[best];
     const int after = seeds_after(chosen), more = after - chosen.seeds;
     const double widest_at = axes[static_cast<std::size_t>(worst)];
     new_points += is_further(chosen) ? 1 : 0;
-    outlook.take(*best, chosen.variance / more);
+    outlook.take(best, chosen.variance / more);
     cost += more * chosen.cost;
     worst = widest();
     plan.proposals.push_back(
@@ -160,15 +153,12 @@ std::optional<ChosenValue> choose_value(const Scheduler& scheduler, const Campai
     for (std::size_t place = 0; place < criteria.size(); ++place) {
       const Tolerance& tolerance = criteria[place].tolerance;
       if (!tolerance.is_of_curve()) continue;
-      const std::vector<KnownOnCurve> known =
-          without_idle_rest(known_to(scheduler, curve, place), tolerance.is_even);
-      if (known.size() < CurveFit::fewest_points) continue;
-      const CurvePlan plan =
-          plan_curve(known, tolerance.is_even, schedule, confidence,
+      const std::optional<CurvePlan> plan =
+          plan_curve(known_to(scheduler, curve, place), tolerance.is_even, schedule, confidence,
                      {.width = tolerance.value, .new_points = 1, .old_points = false, .steps = 1});
-      if (plan.proposals.empty() || !(plan.width / tolerance.value > largest_share)) continue;
-      largest_share = plan.width / tolerance.value;
-      chosen = {plan.proposals.front().axis, criteria[place].observable, plan.width};
+      if (!plan || plan->proposals.empty() || !(plan->width / tolerance.value > largest_share)) continue;
+      largest_share = plan->width / tolerance.value;
+      chosen = {plan->proposals.front().axis, criteria[place].observable, plan->width};
     }
   }
   return chosen;

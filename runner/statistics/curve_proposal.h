@@ -26,9 +26,6 @@ struct KnownOnCurve {
   double cost = 0;  // of a seed, in any unit
 };
 
-// Returns the points without one at rest that does not serve as an anchor of an even observable.
-std::vector<KnownOnCurve> without_idle_rest(std::vector<KnownOnCurve> points, bool is_even);
-
 struct CurveProposal {
   double axis = 0;
   bool is_new = false;
@@ -53,10 +50,11 @@ struct CurvePlan {
   double width_at_points = 0;  // largest relative half-width at points, old and new, afterwards
 };
 
-// Requires CurveFit::fewest_points, and positive costs. `schedule` has the seeds of the stop tests;
-// `confidence` is the level of the band.
-CurvePlan plan_curve(const std::vector<KnownOnCurve>& points, bool is_even, const std::vector<int>& schedule,
-                     double confidence, const ProposalBounds& bounds);
+// Returns nothing if too few points make a curve (CurveFit::through). Requires positive costs. `schedule` has
+// the seeds of the stop tests; `confidence` is the level of the band.
+std::optional<CurvePlan> plan_curve(const std::vector<KnownOnCurve>& points, bool is_even,
+                                    const std::vector<int>& schedule, double confidence,
+                                    const ProposalBounds& bounds);
 
 // A new value of the axis, for all curves of a campaign.
 struct ChosenValue {

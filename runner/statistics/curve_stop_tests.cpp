@@ -5,8 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "runner/statistics/curve_fit.h"
-
 namespace peclet::runner {
 namespace {
 
@@ -28,11 +26,17 @@ double mean_steps(const std::vector<std::optional<Outcome>>& outcomes, int seeds
 
 // The curve of one criterion, through the members that have a logarithm.
 struct CurveStopTests::Round {
-  // Absent if too few points are known, and if the curve is refused.
-  std::optional<CurveFit::Outlook> outlook{};
-  std::vector<double> axes{};         // of the data
-  std::vector<std::size_t> member{};  // of each datum
+  std::vector<std::size_t> member{};  // at each place of the outlook
   std::size_t observable = 0;
+  // For each place the one whose next stop test lowers the variance there most per step. Absent if too few
+  // points are known, and if the curve is refused.
+  std::optional<std::vector<std::size_t>> best{};
+
+  // Returns the member whose next stop test is best for an unmet one.
+  std::size_t best_for(std::size_t unmet) const {
+    const auto place = std::ranges::find(member, unmet) - member.begin();
+    return best && place < std::ssize(member) ? member[(*best)[static_cast<std::size_t>(place)]] : unmet;
+  }
 };
 
 CurveStopTests::CurveStopTests(std::vector<double> axis, Target target, int minimum, int maximum)
@@ -82,35 +86,30 @@ std::vector<std::size_t> CurveStopTests::places_of_curves() const {
   return places;
 }
 
-CurveStopTests::Round CurveStopTests::estimate(std::size_t place, const Tolerance& tolerance) {
+CurveStopTests::Round CurveStopTests::estimate(std::size_t place, const Tolerance& tolerance,
+                                               const std::vector<Member>& members) {
   Round round;
   round.observable = place;
   std::vector<CurveFit::Datum> data;
+  std::vector<std::size_t> known;  // the member of each datum
   for (std::size_t i = 0; i < members_.size(); ++i) {
     if (members_[i].stop_tests.empty()) continue;
     ObservableStopTest& one = members_[i].stop_tests.back().each[place];
     one.curve.emplace();
     if (!CurveFit::takes(one.estimate)) continue;
-    round.member.push_back(i);
-    round.axes.push_back(axis_[i]);
+    known.push_back(i);
     data.push_back({axis_[i], one.estimate.mean, one.estimate.standard_error, one.estimate.count});
   }
-  const auto leave_out_rest = [&] {
-    const auto rest = std::ranges::find(round.axes, 0.0) - round.axes.begin();
-    data.erase(data.begin() + rest);
-    round.member.erase(round.member.begin() + rest);
-    round.axes.erase(round.axes.begin() + rest);
-  };
-  const bool has_rest = tolerance.is_even && std::ranges::count(round.axes, 0.0) > 0;
-  if (has_rest && !CurveFit::serves_as_anchor(data)) leave_out_rest();
-  if (data.size() < CurveFit::fewest_points) return round;
-  CurveFit fit(data, tolerance.is_even);
-  if (fit.is_refused() && has_rest && data.size() > CurveFit::fewest_points) {
-    if (std::ranges::count(round.axes, 0.0) > 0) leave_out_rest();
-    fit = CurveFit(data, tolerance.is_even);
+  std::optional<CurveFit::Through> through = CurveFit::through(data, tolerance.is_even);
+  if (!through) return round;
+  const CurveFit& fit = through->fit;
+  std::vector<double> axes;
+  for (const std::size_t datum : through->data) {
+    axes.push_back(data[datum].axis);
+    round.member.push_back(known[datum]);
   }
   const double normal = boost::math::quantile(boost::math::normal(), (1 + rule_.confidence()) / 2);
-  CurveFit::Outlook outlook = fit.outlook(round.axes);
+  const CurveFit::Outlook outlook = fit.outlook(axes);
   const std::vector<CurveFit::Value> values = outlook.values();
   for (std::size_t k = 0; k < round.member.size(); ++k) {
     const double half_width = normal * values[k].deviation;
@@ -123,7 +122,7 @@ CurveStopTests::Round CurveStopTests::estimate(std::size_t place, const Toleranc
                                                                      allowed,
                                                                      fit.is_refused()};
   }
-  if (!fit.is_refused()) round.outlook = std::move(outlook);
+  if (!fit.is_refused()) round.best = outlook.best(offers(round, members));
   return round;
 }
 
@@ -132,7 +131,7 @@ void CurveStopTests::end_round(const std::vector<Member>& members) {
   std::vector<char> goes_on(members_.size(), 0);
   for (std::size_t place = 0; place < criteria.size(); ++place) {
     Round round;
-    if (criteria[place].tolerance.is_of_curve()) round = estimate(place, criteria[place].tolerance);
+    if (criteria[place].tolerance.is_of_curve()) round = estimate(place, criteria[place].tolerance, members);
     for (std::size_t i = 0; i < members_.size(); ++i) {
       const State& state = members_[i];
       if (state.stop_tests.empty() || members[i].cancelled || state.own == Verdict::failed ||
@@ -140,7 +139,7 @@ void CurveStopTests::end_round(const std::vector<Member>& members) {
         continue;
       const ObservableStopTest& one = state.stop_tests.back().each[place];
       if (one.share <= 1 || (one.curve && one.curve->is_met())) continue;
-      goes_on[round.outlook && one.curve->is_known() ? best_for(i, round, members) : i] = 1;
+      goes_on[round.best_for(i)] = 1;
     }
   }
   is_decided_ = std::ranges::count(goes_on, 1) == 0;
@@ -163,29 +162,22 @@ void CurveStopTests::end_round(const std::vector<Member>& members) {
   }
 }
 
-std::size_t CurveStopTests::best_for(std::size_t unmet, const Round& round,
-                                     const std::vector<Member>& members) const {
+std::vector<std::optional<CurveFit::Outlook::Offer>> CurveStopTests::offers(
+    const Round& round, const std::vector<Member>& members) const {
   const bool has_steps =
       std::ranges::all_of(round.member, [this](std::size_t i) { return members_[i].steps > 0; });
-  const auto at = static_cast<Eigen::Index>(std::ranges::find(round.member, unmet) - round.member.begin());
-  std::size_t best = unmet;
-  double most = 0;
-  for (std::size_t k = 0; k < round.member.size(); ++k) {
-    const std::size_t i = round.member[k];
+  std::vector<std::optional<CurveFit::Outlook::Offer>> offers;
+  for (const std::size_t i : round.member) {
     const State& state = members_[i];
+    offers.emplace_back();
     if (is_at_maximum(state) || members[i].cancelled) continue;
     const StopTest& last = state.stop_tests.back();
     const Estimate& estimate = last.each[round.observable].estimate;
     const double error = estimate.standard_error / estimate.mean;
     const int more = next_seeds(state) - last.seeds;
-    const double steps = more * (has_steps ? state.steps : 1);
-    const double gain = round.outlook->gain(k, error * error * estimate.count / more)[at] / steps;
-    if (gain > most) {
-      most = gain;
-      best = i;
-    }
+    offers.back() = {error * error * estimate.count / more, more * (has_steps ? state.steps : 1)};
   }
-  return best;
+  return offers;
 }
 
 }  // namespace peclet::runner

@@ -12,10 +12,12 @@
 // curve of a single round, with a fixed number of seeds, is decided by it.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "runner/campaign/campaign.h"
 #include "runner/statistics/cohorts.h"
+#include "runner/statistics/curve_fit.h"
 
 namespace peclet::runner {
 
@@ -56,9 +58,10 @@ class CurveStopTests {
   // first.
   std::vector<std::size_t> places_of_curves() const;
   void end_round(const std::vector<Member>& members);
-  Round estimate(std::size_t place, const Tolerance& tolerance);
-  // Returns the point whose next stop test lowers the band at `unmet` most per step.
-  std::size_t best_for(std::size_t unmet, const Round& round, const std::vector<Member>& members) const;
+  Round estimate(std::size_t place, const Tolerance& tolerance, const std::vector<Member>& members);
+  // Returns what the next stop test of each member of a round would tell, and its steps.
+  std::vector<std::optional<CurveFit::Outlook::Offer>> offers(const Round& round,
+                                                              const std::vector<Member>& members) const;
   int next_seeds(const State& state) const { return rule_.schedule()[state.stop_tests.size()]; }
 
   std::vector<double> axis_;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "runner/campaign/number_text.h"
+#include "runner/statistics/curve_forecast.h"
 
 namespace peclet::runner {
 namespace {
@@ -122,15 +123,43 @@ Spread spread(const PointForecast& point, const Spread& of_all) {
   return guessed;
 }
 
+// The quantiles of a point's true variance at the ends of its expected seeds.
+constexpr double outside = 0.1;
+
 // Returns the seeds at which the point is expected to stop: with the variance of the sample, and with the
-// true variance at the quantiles of 10 and 90 %.
+// true variance at the outer quantiles.
 Expected<int> seeds_of(const PointForecast& point, StopRule& rule) {
   const int minimum = rule.schedule().front(), maximum = rule.schedule().back();
   const int values = least_count(point.all_seeds);
   if (values < 2 || !rule.has_measure(point.all_seeds)) return {minimum, minimum, maximum};
   const auto at = [&](const Truth& truth) { return stop_after(point.all_seeds, point.ended, rule, truth); };
-  constexpr double outside = 0.1;
   return {at({}), at(truth_at(values - 1, outside)), at(truth_at(values - 1, 1 - outside))};
+}
+
+// Returns the same for all points, those of curves together.
+std::vector<Expected<int>> seeds_of(const std::vector<PointForecast>& points, const Target& target,
+                                    StopRule& rule, const std::vector<Curve>& curves) {
+  std::vector<Expected<int>> seeds(points.size());
+  std::vector<SeedsSoFar> so_far;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const PointForecast& point = points[i];
+    if (curves.empty() && !point.decided) seeds[i] = seeds_of(point, rule);
+    so_far.push_back(
+        {point.all_seeds, point.ended, point.cost.count() > 0 ? point.cost.mean() : 0, point.decided});
+  }
+  for (const Curve& curve : curves) {
+    const auto at = [&](const TruthOf& truth_of) {
+      return seeds_on_curve(curve, so_far, target, rule.schedule().front(), rule.schedule().back(), truth_of);
+    };
+    const std::vector<int> likely = at({});
+    const std::vector<int> fewer = at([](int values) { return truth_at(values - 1, outside); });
+    const std::vector<int> more = at([](int values) { return truth_at(values - 1, 1 - outside); });
+    for (std::size_t k = 0; k < likely.size(); ++k) {
+      const auto [lower, upper] = std::minmax({likely[k], fewer[k], more[k]});
+      seeds[curve.points[k]] = {likely[k], lower, upper};
+    }
+  }
+  return seeds;
 }
 
 }  // namespace
@@ -239,7 +268,7 @@ Json to_json(const std::optional<TimeToGo>& to_go) {
 }
 
 std::optional<TimeToGo> time_to_go(const std::vector<PointForecast>& points, const Target& target,
-                                   int minimum, int maximum, int workers) {
+                                   int minimum, int maximum, int workers, const std::vector<Curve>& curves) {
   const auto has_cost = [](const PointForecast& point) { return point.cost.count() > 0; };
   if (std::none_of(points.begin(), points.end(), has_cost)) return std::nullopt;
 
@@ -247,19 +276,32 @@ std::optional<TimeToGo> time_to_go(const std::vector<PointForecast>& points, con
   StopRule rule(target, minimum, maximum);
   TimeToGo chains, work;
   double above = 0, below = 0;  // squared deviations of the work, upwards and downwards
+  double more_on_curves = 0, fewer_on_curves = 0;
   bool any = false;
-  for (const PointForecast& point : points) {
+  const std::vector<Expected<int>> all_seeds = seeds_of(points, target, rule, curves);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const PointForecast& point = points[i];
     if (point.decided) continue;
     any = true;
     const Spread cost = spread(point, of_all);
-    const Expected<int> seeds = seeds_of(point, rule);
-    // Running seeds are half done on average.
-    const auto to_come = [&](int stop) { return std::max(0.5, stop - point.ended - 0.5 * point.running); };
+    const Expected<int>& seeds = all_seeds[i];
+    // Running seeds are half done on average. A point of a curve may need none, and wait for others.
+    const double least = curves.empty() || point.running > 0 ? 0.5 : 0;
+    const auto to_come = [&](int stop) { return std::max(least, stop - point.ended - 0.5 * point.running); };
     const double left = to_come(seeds.likely);
     work.likely += left * cost.mean;
     const double scatter = 4 * (left * cost.deviation * cost.deviation + std::pow(left * cost.error, 2));
-    above += scatter + std::pow((to_come(seeds.upper) - left) * cost.mean, 2);
-    below += scatter + std::pow((left - to_come(seeds.lower)) * cost.mean, 2);
+    const double more = (to_come(seeds.upper) - left) * cost.mean;
+    const double fewer = (left - to_come(seeds.lower)) * cost.mean;
+    above += scatter;
+    below += scatter;
+    if (curves.empty()) {
+      above += more * more;
+      below += fewer * fewer;
+    } else {
+      more_on_curves += more;
+      fewer_on_curves += fewer;
+    }
     // If seeds run, the share `done` of the first round is over.
     const auto chain = [&](int stop, double done) {
       return rounds_until(point.ended, stop, rule.schedule(), workers) - (point.running > 0 ? done : 0);
@@ -271,6 +313,8 @@ std::optional<TimeToGo> time_to_go(const std::vector<PointForecast>& points, con
         std::max(chains.upper, chain(seeds.upper, 0) * (cost.mean + 2 * cost.error) + 2 * cost.deviation);
   }
   if (!any) return TimeToGo{};
+  above += more_on_curves * more_on_curves;
+  below += fewer_on_curves * fewer_on_curves;
   work.lower = std::max(0.0, work.likely - std::sqrt(below));
   work.upper = work.likely + std::sqrt(above);
   return TimeToGo{std::max(work.likely / workers, chains.likely),

@@ -152,8 +152,9 @@ Json to_json(const std::optional<TimeToGo>& to_go);
 
 // Returns the longer of two times: that of all work, shared by the workers, and that of the slowest point,
 // whose stop tests follow one another and wait for all their seeds. Returns nothing if no realisation has
-// ended yet.
+// ended yet. `curves` are those of the target: their points are decided together (curve_forecast.h).
 std::optional<TimeToGo> time_to_go(const std::vector<PointForecast>& points, const Target& target,
-                                   int minimum, int maximum, int workers);
+                                   int minimum, int maximum, int workers,
+                                   const std::vector<Curve>& curves = {});
 
 }  // namespace peclet::runner

@@ -84,12 +84,14 @@ def main():
     print("residuals", np.round(distances, 6).tolist())
     allowed = t.ppf(1 - 0.05 / len(x) / 2, COUNT - 1) * np.sqrt((COUNT - 3) / (COUNT - 1))
     print("allowed", np.round(allowed, 6).tolist())
-    gains = np.zeros(len(x))
-    for weight, model in zip(weights, grid):
-        _, before = posterior(x, y, noise, x, model)
+    within, within_then, means = np.zeros(len(x)), np.zeros(len(x)), np.zeros((len(grid), len(x)))
+    for m, (weight, model) in enumerate(zip(weights, grid)):
+        means[m], before = posterior(x, y, noise, x, model)
         _, after = posterior(np.append(x, x[GAIN_AT]), np.append(y, 0), np.append(noise, GAIN_NOISE), x, model)
-        gains += weight * np.diag(before - after)
-    print("gains", gains.tolist())
+        within += weight * np.diag(before)
+        within_then += weight * np.diag(after)
+    between = weights @ means**2 - (weights @ means) ** 2
+    print("gains", ((within + between) * (1 - within_then / within)).tolist())
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@
 #include "runner/page/figure.h"
 #include "runner/reports/explain.h"
 #include "runner/reports/export.h"
+#include "runner/reports/plan.h"
 #include "runner/reports/status.h"
 #include "runner/store/database_summary.h"
 #include "tests/runner/reports/curve_campaign.h"
@@ -43,6 +44,27 @@ TEST(CurveReports, PointsThatWaitAreSaid) {
   EXPECT_TRUE(says(status_table(status, 200), "open, waits-for-curve"));
   EXPECT_TRUE(says(explain(campaign.database(), campaign.directory(), "peclet=0.1 window=9"),
                    "next: nothing, until other points of its curve have made their stop tests"));
+}
+
+// The curve decides at fewer seeds than the points would, and its forecast after ten is one of the curve.
+TEST(CurveReports, APlanIsOneOfTheCurve) {
+  const auto plan_after = [](int seeds) {
+    StoredCampaign campaign(curve_campaign());
+    for (int point = 0; point < 6; ++point) complete(campaign, point, 10, seeds);
+    std::map<std::string, PointHistory> known;
+    for (const PointRecord& point : campaign.database().points())
+      known[point.hash] = {{seeds, 1, 1}, campaign.database().outcomes(point.id)};
+    return make_plan(curve_campaign(), std::vector<double>(6, 1e6), known, 1);
+  };
+  const Plan whole = plan_after(60), pilot = plan_after(10);
+  EXPECT_TRUE(says(plan_text(whole), "every point is decided"));
+  int seeds = 0;
+  for (std::size_t i = 0; i < 6; ++i) {
+    seeds += whole.points[i].decided->seeds;
+    EXPECT_FALSE(pilot.points[i].decided);
+  }
+  EXPECT_LT(pilot.totals.seeds.lower, seeds);
+  EXPECT_GT(pilot.totals.seeds.upper, seeds);
 }
 
 TEST(CurveReports, ExplainNamesBothWidths) {

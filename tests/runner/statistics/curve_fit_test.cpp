@@ -51,17 +51,39 @@ TEST(CurveFit, HasTheResidualsOfFitsWithoutTheDatum) {
   EXPECT_FALSE(fit.is_refused());
 }
 
-// The variance with one more value, less that without it, for each amplitude and length.
+// The variance without one more value, less that with it.
 TEST(CurveFit, KnowsWhatAnotherValueWouldGain) {
-  const CurveFit fit(known());
-  CurveFit::Outlook outlook = fit.outlook(axes);
-  const Eigen::VectorXd before = outlook.variances(), gain = outlook.gain(3, 0.001);
+  CurveFit::Outlook outlook = CurveFit(known()).outlook(axes);
+  const Eigen::VectorXd before = outlook.variances();
   EXPECT_NEAR(before[0], 0.072732 * 0.072732, 1e-7);
-  EXPECT_NEAR(gain[0], 5.49925e-7, 1e-9);
-  EXPECT_NEAR(gain[2], 6.621868e-6, 1e-9);
-  EXPECT_NEAR(gain[3], 1.2529191e-4, 1e-9);
   outlook.take(3, 0.001);
-  EXPECT_NEAR((outlook.variances() - before + gain).norm(), 0, 1e-12);
+  const Eigen::VectorXd gain = before - outlook.variances();
+  EXPECT_NEAR(gain[0], 5.576974e-7, 1e-11);
+  EXPECT_NEAR(gain[2], 6.8881153e-6, 1e-11);
+  EXPECT_NEAR(gain[3], 1.26854352e-4, 1e-11);
+}
+
+// The gain at each place over the cost of the offer, as take() finds it.
+TEST(CurveFit, KnowsTheBestOfSeveralOffers) {
+  const CurveFit::Outlook outlook = CurveFit(known()).outlook(axes);
+  std::vector<std::optional<CurveFit::Outlook::Offer>> offers(axes.size());
+  offers[1] = {0.001, 2};
+  offers[3] = {0.001, 1};
+  offers[5] = {0.01, 0.1};
+  const Eigen::VectorXd before = outlook.variances();
+  const std::vector<std::size_t> best = outlook.best(offers);
+  for (std::size_t place = 0; place < axes.size(); ++place) {
+    const auto gain = [&](std::size_t offered) {
+      CurveFit::Outlook taken = outlook;
+      taken.take(offered, offers[offered]->noise);
+      const auto i = static_cast<Eigen::Index>(place);
+      return (before[i] - taken.variances()[i]) / offers[offered]->cost;
+    };
+    for (const std::size_t other : {1U, 3U, 5U}) EXPECT_GE(gain(best[place]), gain(other)) << place;
+  }
+  EXPECT_NE(best[0], best[6]);
+  EXPECT_EQ(outlook.best(std::vector<std::optional<CurveFit::Outlook::Offer>>(axes.size())),
+            (std::vector<std::size_t>{0, 1, 2, 3, 4, 5, 6}));
 }
 
 // A unit is a factor, which a logarithm turns into a constant.

@@ -8,10 +8,12 @@
 #include <cmath>
 #include <cstdlib>
 #include <functional>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "runner/statistics/forecast.h"
 #include "runner/statistics/scheduler.h"
 #include "tests/runner/population.h"
 
@@ -118,21 +120,46 @@ class Source {
   std::vector<std::vector<double>> values_;
 };
 
-Scheduler campaign(const Truth& truth, unsigned start, bool is_curve) {
+// A campaign that has ended, and how many steps it was expected to take after its first stop tests.
+struct Ended {
+  Scheduler scheduler;
+  std::optional<TimeToGo> to_go{};
+  double steps_to_go = 0;  // taken
+};
+
+// Returns the steps to go as `status` forecasts the time, for one worker that makes a step in a second.
+std::optional<TimeToGo> steps_to_go(const Scheduler& scheduler, const Truth& truth, const Target& target,
+                                    const std::vector<Curve>& curves) {
+  std::vector<PointForecast> points;
+  for (int i = 0; i < scheduler.points(); ++i) {
+    const int ended = scheduler.all_ended(i);
+    const double steps = truth.steps[static_cast<std::size_t>(i)];
+    points.push_back({Cost(std::vector<double>(static_cast<std::size_t>(ended), steps)),
+                      scheduler.all_seeds(i), ended, 0, scheduler.decided(i)});
+  }
+  return time_to_go(points, target, minimum, maximum, 1, curves);
+}
+
+Ended campaign(const Truth& truth, unsigned start, bool is_curve) {
   Target target{"relative_viscosity", tolerance, 0.95};
   Curve curve;
   for (std::size_t i = 0; i < truth.axis.size(); ++i) curve.points.push_back(i);
   curve.axis = truth.axis;
   if (is_curve) target.tolerance.over = "/peclet";
   target.tolerance.is_even = is_curve && truth.axis.front() == 0;
-  Scheduler scheduler(std::vector<std::vector<std::optional<Outcome>>>(truth.axis.size()), target, minimum,
-                      maximum, is_curve ? std::vector{curve} : std::vector<Curve>{});
+  const std::vector<Curve> curves = is_curve ? std::vector{curve} : std::vector<Curve>{};
+  Ended ended{{std::vector<std::vector<std::optional<Outcome>>>(truth.axis.size()), target, minimum, maximum,
+               curves}};
+  Scheduler& scheduler = ended.scheduler;
   Source source(truth, start);
+  std::size_t first = minimum * truth.axis.size();  // seeds of the first stop tests
   while (const std::optional<SeedId> next = scheduler.next()) {
+    if (first-- == 0) ended.to_go = steps_to_go(scheduler, truth, target, curves);
+    if (ended.to_go) ended.steps_to_go += truth.steps[static_cast<std::size_t>(next->point)];
     scheduler.begin(*next);
     scheduler.end(*next, source.outcome(*next));
   }
-  return scheduler;
+  return ended;
 }
 
 // Points with a band, and how many of these bands hold the truth.
@@ -149,7 +176,9 @@ struct Tally {
   double steps_alone = 0, steps = 0;
   int points = 0, refused = 0;
   Bands own, all, deciding;
-  std::vector<Bands> at{};  // each point
+  Bands forecasts{};               // of the steps to go
+  std::vector<double> forecast{};  // over the steps that were taken
+  std::vector<Bands> at{};         // each point
 };
 
 // Returns the steps of the seeds that count. A point at rest is not part of a campaign without a curve.
@@ -162,8 +191,12 @@ double steps_of(const Scheduler& scheduler, const Truth& truth, bool with_rest) 
 }
 
 void add(const Truth& truth, unsigned start, Tally& tally) {
-  tally.steps_alone += steps_of(campaign(truth, start, false), truth, false);
-  const Scheduler joint = campaign(truth, start, true);
+  tally.steps_alone += steps_of(campaign(truth, start, false).scheduler, truth, false);
+  const auto [joint, to_go, steps_to_go] = campaign(truth, start, true);
+  if (to_go) {
+    tally.forecasts.add(to_go->lower <= steps_to_go && steps_to_go <= to_go->upper);
+    tally.forecast.push_back(to_go->likely / steps_to_go);
+  }
   tally.steps += steps_of(joint, truth, true);
   for (std::size_t i = 0; i < truth.axis.size(); ++i) {
     const ObservableStopTest& one = joint.stop_tests(static_cast<int>(i)).back().each.front();
@@ -178,10 +211,19 @@ void add(const Truth& truth, unsigned start, Tally& tally) {
   }
 }
 
+// Returns "" without a number.
+std::string median(std::vector<double> numbers) {
+  if (numbers.empty()) return "";
+  const auto middle = numbers.begin() + std::ssize(numbers) / 2;
+  std::ranges::nth_element(numbers, middle);
+  return fmt::format("{:.2f}", *middle);
+}
+
 void study(int campaigns) {
   fmt::print(
       "curve,spread,campaigns,times fewer steps,decided by the curve %,bands hold %,where the curve decides "
-      "%,at the worst point %,own intervals hold %,refused %\n");
+      "%,at the worst point %,own intervals hold %,refused %,steps to go: forecast over taken,range holds "
+      "%\n");
   for (const Truth& truth : truths()) {
     Tally tally;
     tally.at.resize(truth.axis.size());
@@ -190,10 +232,10 @@ void study(int campaigns) {
     const Bands& worst = *std::ranges::min_element(tally.at, [](const Bands& one, const Bands& other) {
       return one.hold * other.count < other.hold * one.count;
     });
-    fmt::print("\"{}\",\"{}\",{},{:.2f},{:.1f},{},{},{},{},{:.1f}\n", truth.name, truth.noise, campaigns,
-               tally.steps_alone / tally.steps, 100.0 * tally.deciding.count / tally.points,
+    fmt::print("\"{}\",\"{}\",{},{:.2f},{:.1f},{},{},{},{},{:.1f},{},{}\n", truth.name, truth.noise,
+               campaigns, tally.steps_alone / tally.steps, 100.0 * tally.deciding.count / tally.points,
                tally.all.percent(), tally.deciding.percent(), worst.percent(), tally.own.percent(),
-               100.0 * tally.refused / tally.points);
+               100.0 * tally.refused / tally.points, median(tally.forecast), tally.forecasts.percent());
     std::fflush(stdout);
   }
 }

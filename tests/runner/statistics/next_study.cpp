@@ -152,7 +152,8 @@ Result study(const Truth& truth, std::vector<double> grid, int at_once, Source& 
   for (outcome.rounds = 1; outcome.rounds <= most_rounds; ++outcome.rounds) {
     known = run(truth, grid, tolerance, source);
     ProposalBounds bounds{truth.tolerance, {}, at_once};
-    const CurvePlan plan = plan_curve(known, false, stop_test_schedule(minimum, maximum), level, bounds);
+    const CurvePlan plan =
+        plan_curve(known, false, stop_test_schedule(minimum, maximum), level, bounds).value();
     outcome.is_within = plan.width <= truth.tolerance;
     if (outcome.is_within || plan.proposals.empty()) break;
     for (const CurveProposal& proposal : plan.proposals) {
