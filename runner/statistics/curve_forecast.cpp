@@ -60,7 +60,7 @@ class CriterionForecast {
   int next_seeds(const Member& member) const {
     return *std::upper_bound(rule_.schedule().begin(), rule_.schedule().end() - 1, member.seeds);
   }
-  // Returns the variance of the logarithm of the mean of so many more seeds.
+  // Returns the variance of the logarithm of the mean of further seeds.
   static double noise_of(const Member& member, int more) {
     const Estimate& known = member.estimate;
     return std::pow(known.standard_error / known.mean, 2) * known.count * member.variance / more;

@@ -14,7 +14,7 @@
 
 namespace peclet::runner {
 
-// What is known of a point.
+// The seeds of a point that have ended, and what they say of it.
 struct SeedsSoFar {
   std::vector<Estimate> estimates{};  // over all ended seeds, of Target::observables() in that order
   int ended = 0;                      // seeds, lost ones included
@@ -22,10 +22,11 @@ struct SeedsSoFar {
   bool is_done = false;               // decided or cancelled: gets no more seeds
 };
 
-// Returns the number of seeds at which each point of the curve, in its order, is expected to be decided.
-// `points` has all points of the sweep. `truth_of` returns how the truth deviates from a sample of so many
-// values; without it the variances are those of the samples.
+// Returns how the truth deviates from a sample with this number of values. An empty function: not at all.
 using TruthOf = std::function<Truth(int values)>;
+
+// Returns the number of seeds at which each point of the curve, in its order, is expected to be decided.
+// `points` has all points of the sweep.
 std::vector<int> seeds_on_curve(const Curve& curve, const std::vector<SeedsSoFar>& points,
                                 const Target& target, int minimum, int maximum, const TruthOf& truth_of = {});
 

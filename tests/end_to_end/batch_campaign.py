@@ -100,14 +100,14 @@ def answer(command, words):
         return "".join(f"Job <{job['id']}> is being terminated\n" for job in chosen) or "No job found\n"
 
 
-def campaign_of(system, folder):
+def campaign_of(system, folder, document=None, environment=None):
     """Returns a campaign in a folder in which the commands of the system are."""
-    campaign = Campaign(os.path.abspath(sys.argv[1]), os.path.join(folder, system))
+    campaign = Campaign(os.path.abspath(sys.argv[1]), os.path.join(folder, system), document, environment)
     campaign.system = system
     os.makedirs(campaign.place("commands"))
     for command in COMMANDS[system]:
         os.symlink(HERE, campaign.place("commands", command))
-    path = campaign.place("commands") + ":" + os.environ["PATH"]
+    path = campaign.place("commands") + ":" + campaign.environment.get("PATH", os.environ["PATH"])
     campaign.environment.update(FAKE_BATCH=campaign.folder, PATH=path)
     return campaign
 

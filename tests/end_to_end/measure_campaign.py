@@ -2,9 +2,10 @@
 """measure_campaign.py PROGRAMS
 
 Tests a campaign whose observable is a script of the user's own. It is refused before anything runs if the script is
-absent or does not fit. Two workers, one of which is killed, give the numbers of one worker that works undisturbed. The
-script travels with the scene: it may be changed or removed while the campaign runs, and another script makes another
-point. No python3 outlives its engine, even if both are busy when the engine is killed.
+absent or does not fit. Two workers, one of which is killed, launched workers and the tasks of a batch system give the
+numbers of one worker that works undisturbed. The script travels with the scene: it may be changed or removed while the
+campaign runs, and another script makes another point. No python3 outlives its engine, even if both are busy when the
+engine is killed.
 """
 import json
 import os
@@ -14,6 +15,7 @@ import sys
 import tempfile
 import time
 
+import batch_campaign
 from campaign_folder import SMALL_SCENE, CampaignFolder
 
 EXAMPLES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "docs", "measure")
@@ -115,12 +117,20 @@ def same_numbers(programs, folder):
     said = disturbed.say("run", disturbed.file, "--workers=2", text=True)
     check(said.returncode == 0, said.stdout, said.stderr)
     shutil.rmtree(disturbed.place("scripts"))  # everything is in the database now
-    points, others = exported(quiet), exported(disturbed)
+    launched = campaign_in(programs, os.path.join(folder, "launched"), example())
+    said = launched.say("run", launched.file, "--workers=2", "--launch=env", text=True)
+    check(said.returncode == 0, said.stdout, said.stderr)
+    bundled = batch_campaign.campaign_of("pbs", folder, CAMPAIGN | {"name": "drill"}, PYTHON)
+    write_script(bundled.folder, example())
+    bundled.do(*bundled.follow("--seeds-per-task", "4"))
+    points = exported(quiet)
     check(len(points) == 2, points)
-    for one, other in zip(points, others):
-        for name in "measure/largest_cluster", "measure/clusters", "fabric/near":
-            check(one["quantities"][name] == other["quantities"][name], name, "differs")
-        largest = one["quantities"]["measure/largest_cluster"]
+    for other in disturbed, launched, bundled:
+        for one, again in zip(points, exported(other)):
+            for name in "measure/largest_cluster", "measure/clusters", "fabric/near":
+                check(one["quantities"][name] == again["quantities"][name], name, "differs in", other.folder)
+    for point in points:
+        largest = point["quantities"]["measure/largest_cluster"]
         check(0 < largest["mean"] < 1 and largest["count"] == 8 and largest["standard_error"] > 0, largest)
     said = disturbed.say("doctor", disturbed.file, text=True)
     check(said.returncode == 0, said.stdout, said.stderr)
