@@ -211,12 +211,13 @@ void add(const Truth& truth, unsigned start, Tally& tally) {
   }
 }
 
-// Returns "" without a number.
-std::string median(std::vector<double> numbers) {
-  if (numbers.empty()) return "";
-  const auto middle = numbers.begin() + std::ssize(numbers) / 2;
-  std::ranges::nth_element(numbers, middle);
-  return fmt::format("{:.2f}", *middle);
+// Returns the median and how often the ranges hold, or nothing of few forecasts: most campaigns had none.
+std::string forecast_text(Tally& tally) {
+  constexpr std::size_t fewest = 20;
+  if (tally.forecast.size() < fewest) return ",";
+  const auto middle = tally.forecast.begin() + std::ssize(tally.forecast) / 2;
+  std::ranges::nth_element(tally.forecast, middle);
+  return fmt::format("{:.2f},{}", *middle, tally.forecasts.percent());
 }
 
 void study(int campaigns) {
@@ -232,10 +233,10 @@ void study(int campaigns) {
     const Bands& worst = *std::ranges::min_element(tally.at, [](const Bands& one, const Bands& other) {
       return one.hold * other.count < other.hold * one.count;
     });
-    fmt::print("\"{}\",\"{}\",{},{:.2f},{:.1f},{},{},{},{},{:.1f},{},{}\n", truth.name, truth.noise,
-               campaigns, tally.steps_alone / tally.steps, 100.0 * tally.deciding.count / tally.points,
+    fmt::print("\"{}\",\"{}\",{},{:.2f},{:.1f},{},{},{},{},{:.1f},{}\n", truth.name, truth.noise, campaigns,
+               tally.steps_alone / tally.steps, 100.0 * tally.deciding.count / tally.points,
                tally.all.percent(), tally.deciding.percent(), worst.percent(), tally.own.percent(),
-               100.0 * tally.refused / tally.points, median(tally.forecast), tally.forecasts.percent());
+               100.0 * tally.refused / tally.points, forecast_text(tally));
     std::fflush(stdout);
   }
 }
