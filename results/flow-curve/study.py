@@ -215,23 +215,28 @@ def measure(program):
     write_table(HERE / "table.csv", names, table, 4)
 
 
-def draw_overview(curves):
-    """Draws η_r with 95 % intervals; t is Student's quantile by the number of seeds, 16 or 8."""
-    t = {16: 2.131, 8: 2.365}
+def draw_overview():
+    """Draws η_r of the curves that were run to 5 %, with 95 % intervals of the points and bands; rest is at the left."""
     figure = Figure(HERE / "overview.png", columns=1, size=(1000, 460))
-    ends = {"x_range": (5e-3, 2e4), "y_range": (3, 130)}
+    ends = {"x_range": (3.5e-3, 2e4), "y_range": (3, 130)}
     titles = "Péclet number Pe (shear over Brownian motion)", "relative viscosity η_r"
     panel = figure.panel(*titles, log="xy", powers="x", **ends)
+    table = read_rows(HERE / "curve.csv")
     for fraction, colour in ((0.55, GREEN), (0.5, RED), (0.45, BLUE)):
-        rows = curves[fraction].at.values()
-        points = [(r["peclet"], r["viscosity"], t[r["seeds"]] * r["viscosity_error"]) for r in rows]
-        panel.points(points, f"volume fraction φ = {fraction:.2f}", colour, joined=True)
+        rows = where(table, fraction=fraction)
+        flowing = [row for row in rows if row["peclet"] > 0]
+        panel.band([(row["peclet"], row["low"], row["high"]) for row in flowing], colour)
+        points = [(row["peclet"], row["viscosity"], row["half_width"]) for row in flowing]
+        panel.points(points, f"volume fraction φ = {fraction:.2f}", colour)
+        panel.line([(row["peclet"], row["curve"]) for row in flowing], None, colour)
+        rest = [(5e-3, row["viscosity"], row["half_width"]) for row in rows if row["peclet"] == 0]
+        panel.points(rest, "at rest" if colour == BLUE else None, colour, 6)
     figure.draw()
 
 
 def draw():
     curves, _ = curves_of_table()
-    draw_overview(curves)
+    draw_overview()
     terms = {
         "pairs": (BLACK, 7, "all pairs"),
         "controlled_contact": (RED, 5, "contact"),

@@ -112,6 +112,10 @@ class Panel:
         (drawn,) = self.axes.plot(x, y, DASHES[dash], color=colour, linewidth=width)
         self._say(drawn, title)
 
+    def band(self, rows, colour):
+        """Shades the band of rows of (x, lower end, upper end)."""
+        self.axes.fill_between(*np.array(list(rows), float).T, color=colour, alpha=0.15, linewidth=0)
+
     def curve(self, function, title, colour=BLACK, span=None, samples=600, **style):
         """Draws y = function(x) over `span`, by default the range of x."""
         spaced = np.geomspace if self.axes.get_xscale() == "log" else np.linspace
