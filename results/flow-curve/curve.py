@@ -2,11 +2,13 @@
 """curve.py PECLET FOLDER: writes curve.csv from the campaigns curves, curve-55 and check that were run in FOLDER.
 
 Each row is a point of a curve: its own mean, its interval and the band of the curve; the seeds that counted, and those
-that the point alone is expected to need for the same tolerance with its own spread; and the mean of other seeds: all of
-`check`, and of the curve's campaigns, that did not count.
+that the point alone is expected to need for the same tolerance with its own spread; and the mean of other seeds: those
+of `check`, and of the curve's campaigns, that did not count. Prints what the curves took, and how often bands hold the
+mean of the other seeds.
 """
 import csv
 import json
+import math
 import subprocess
 import sys
 from pathlib import Path
@@ -77,9 +79,36 @@ def rows_of(program, folder):
             }
 
 
+def print_costs(rows):
+    """Prints hours of processor time for each volume fraction; a point at rest is part of the curve only."""
+    for fraction in sorted({row["fraction"] for row in rows}):
+        for most, what in ((np.inf, "all points"), (0.05, "Pe up to 0.05")):
+            own = [row for row in rows if row["fraction"] == fraction and row["peclet"] <= most]
+            alone = sum(row["seconds"] * row["seeds_alone"] for row in own if row["peclet"] > 0) / 3600
+            curve = sum(row["seconds"] * row["seeds"] for row in own) / 3600
+            print(f"φ = {fraction}, {what}: {alone:.2f} h alone, {curve:.2f} h by the curve: {alone / curve:.2f} times")
+
+
+def print_check(rows):
+    """Prints how many bands and intervals hold the mean of other seeds, about ten times as many.
+
+    Both are made wider by the error of the other seeds.
+    """
+    known = [row for row in rows if row["peclet"] > 0 and row["other_seeds"] >= 7 * row["seeds"]]
+    for name, mean, half in (
+        ("bands", "curve", lambda row: row["curve"] * math.log(row["high"] / row["low"]) / 2),
+        ("intervals of points alone", "viscosity", lambda row: row["half_width"]),
+    ):
+        width = [math.hypot(half(row), 2.04 * row["other_error"]) for row in known]
+        distance = [abs(row["other"] - row[mean]) / w for row, w in zip(known, width)]
+        print(f"{sum(d <= 1 for d in distance)} of {len(known)} {name} hold the mean of the other seeds")
+
+
 def main():
     rows = sorted(rows_of(sys.argv[1], Path(sys.argv[2])), key=lambda row: (row["fraction"], row["peclet"]))
     write_rows(HERE / "curve.csv", rows, 5)
+    print_costs(rows)
+    print_check(rows)
 
 
 if __name__ == "__main__":

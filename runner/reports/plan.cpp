@@ -41,7 +41,8 @@ std::vector<int> stops_of(const Plan& plan, const Campaign& campaign, const Trut
       stops.back() = stop_after(made.estimates, made.pilot, rule, truth_of(made.fewest_values()));
     const std::vector<Estimate> unknown(campaign.target.observables().size());
     so_far.push_back({made.estimates.empty() ? unknown : made.estimates, made.pilot,
-                      std::isfinite(point.cost.cpu_seconds) ? point.cost.cpu_seconds : 0, !!point.decided});
+                      std::isfinite(point.cost.cpu_seconds) ? point.cost.cpu_seconds : 0,
+                      point.decided.has_value()});
     if (!point.decided) continue;
     so_far.back().estimates.clear();
     for (const ObservableStopTest& one : point.decided->each) so_far.back().estimates.push_back(one.estimate);
