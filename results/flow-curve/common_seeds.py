@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """common_seeds.py PECLET FOLDER: what it does to bands that a seed has the same start and noise at every point.
 
-Divides the 88 seeds of the campaign check, run in FOLDER, into eleven blocks of eight. Each block gives a curve of seven
-points for each volume fraction; the other seeds give its truth. Prints how often intervals of points and bands hold it,
-with the same block at every point, and with another block at each; then the correlations between neighbours.
+Divides the 88 seeds of the campaign check, run in FOLDER, into eleven blocks of eight. Each block gives a curve of
+seven points for each volume fraction; the other seeds give its truth. Prints how often intervals of points and bands
+hold it, with the same block at every point, and with another block at each; then the correlations between neighbours.
 """
 import json
 import subprocess
@@ -11,14 +11,18 @@ import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE.parent), str(HERE.parents[1] / "tests" / "reference")]
+REFERENCE = HERE.parents[1] / "tests" / "reference"
+sys.path[:0] = [str(HERE.parent), str(REFERENCE)]
 from studies.estimates import estimate
-import curve
+from costs import LEVEL, MINIMUM as BLOCK
 import numpy as np
 from scipy.stats import norm, t
 
-SEEDS, BLOCK = 88, 8
-LEVEL = 1 - 0.05 * (1 - 1.4 / BLOCK)  # of intervals and bands: adjusted_confidence() of the stop rule
+if not REFERENCE.is_dir():
+    sys.exit(f"{sys.argv[0]}: needs {REFERENCE}/curve.py, which is part of the source only")
+import curve
+
+SEEDS = 88
 
 
 def values_of(program, folder):

@@ -289,9 +289,7 @@ RunReport CampaignState::report(int workers) {
   report.budget_seconds = point_states_.bounds().budget_seconds;
   // A forecast assumes that every point will be decided, which a budget or a ceiling may prevent.
   if (point_states_.bounds().ceiling || report.budget_seconds) return report;
-  report.to_go =
-      time_to_go(point_states_.forecasts(database_.unfinished()), campaign_.target,
-                 campaign_.minimum_realisations, campaign_.maximum_realisations, workers, campaign_.curves);
+  report.to_go = point_states_.to_go(database_.unfinished(), campaign_, workers);
   return report;
 }
 

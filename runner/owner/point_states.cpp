@@ -96,8 +96,8 @@ std::optional<double> PointStates::wall_seconds(int place) const {
   return cost.count() > 0 ? std::optional(cost.mean()) : std::nullopt;
 }
 
-const std::vector<PointForecast>& PointStates::forecasts(
-    std::map<std::int64_t, std::vector<Unfinished>> unfinished) {
+std::optional<TimeToGo> PointStates::to_go(std::map<std::int64_t, std::vector<Unfinished>> unfinished,
+                                           const Campaign& campaign, int workers) {
   for (int place = 0; place < size(); ++place) {
     PointForecast& known = forecasts_[static_cast<std::size_t>(place)];
     known.all_seeds = scheduler_->all_seeds(place);
@@ -106,7 +106,22 @@ const std::vector<PointForecast>& PointStates::forecasts(
     known.decided = scheduler_->decided(place) || scheduler_->cancelled(place);
     known.unfinished = std::move(unfinished[point(place).id]);
   }
-  return forecasts_;
+  return time_to_go(forecasts_, expected_stops(campaign), campaign.minimum_realisations,
+                    campaign.maximum_realisations, workers, !campaign.curves.empty());
+}
+
+const std::vector<Expected<int>>& PointStates::expected_stops(const Campaign& campaign) {
+  std::vector<std::size_t> judged;
+  for (int place = 0; place < size(); ++place) {
+    const bool is_done = forecasts_[static_cast<std::size_t>(place)].decided;
+    judged.push_back(scheduler_->stop_tests(place).size() + (is_done ? 1 : 0));
+  }
+  if (campaign.curves.empty() || judged != judged_) {
+    stops_ = runner::expected_stops(forecasts_, campaign.target, campaign.minimum_realisations,
+                                    campaign.maximum_realisations, campaign.curves);
+    judged_ = std::move(judged);
+  }
+  return stops_;
 }
 
 }  // namespace peclet::runner

@@ -60,11 +60,15 @@ class PointStates {
   void leave(SeedId id) { --running_[static_cast<std::size_t>(id.point)]; }
   // Returns the processor time [s] that the seeds that workers have are expected to cost.
   double expected_seconds() const { return scheduler_->expected_seconds(running_); }
-  // Returns the forecast of each point; `unfinished` is as in Database::unfinished().
-  const std::vector<PointForecast>& forecasts(std::map<std::int64_t, std::vector<Unfinished>> unfinished);
+  // Returns the time to go; `unfinished` is as in Database::unfinished().
+  std::optional<TimeToGo> to_go(std::map<std::int64_t, std::vector<Unfinished>> unfinished,
+                                const Campaign& campaign, int workers);
 
  private:
   void tell_cost(int place);
+  // Returns where each point is expected to stop. On curves this takes up to a second, and is done again after
+  // stop tests only.
+  const std::vector<Expected<int>>& expected_stops(const Campaign& campaign);
   void apply_bounds();
 
   std::vector<PointRecord> points_;
@@ -73,6 +77,8 @@ class PointStates {
   std::vector<Cost> processor_;           // processor time of the seeds, for each point
   std::vector<PointForecast> forecasts_;  // for each point, with its cost in wall time
   std::vector<int> running_;              // seeds that workers have, for each point
+  std::vector<Expected<int>> stops_;      // after the stop tests of judged_
+  std::vector<std::size_t> judged_;       // number of stop tests, of decided points one more, for each point
   Bounds bounds_;
   int maximum_ = 0;  // realisations of a point
 };

@@ -28,34 +28,58 @@ double common_degrees(const Plan& plan) {
   return sum * sum / squares;
 }
 
-// Returns the stop test of each point at which it is expected to be decided, if the truth deviates from its
-// values by this; points of curves together.
-std::vector<int> stops_of(const Plan& plan, const Campaign& campaign, const TruthOf& truth_of) {
-  StopRule rule(campaign.target, plan.minimum, plan.maximum);
-  std::vector<int> stops;
-  std::vector<SeedsSoFar> so_far;
-  for (const PointPlan& point : plan.points) {
-    const Prediction& made = point.prediction;
-    stops.push_back(point.ended);
-    if (point.is_predicted() && campaign.curves.empty())
-      stops.back() = stop_after(made.estimates, made.pilot, rule, truth_of(made.fewest_values()));
-    const std::vector<Estimate> unknown(campaign.target.observables().size());
-    so_far.push_back({made.estimates.empty() ? unknown : made.estimates, made.pilot,
-                      std::isfinite(point.cost.cpu_seconds) ? point.cost.cpu_seconds : 0,
-                      point.decided.has_value()});
-    if (!point.decided) continue;
-    so_far.back().estimates.clear();
-    for (const ObservableStopTest& one : point.decided->each) so_far.back().estimates.push_back(one.estimate);
-    so_far.back().ended = point.ended;
+// Where the points are expected to be decided; those of curves together.
+class ExpectedStops {
+ public:
+  ExpectedStops(const Plan& plan, const Campaign& campaign)
+      : plan_(plan), campaign_(campaign), rule_(campaign.target, plan.minimum, plan.maximum) {
+    if (campaign.curves.empty()) return;
+    std::vector<SeedsSoFar> so_far;
+    so_far.reserve(plan.points.size());
+    for (const PointPlan& point : plan.points) so_far.push_back(seeds_so_far(point));
+    for (const Curve& curve : campaign.curves)
+      curves_.emplace_back(curve, so_far, campaign.target, plan.minimum, plan.maximum);
   }
-  for (const Curve& curve : campaign.curves) {
-    const std::vector<int> joint =
-        seeds_on_curve(curve, so_far, campaign.target, plan.minimum, plan.maximum, truth_of);
-    for (std::size_t k = 0; k < joint.size(); ++k) stops[curve.points[k]] = joint[k];
+
+  // Returns the seeds of each point, if the truth deviates from its values by this.
+  std::vector<int> at(const TruthOf& truth_of) {
+    std::vector<int> stops;
+    for (const PointPlan& point : plan_.points) {
+      const Prediction& made = point.prediction;
+      stops.push_back(point.ended);
+      if (point.is_predicted() && curves_.empty()) {
+        stops.back() = std::max(
+            stops.back(), stop_after(made.estimates, made.pilot, rule_, truth_of(made.fewest_values())));
+      }
+    }
+    for (std::size_t i = 0; i < curves_.size(); ++i) {
+      const std::vector<int> joint = curves_[i].stops(truth_of);
+      for (std::size_t k = 0; k < joint.size(); ++k) {
+        int& stop = stops[campaign_.curves[i].points[k]];
+        stop = std::max(stop, joint[k]);
+      }
+    }
+    return stops;
   }
-  for (std::size_t i = 0; i < stops.size(); ++i) stops[i] = std::max(plan.points[i].ended, stops[i]);
-  return stops;
-}
+
+ private:
+  SeedsSoFar seeds_so_far(const PointPlan& point) const {
+    const double cost = std::isfinite(point.cost.cpu_seconds) ? point.cost.cpu_seconds : 0;
+    SeedsSoFar known{point.prediction.estimates, point.prediction.pilot, cost, false};
+    if (point.decided) {
+      known.ended = point.ended;
+      known.is_done = true;
+      for (const ObservableStopTest& one : point.decided->each) known.estimates.push_back(one.estimate);
+    }
+    known.estimates.resize(campaign_.target.observables().size());  // of no values before two seeds
+    return known;
+  }
+
+  const Plan& plan_;
+  const Campaign& campaign_;
+  StopRule rule_;
+  std::vector<CurveForecast> curves_;
+};
 
 // Sets the prediction of a point that is not decided from the known outcomes, by itself.
 void predict_point(PointPlan& point, const Campaign& campaign,
@@ -69,8 +93,9 @@ void predict_point(PointPlan& point, const Campaign& campaign,
 // Predicts the points of curves together.
 void predict_curves(Plan& plan, const Campaign& campaign) {
   if (campaign.curves.empty()) return;
+  ExpectedStops stops_of(plan, campaign);
   const auto at = [&](double quantile) {
-    return stops_of(plan, campaign, [&](int values) { return truth_at(values - 1, quantile); });
+    return stops_of.at([&](int values) { return truth_at(values - 1, quantile); });
   };
   constexpr int futures = 20;
   std::vector<int> capped(plan.points.size());
@@ -119,10 +144,11 @@ Totals totals_of(const Plan& plan, const Campaign& campaign) {
   }
   totals.points = static_cast<int>(points.size());
   const double degrees = common_degrees(plan);
+  ExpectedStops stops_of(plan, campaign);
   std::map<double, std::vector<int>> stops;  // by quantile
   const auto stops_at = [&](double quantile) -> const std::vector<int>& {
     std::vector<int>& known = stops[quantile];
-    if (known.empty()) known = stops_of(plan, campaign, [&](int) { return truth_at(degrees, quantile); });
+    if (known.empty()) known = stops_of.at([&](int) { return truth_at(degrees, quantile); });
     return known;
   };
   const auto sum_of = [&](const auto& of_point) {

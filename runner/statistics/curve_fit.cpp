@@ -166,6 +166,7 @@ std::optional<CurveFit::Through> CurveFit::through(std::span<const Datum> data, 
   };
   const auto fit = [&] {
     std::vector<Datum> chosen;
+    chosen.reserve(used.size());
     for (const std::size_t place : used) chosen.push_back(data[place]);
     return CurveFit(std::move(chosen), is_even);
   };

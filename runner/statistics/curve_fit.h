@@ -53,8 +53,8 @@ class CurveFit {
 
   // True if the datum at 0, for a quantity that is even in the axis, differs so little from those above 0.
   static bool serves_as_anchor(std::span<const Datum> data);
-  // The curve through all data, or through those but the one at rest: if it does not serve as an anchor, and
-  // if it or another contradicts the curve. Nothing if fewer than fewest_points are left.
+  // The curve through all data. The one at rest of an even quantity is left out if it does not serve as an
+  // anchor, and if the curve with it is refused. Nothing if fewer than fewest_points are left.
   struct Through;
   static std::optional<Through> through(std::span<const Datum> data, bool is_even);
 

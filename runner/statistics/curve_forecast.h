@@ -25,9 +25,21 @@ struct SeedsSoFar {
 // Returns how the truth deviates from a sample with this number of values. An empty function: not at all.
 using TruthOf = std::function<Truth(int values)>;
 
-// Returns the number of seeds at which each point of the curve, in its order, is expected to be decided.
-// `points` has all points of the sweep.
-std::vector<int> seeds_on_curve(const Curve& curve, const std::vector<SeedsSoFar>& points,
-                                const Target& target, int minimum, int maximum, const TruthOf& truth_of = {});
+class CurveForecast {
+ public:
+  // `points` has all points of the sweep.
+  CurveForecast(const Curve& curve, const std::vector<SeedsSoFar>& points, const Target& target, int minimum,
+                int maximum);
+  CurveForecast(CurveForecast&&) noexcept;
+  CurveForecast& operator=(CurveForecast&&) = delete;
+  ~CurveForecast();
+
+  // Returns the number of seeds at which each point of the curve, in its order, is expected to be decided.
+  std::vector<int> stops(const TruthOf& truth_of = {}) const;
+
+ private:
+  class OneCriterion;
+  std::vector<OneCriterion> criteria_;
+};
 
 }  // namespace peclet::runner

@@ -136,32 +136,6 @@ Expected<int> seeds_of(const PointForecast& point, StopRule& rule) {
   return {at({}), at(truth_at(values - 1, outside)), at(truth_at(values - 1, 1 - outside))};
 }
 
-// Returns the same for all points, those of curves together.
-std::vector<Expected<int>> seeds_of(const std::vector<PointForecast>& points, const Target& target,
-                                    StopRule& rule, const std::vector<Curve>& curves) {
-  std::vector<Expected<int>> seeds(points.size());
-  std::vector<SeedsSoFar> so_far;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const PointForecast& point = points[i];
-    if (curves.empty() && !point.decided) seeds[i] = seeds_of(point, rule);
-    so_far.push_back(
-        {point.all_seeds, point.ended, point.cost.count() > 0 ? point.cost.mean() : 0, point.decided});
-  }
-  for (const Curve& curve : curves) {
-    const auto at = [&](const TruthOf& truth_of) {
-      return seeds_on_curve(curve, so_far, target, rule.schedule().front(), rule.schedule().back(), truth_of);
-    };
-    const std::vector<int> likely = at({});
-    const std::vector<int> fewer = at([](int values) { return truth_at(values - 1, outside); });
-    const std::vector<int> more = at([](int values) { return truth_at(values - 1, 1 - outside); });
-    for (std::size_t k = 0; k < likely.size(); ++k) {
-      const auto [lower, upper] = std::minmax({likely[k], fewer[k], more[k]});
-      seeds[curve.points[k]] = {likely[k], lower, upper};
-    }
-  }
-  return seeds;
-}
-
 }  // namespace
 
 Truth truth_at(double degrees, double quantile) {
@@ -267,26 +241,62 @@ Json to_json(const std::optional<TimeToGo>& to_go) {
   return {{"likely", to_go->likely}, {"low", to_go->lower}, {"high", to_go->upper}};
 }
 
+std::vector<Expected<int>> expected_stops(const std::vector<PointForecast>& points, const Target& target,
+                                          int minimum, int maximum, const std::vector<Curve>& curves) {
+  std::vector<Expected<int>> stops(points.size());
+  if (curves.empty()) {
+    StopRule rule(target, minimum, maximum);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (!points[i].decided) stops[i] = seeds_of(points[i], rule);
+    }
+    return stops;
+  }
+  std::vector<SeedsSoFar> so_far;
+  so_far.reserve(points.size());
+  for (const PointForecast& point : points) {
+    so_far.push_back(
+        {point.all_seeds, point.ended, point.cost.count() > 0 ? point.cost.mean() : 0, point.decided});
+  }
+  for (const Curve& curve : curves) {
+    const CurveForecast forecast(curve, so_far, target, minimum, maximum);
+    const std::vector<int> likely = forecast.stops();
+    const std::vector<int> fewer = forecast.stops([](int values) { return truth_at(values - 1, outside); });
+    const std::vector<int> more =
+        forecast.stops([](int values) { return truth_at(values - 1, 1 - outside); });
+    for (std::size_t k = 0; k < likely.size(); ++k) {
+      const auto [lower, upper] = std::minmax({likely[k], fewer[k], more[k]});
+      stops[curve.points[k]] = {likely[k], lower, upper};
+    }
+  }
+  return stops;
+}
+
 std::optional<TimeToGo> time_to_go(const std::vector<PointForecast>& points, const Target& target,
                                    int minimum, int maximum, int workers, const std::vector<Curve>& curves) {
+  return time_to_go(points, expected_stops(points, target, minimum, maximum, curves), minimum, maximum,
+                    workers, !curves.empty());
+}
+
+std::optional<TimeToGo> time_to_go(const std::vector<PointForecast>& points,
+                                   const std::vector<Expected<int>>& stops, int minimum, int maximum,
+                                   int workers, bool are_joint) {
   const auto has_cost = [](const PointForecast& point) { return point.cost.count() > 0; };
   if (std::none_of(points.begin(), points.end(), has_cost)) return std::nullopt;
 
   const Spread of_all = spread(points);
-  StopRule rule(target, minimum, maximum);
+  const std::vector<int> schedule = stop_test_schedule(minimum, maximum);
   TimeToGo chains, work;
-  double above = 0, below = 0;  // squared deviations of the work, upwards and downwards
-  double more_on_curves = 0, fewer_on_curves = 0;
+  double above = 0, below = 0;                   // squared deviations of the work, upwards and downwards
+  double more_together = 0, fewer_together = 0;  // of points of curves, which deviate together
   bool any = false;
-  const std::vector<Expected<int>> all_seeds = seeds_of(points, target, rule, curves);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const PointForecast& point = points[i];
     if (point.decided) continue;
     any = true;
     const Spread cost = spread(point, of_all);
-    const Expected<int>& seeds = all_seeds[i];
+    const Expected<int>& seeds = stops[i];
     // Running seeds are half done on average. A point of a curve may need none, and wait for others.
-    const double least = curves.empty() || point.running > 0 ? 0.5 : 0;
+    const double least = are_joint && point.running == 0 ? 0 : 0.5;
     const auto to_come = [&](int stop) { return std::max(least, stop - point.ended - 0.5 * point.running); };
     const double left = to_come(seeds.likely);
     work.likely += left * cost.mean;
@@ -295,16 +305,16 @@ std::optional<TimeToGo> time_to_go(const std::vector<PointForecast>& points, con
     const double fewer = (left - to_come(seeds.lower)) * cost.mean;
     above += scatter;
     below += scatter;
-    if (curves.empty()) {
+    if (are_joint) {
+      more_together += more;
+      fewer_together += fewer;
+    } else {
       above += more * more;
       below += fewer * fewer;
-    } else {
-      more_on_curves += more;
-      fewer_on_curves += fewer;
     }
     // If seeds run, the share `done` of the first round is over.
     const auto chain = [&](int stop, double done) {
-      return rounds_until(point.ended, stop, rule.schedule(), workers) - (point.running > 0 ? done : 0);
+      return rounds_until(point.ended, stop, schedule, workers) - (point.running > 0 ? done : 0);
     };
     chains.likely = std::max(chains.likely, chain(seeds.likely, 0.5) * cost.mean);
     chains.lower =
@@ -313,8 +323,8 @@ std::optional<TimeToGo> time_to_go(const std::vector<PointForecast>& points, con
         std::max(chains.upper, chain(seeds.upper, 0) * (cost.mean + 2 * cost.error) + 2 * cost.deviation);
   }
   if (!any) return TimeToGo{};
-  above += more_on_curves * more_on_curves;
-  below += fewer_on_curves * fewer_on_curves;
+  above += more_together * more_together;
+  below += fewer_together * fewer_together;
   work.lower = std::max(0.0, work.likely - std::sqrt(below));
   work.upper = work.likely + std::sqrt(above);
   return TimeToGo{std::max(work.likely / workers, chains.likely),

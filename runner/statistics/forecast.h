@@ -150,9 +150,17 @@ std::string to_string(const TimeToGo& to_go);
 // Returns {"likely": 720, "low": 600, "high": 1080} [s], or null if nothing is known.
 Json to_json(const std::optional<TimeToGo>& to_go);
 
+// Returns the seeds at which each point is expected to stop. `curves` are those of the target: their points
+// are decided together (curve_forecast.h), which takes a fraction of a second.
+std::vector<Expected<int>> expected_stops(const std::vector<PointForecast>& points, const Target& target,
+                                          int minimum, int maximum, const std::vector<Curve>& curves = {});
+
 // Returns the longer of two times: that of all work, shared by the workers, and that of the slowest point,
 // whose stop tests follow one another and wait for all their seeds. Returns nothing if no realisation has
-// ended yet. `curves` are those of the target: their points are decided together (curve_forecast.h).
+// ended yet. `stops` are the expected_stops(), and `are_joint` says that the points are those of curves.
+std::optional<TimeToGo> time_to_go(const std::vector<PointForecast>& points,
+                                   const std::vector<Expected<int>>& stops, int minimum, int maximum,
+                                   int workers, bool are_joint);
 std::optional<TimeToGo> time_to_go(const std::vector<PointForecast>& points, const Target& target,
                                    int minimum, int maximum, int workers,
                                    const std::vector<Curve>& curves = {});

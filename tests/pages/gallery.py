@@ -2,7 +2,7 @@
 """gallery.py BIN FOLDER [NAME...]
 
 Runs the campaigns of docs/gallery that docs/gallery.md draws, then its commands, and moves the pictures into FOLDER.
-NAME chooses pictures by the end of their command: flow.png. All take five minutes on two cores.
+NAME chooses pictures by the end of their command: flow.png. All take six minutes on two cores.
 """
 
 import os

@@ -44,6 +44,9 @@ TEST(CurveReports, PointsThatWaitAreSaid) {
   EXPECT_TRUE(says(status_table(status, 200), "open, waits-for-curve"));
   EXPECT_TRUE(says(explain(campaign.database(), campaign.directory(), "peclet=0.1 window=9"),
                    "next: nothing, until other points of its curve have made their stop tests"));
+  for (int point = 1; point < 6; ++point) complete(campaign, point, 10, 8);
+  EXPECT_TRUE(says(explain(campaign.database(), campaign.directory(), ""),
+                   "next: the stop test at 10 seeds; `peclet next` says what its curve needs"));
 }
 
 // The curve decides at fewer seeds than the points would, and its forecast after ten is one of the curve.

@@ -31,6 +31,12 @@ int alone(double spread, const Target& target) {
   return stop_after(points(spread).front().estimates, 8, rule);
 }
 
+std::vector<int> seeds_on_curve(const Curve& curve, const std::vector<SeedsSoFar>& known,
+                                const Target& target, int minimum, int maximum,
+                                const TruthOf& truth_of = {}) {
+  return CurveForecast(curve, known, target, minimum, maximum).stops(truth_of);
+}
+
 int sum(const std::vector<int>& seeds) { return std::accumulate(seeds.begin(), seeds.end(), 0); }
 
 TEST(CurveForecast, PointsThatAreMetNeedNoMore) {

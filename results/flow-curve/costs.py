@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""curve.py PECLET FOLDER: writes curve.csv from the campaigns curves, curve-55 and check that were run in FOLDER.
+"""costs.py PECLET FOLDER: writes curve.csv from the campaigns curves, curve-55 and check that were run in FOLDER.
 
 Each row is a point of a curve: its own mean, its interval and the band of the curve; the seeds that counted, and those
 that the point alone is expected to need for the same tolerance with its own spread; and the mean of other seeds: those
