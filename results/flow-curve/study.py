@@ -216,7 +216,7 @@ def measure(program):
 
 
 def draw_overview():
-    """Draws η_r of the curves that were run to 5 %, with 95 % intervals of the points and bands; rest is at the left."""
+    """Draws η_r of the curves that were run to 5 %, with intervals of the points and bands; rest is at the left."""
     figure = Figure(HERE / "overview.png", columns=1, size=(1000, 460))
     ends = {"x_range": (3.5e-3, 2e4), "y_range": (3, 130)}
     titles = "Péclet number Pe (shear over Brownian motion)", "relative viscosity η_r"

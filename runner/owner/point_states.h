@@ -66,8 +66,8 @@ class PointStates {
 
  private:
   void tell_cost(int place);
-  // Returns where each point is expected to stop. On curves this takes up to a second, and is done again after
-  // stop tests only.
+  // Returns where each point is expected to stop. On curves this takes up to a second, and is done again
+  // after stop tests only.
   const std::vector<Expected<int>>& expected_stops(const Campaign& campaign);
   void apply_bounds();
 
