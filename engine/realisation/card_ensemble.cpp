@@ -336,7 +336,7 @@ void CardEnsemble::place(Slot& slot) {
 
   CardProgress& at = slot.progress;
   at = {};
-  at.seed = simulation.seed_;
+  at.seed = simulation.random_key_;
   at.status = system.step < slot.scene->scene.total ? CardStatus::runs : CardStatus::ended;
   at.finite = true;
   at.step = system.step;

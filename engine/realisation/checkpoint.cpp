@@ -72,14 +72,6 @@ void require_same_motion(const CheckpointIdentity& found, const CheckpointIdenti
 
 }  // namespace
 
-std::string motion_of(const Scene& scene, const Schedule& schedule) {
-  Json document = scene.document;
-  for (const char* key : {"duration", "observables", "files"}) document.erase(key);
-  for (const auto& [name, settings] : scene.observables) document.erase(name);
-  document["integrator"]["timestep"] = schedule.timestep;
-  return sha256(canonical_json(document));
-}
-
 void write_checkpoint(const std::filesystem::path& path, const CheckpointIdentity& identity,
                       const Spent& spent, const Simulation& simulation) {
   ArchiveWriter payload;

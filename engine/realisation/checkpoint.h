@@ -27,9 +27,6 @@ struct CheckpointIdentity {
   friend bool operator==(const CheckpointIdentity&, const CheckpointIdentity&) = default;
 };
 
-// Returns the SHA-256 of the scene without durations, observables and files, and of the size of the step.
-std::string motion_of(const Scene& scene, const Schedule& schedule);
-
 // The file is not a checkpoint, truncated, altered, or of another version, scene, seed, binary or device.
 class CheckpointError : public IntegrityError {
  public:

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "contract/errors.h"
+#include "contract/sha256.h"
 #include "engine/integrators/stability.h"
 #include "engine/kernels/pair_kinds.h"
 #include "engine/observables/observable.h"
@@ -89,6 +90,20 @@ Schedule make_schedule(const Scene& scene, const std::string& file) {
                                  schedule.timestep));
   }
   return schedule;
+}
+
+std::string motion_of(const Scene& scene, const Schedule& schedule) {
+  Json document = scene.document;
+  for (const char* key : {"duration", "observables", "files"}) document.erase(key);
+  for (const auto& [name, settings] : scene.observables) document.erase(name);
+  document["integrator"]["timestep"] = schedule.timestep;
+  return sha256(canonical_json(document));
+}
+
+std::uint64_t random_key(const Scene& scene, const Schedule& schedule, std::uint64_t seed) {
+  if (scene.seeds_in_common) return seed;
+  const std::string hash = sha256(fmt::format("{} {}", motion_of(scene, schedule), seed));
+  return std::stoull(hash.substr(0, 16), nullptr, 16);
 }
 
 const char* name_of(Ending::Cause cause) {

@@ -1,4 +1,5 @@
-// Chooses the steps of a realisation, finds why it ends, and checks that a scene can be run.
+// Chooses the steps and the random numbers of a realisation, finds why it ends, and checks that a scene can
+// be run.
 #pragma once
 
 #include <cstdint>
@@ -22,6 +23,14 @@ struct Schedule {
 // Returns the schedule of a scene; `file` is the scene's name in messages. Throws InputError if the step is
 // too large, the production window is shorter than its 32 blocks, or a phase has too many steps.
 Schedule make_schedule(const Scene& scene, const std::string& file);
+
+// Returns the SHA-256 of the scene without durations, observables and files, and of the size of the step.
+std::string motion_of(const Scene& scene, const Schedule& schedule);
+
+// Returns the key of the random numbers of a realisation: with seeds in common its seed, otherwise 64 bits of
+// the SHA-256 of its motion and its seed. Two scenes then share no numbers, and their results are
+// independent.
+std::uint64_t random_key(const Scene& scene, const Schedule& schedule, std::uint64_t seed);
 
 // Why, and at which step, a realisation ended.
 struct Ending {

@@ -52,8 +52,12 @@ void set_initial_velocities(ParticleState& particles, const BackgroundFlow& flow
 
 Simulation::Simulation(const Scene& scene, const Schedule& schedule, std::uint64_t seed, int threads,
                        const std::string& file)
-    : scene_(scene), schedule_(schedule), seed_(seed), threads_(threads), production_(schedule.production) {
-  driver_ = make_driver(scene_, schedule.timestep, seed);
+    : scene_(scene),
+      schedule_(schedule),
+      random_key_(random_key(scene, schedule, seed)),
+      threads_(threads),
+      production_(schedule.production) {
+  driver_ = make_driver(scene_, schedule.timestep, random_key_);
   const Physics& physics = scene_.physics;
   check_fit(scene, schedule, file);
   const std::vector<double> radius = species_radii(scene.particles);
@@ -71,14 +75,14 @@ Simulation::Simulation(const Scene& scene, const Schedule& schedule, std::uint64
                      : NeighbourList(ranges, skin_of_explicit_steps);
   system_.springs = SpringField(spring_kinds(required_terms(physics)), 0);
   if (scene.method == Method::implicit_steps) {
-    std::unique_ptr<Implicit> steps =
-        implicit_steps(physics, system_.particles, schedule.timestep, scene.solver_tolerance, seed, threads);
+    std::unique_ptr<Implicit> steps = implicit_steps(physics, system_.particles, schedule.timestep,
+                                                     scene.solver_tolerance, random_key_, threads);
     const double share = physics.thermal_energy > 0 ? guarded_share_of_noise : guarded_share;
     steps->divide_steps(share * scene.guard.largest_displacement * smallest_radius_);
     integrator_ = std::move(steps);
   } else {
     integrator_ = std::make_unique<VelocityVerlet>(
-        ForceField(physics, system_.particles, schedule.timestep, seed, threads), system_.particles,
+        ForceField(physics, system_.particles, schedule.timestep, random_key_, threads), system_.particles,
         schedule.timestep);
   }
   observables_ = make_observables(scene, {schedule.timestep, schedule.production, box}, file);
@@ -87,9 +91,9 @@ Simulation::Simulation(const Scene& scene, const Schedule& schedule, std::uint64
 }
 
 void Simulation::start(const std::function<void()>& made_step) {
-  place_randomly(system_.particles, system_.box, seed_, made_step);
+  place_randomly(system_.particles, system_.box, random_key_, made_step);
   if (required_terms(scene_.physics).conservative) relax(system_, scene_, threads_, made_step);
-  set_initial_velocities(system_.particles, scene_.physics.flow.at(system_.box), scene_.physics, seed_);
+  set_initial_velocities(system_.particles, scene_.physics.flow.at(system_.box), scene_.physics, random_key_);
   begin();
 }
 
@@ -109,7 +113,8 @@ void Simulation::start(const System& placed, bool in_motion) {
   system_.step = placed.step;
   system_.clock = placed.clock;
   if (!in_motion) {
-    set_initial_velocities(system_.particles, scene_.physics.flow.at(system_.box), scene_.physics, seed_);
+    set_initial_velocities(system_.particles, scene_.physics.flow.at(system_.box), scene_.physics,
+                           random_key_);
   }
   begin();
 }

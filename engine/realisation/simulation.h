@@ -92,7 +92,7 @@ class Simulation {
 
   Scene scene_;
   Schedule schedule_;
-  std::uint64_t seed_;
+  std::uint64_t random_key_;
   int threads_;
   System system_;
   Matrix3 edges_at_start_;  // of the cell at strain 0; the cell of a start in a file may be sheared

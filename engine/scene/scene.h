@@ -110,6 +110,7 @@ struct Scene {
   std::map<std::string, MakeObservable> observables;  // besides the stress
   Guard guard;
   std::optional<Start> start;
+  bool seeds_in_common = false;  // true: a seed has the same packing and noise in every such scene
   bool final_configuration = false, final_checkpoint = false;  // true: the file is left beside the result
   Json document;                                               // the scene with its defaults
 };

@@ -7,12 +7,13 @@
 namespace peclet::engine {
 
 // Returns a scene of 60 spheres in fast shear. A wide inner gap allows a long step: dt = 0.002, strain 0.004
-// a step, 100 steps of equilibration and 320 of production.
+// a step, 100 steps of equilibration and 320 of production. Patched scenes have the same packing and noise.
 inline Json small_scene() {
   return Json::parse(R"({
     "particles": {"count": 60, "density": 0.1,
                   "species": [{"radius": 1, "volume_share": 1}, {"radius": 1.4, "volume_share": 1}]},
     "volume_fraction": 0.45,
+    "seeds_in_common": true,
     "fluid": {"viscosity": 0.1, "thermal_energy": 0.02},
     "flow": {"shear_rate": 2},
     "contact": {"normal_stiffness": 1e4, "friction": 0.5, "normal_damping": 0.5,

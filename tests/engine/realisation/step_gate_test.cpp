@@ -8,11 +8,12 @@
 namespace peclet::engine {
 namespace {
 
-// Returns the published parameters without noise.
+// Returns the published parameters without noise. Scenes of any step and guard have the same packing.
 Json published(double volume_fraction) {
   Json scene = Json::parse(R"({
     "particles": {"count": 60, "density": 0.1,
                   "species": [{"radius": 1, "volume_share": 1}, {"radius": 1.4, "volume_share": 1}]},
+    "seeds_in_common": true,
     "fluid": {"viscosity": 0.1},
     "flow": {"shear_rate": 0.045},
     "contact": {"normal_stiffness": 1e4},
