@@ -138,6 +138,8 @@ def main():
         same = drill.export() == undisturbed.export()
         done, results, blamed = (drill.ask(query) for query in (ENDED, RESULTS, BLAMED))
         cut = drill.ask("SELECT count(*) FROM attempt WHERE outcome IN ('killed', 'abandoned')")
+        for said in drill.query("SELECT outcome, message FROM attempt WHERE blamed"):
+            print("blamed:", *said)
         left = drill.left_behind() + undisturbed.left_behind()
         print(
             f"kills: {kills}; last run: exit code {code}; same bytes: {same}; realisations {done}, results {results}; "
