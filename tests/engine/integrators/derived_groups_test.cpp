@@ -161,11 +161,42 @@ TEST(WarningsBeforeRun, DenserThanARandomPackingIsSaid) {
 
 TEST(WarningsBeforeRun, SoftSpheresAreSaid) {
   const auto codes = [](double stiffness) {  // viscosity times radius times rate: 0.2
-    const Json scene = small_scene({{"contact", {{"normal_stiffness", stiffness}}}});
+    const Json scene =
+        small_scene(together({without_noise, {{"contact", {{"normal_stiffness", stiffness}}}}}));
     return codes_of(warnings_before_run(read_scene(scene, "scene.json")));
   };
   EXPECT_EQ(codes(40), Codes{"soft"});
   EXPECT_EQ(codes(2e3), Codes{});
+}
+
+// Mean overlaps of 15 stress a / k_n, here 15 / k_n.
+TEST(WarningsBeforeRun, ContactsThatAreSoftForTheirStressAreSaid) {
+  const auto codes = [](double stiffness) {
+    Json scene = small_scene({{"contact", {{"normal_stiffness", stiffness}}},
+                              {"fluid", {{"thermal_energy", nullptr}}},
+                              {"duration", {{"production", {{"stress_times", 400}}}}}});
+    scene["flow"] = {{"stress", 1}};
+    return codes_of(warnings_before_run(read_scene(scene, "scene.json")));
+  };
+  EXPECT_EQ(codes(14e3), Codes{"soft"});
+  EXPECT_EQ(codes(16e3), Codes{});
+}
+
+// k_B T = 0.02 and an inner gap of 0.03: sqrt(0.02 / k_n) is 0.015 at k_n = 88.9.
+TEST(WarningsBeforeRun, RoughContactsThatAreSoftForTheNoiseAreSaid) {
+  const auto codes = [](double stiffness, double friction) {
+    const Json scene = small_scene({{"flow", {{"shear_rate", 0.01}}},
+                                    {"contact",
+                                     {{"normal_stiffness", stiffness},
+                                      {"friction", friction},
+                                      {"rolling_stiffness", nullptr},
+                                      {"rolling_friction", nullptr}}},
+                                    {"duration", {{"production", {{"time", 10}}}}}});
+    return codes_of(warnings_before_run(read_scene(scene, "scene.json")));
+  };
+  EXPECT_EQ(codes(88, 0.5), Codes{"soft"});
+  EXPECT_EQ(codes(90, 0.5), Codes{});
+  EXPECT_EQ(codes(88, 0), Codes{});
 }
 
 TEST(SceneWarnings, MessagesGiveTheNumbers) {

@@ -98,7 +98,7 @@ TEST(Moduli, OfASmallOscillationAreTheViscosityOfThePacking) {
   const auto run = [](const Json& patch) {
     Json document = Json::parse(
         R"({"particles": {"count": 60, "density": 0.001, "species": [{"radius": 1, "volume_share": 1}]},
-        "volume_fraction": 0.4, "fluid": {"viscosity": 0.1},
+        "volume_fraction": 0.4, "seeds_in_common": true, "fluid": {"viscosity": 0.1},
         "lubrication": {"form": "kim-karrila", "inner_gap": 1e-3, "outer_gap": 0.05},
         "integrator": {"method": "implicit", "tolerance": 1e-6}})");
     document.update(patch);
