@@ -436,6 +436,8 @@ bool CampaignState::choose_values() {
     read_again();
     events_.write("chosen", message);
     changes_.after.note("a new value, " + message);
+    changes_.after.tell(
+        ValueChosen{campaign().target.over(), chosen->value, chosen->observable, chosen->width});
     any = true;
   }
   return any;

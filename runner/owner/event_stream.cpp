@@ -62,6 +62,14 @@ Json json_of(const Decided& event) {
           {"stop_test", stop_test_json(event.stop_test)}};
 }
 
+Json json_of(const ValueChosen& event) {
+  return {{"event", "value-chosen"},
+          {"axis", event.axis},
+          {"value", event.value},
+          {"observable", event.observable},
+          {"width", event.width}};
+}
+
 Json json_of(const ShortageBegan& event) {
   return {{"event", "shortage-begins"}, {"message", event.message}};
 }
@@ -110,6 +118,11 @@ constexpr const char* event_rows = R"(
 {point}
 /verdict | one of converged, converged-with-losses, capped, failed, complete, complete-with-losses
 {stop_test}
+
+-- value-chosen | The run has added a value of the axis of its curves (/choose in a campaign), because seeds there
+    narrow the widest band most; width is that of the band.
+/axis, /observable | string
+/value, /width | number
 
 -- shortage-begins | The run pauses: a disk or quota is full or fails, or another program has locked the
     database. May come again, for another hindrance, before shortage-ends.

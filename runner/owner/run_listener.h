@@ -52,6 +52,14 @@ struct Decided {
   StopTest stop_test;
 };
 
+// The campaign has one more value of the axis of its curves.
+struct ValueChosen {
+  std::string axis;  // pointer
+  double value = 0;
+  std::string observable;  // whose band was widest
+  double width = 0;        // of the band there, relative
+};
+
 // The run pauses because something is in its way. Sent once for each kind of hindrance until ShortageEnded.
 struct ShortageBegan {
   std::string message;
@@ -63,8 +71,8 @@ struct RunEnded {
   std::string message;  // error that ended the run, or ""
 };
 
-using RunEvent = std::variant<RunBegan, SeedEnded, AttemptFailed, StopTestMade, Decided, ShortageBegan,
-                              ShortageEnded, RunEnded>;
+using RunEvent = std::variant<RunBegan, SeedEnded, AttemptFailed, StopTestMade, Decided, ValueChosen,
+                              ShortageBegan, ShortageEnded, RunEnded>;
 
 struct RunReport {
   int points = 0, decided = 0, converged = 0;  // converged or complete, also with losses

@@ -195,6 +195,11 @@ Plan make_plan(const Campaign& campaign, const std::vector<double>& particle_ste
                const std::map<std::string, PointHistory>& known, int workers,
                const std::optional<CostGuess>& guess, int capacity) {
   Plan plan{campaign.name, campaign.minimum_realisations, campaign.maximum_realisations, workers, capacity};
+  if (campaign.most_values > 0) {
+    const auto values = static_cast<int>(campaign.curves.front().axis.size());
+    plan.values_to_choose = std::max(0, campaign.most_values - values);
+    plan.over = campaign.target.over();
+  }
   MeasuredCost all;  // summed over all ended realisations
   double known_steps = 0;
   std::vector<std::vector<std::optional<Outcome>>> outcomes;  // of each point
@@ -375,6 +380,14 @@ std::string rest_text(const Plan& plan) {
          text;
 }
 
+// Returns what a campaign that chooses values adds to the plan, which has none of them.
+std::string choice_text(const Plan& plan) {
+  if (plan.values_to_choose == 0) return "";
+  return fmt::format("\nThe run may add {} of {} (/choose), which {} not in this plan.\n",
+                     counted(plan.values_to_choose, "value"), plan.over,
+                     plan.values_to_choose == 1 ? "is" : "are");
+}
+
 template <typename Number>
 Json range_json(const Expected<Number>& value, double unit) {
   return {{"expected", number_json(value.likely / unit)},
@@ -412,10 +425,10 @@ Json totals_json(const Plan& plan) {
 
 std::string plan_text(const Plan& plan) {
   const bool predicted = has_values(plan);
-  return fmt::format("{}: {}, {} seeds each\n\n{}\n{}{}{}", plan.campaign,
+  return fmt::format("{}: {}, {} seeds each\n\n{}\n{}{}{}{}", plan.campaign,
                      counted(plan.points.size(), "point"), range_text(plan.minimum, plan.maximum),
                      table_text(plan, predicted), legend(plan, predicted),
-                     predicted ? '\n' + ending_text(plan) : "", rest_text(plan));
+                     predicted ? '\n' + ending_text(plan) : "", rest_text(plan), choice_text(plan));
 }
 
 Json plan_json(const Plan& plan) {
@@ -442,6 +455,7 @@ Json plan_json(const Plan& plan) {
           {"cpu_hours_maximum", number_json(total_hours(plan, plan.maximum))},
           {"trials_broken_off", plan.broke_off},
           {"guessed_from", plan.guessed_from.empty() ? Json(nullptr) : Json(plan.guessed_from)},
+          {"values_to_choose", plan.values_to_choose},
           {"prediction", totals_json(plan)}};
 }
 

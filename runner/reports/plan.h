@@ -66,7 +66,9 @@ struct Plan {
   std::vector<PointPlan> points{};
   Totals totals{};
   std::vector<std::string> broke_off{};  // trials that ended early: "peclet=10 broke off: packing: ..."
-  std::string guessed_from{};            // label of the point whose guess all costs come from; "" without one
+  int values_to_choose = 0;    // of the curves' axis, which the run may add; they are not in this plan
+  std::string over{};          // pointer of that axis
+  std::string guessed_from{};  // label of the point whose guess all costs come from; "" without one
 };
 
 // Returns the plan. A point without ended realisations has the time per particle-step of all others together,

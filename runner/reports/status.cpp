@@ -190,6 +190,8 @@ Json status_json(const CampaignStatus& status) {
           {"exit_code", exit_code_of(status)},
           {"seconds_to_go", to_json(status.to_go)},
           {"handed_over", bundles_json(status.handed_over)},
+          {"chosen",
+           status.campaign.document.contains("choose") ? chosen_values(status.campaign.document) : Json()},
           {"points", points}};
 }
 

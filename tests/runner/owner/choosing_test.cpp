@@ -1,4 +1,5 @@
 // Campaigns that choose values of a curve's axis, in processes of their own.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -72,10 +73,18 @@ void run_to_its_end(CampaignOnDisk& campaign) {
   ASSERT_EQ(campaign.run(), 0) << campaign.log();
 }
 
-TEST(Choosing, EndsAtTheNumberOfValues) {
+TEST(Choosing, EndsAtTheNumberOfValuesAndTellsPrograms) {
   CampaignOnDisk campaign;
+  campaign.options.jsonl = true;
   run_to_its_end(campaign);
-  EXPECT_EQ(chosen_by(campaign).size(), 1U);
+  const Json chosen = chosen_by(campaign);
+  ASSERT_EQ(chosen.size(), 1U);
+  EXPECT_TRUE(says(campaign.log(), fmt::format(R"("event":"value-chosen","observable":"relative_viscosity",)"
+                                               R"("schema_version":1,"value":{},)",
+                                               chosen[0].dump())))
+      << campaign.log();
+  Database database = campaign.reader();
+  EXPECT_EQ(status_json(read_status(database)).at("chosen"), chosen);
   EXPECT_GT(width_of(campaign), 0.03);
 }
 

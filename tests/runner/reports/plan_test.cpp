@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "tests/runner/runner_fixture.h"
+#include "tests/runner/reports/curve_campaign.h"
 
 namespace peclet::runner {
 namespace {
@@ -30,6 +30,17 @@ TEST(Plan, SaysWhatRestWouldSaveOfThePointsThatAreNearIt) {
       << plan_text(plan);
   EXPECT_TRUE(plan_json(plan)["points"][0]["flow_over_rest"].is_null());
   EXPECT_EQ(plan_json(plan)["points"][1]["flow_over_rest"], 250);
+}
+
+TEST(Plan, SaysThatTheRunMayAddValues) {
+  Campaign campaign = curve_campaign();
+  EXPECT_EQ(plan_json(make_plan(campaign, std::vector<double>(6, 1e6), {}, 1))["values_to_choose"], 0);
+  campaign.most_values = 9;
+  const Plan plan = make_plan(campaign, std::vector<double>(6, 1e6), {}, 1);
+  EXPECT_EQ(plan_json(plan)["values_to_choose"], 3);
+  EXPECT_NE(plan_text(plan).find("may add 3 values of /peclet (/choose), which are not in"),
+            std::string::npos)
+      << plan_text(plan);
 }
 
 // The guess is 3 s for 1e6 particle-steps of the first point, so a seed of each point takes 3 + 6 s.
