@@ -82,11 +82,11 @@ def at_rest(program):
 READINGS = {"pairs": "η_r of pairs", "viscosity": "η_r with 1 + 2.5 φ"}
 
 
-def fit_rows(peclet, name, curve):
+def fit_rows(peclet, name, curve, essential=True):
     """Yields statements about φ_J and λ.
 
     It is not published whether η_r of pairs, as in the figures, or with 1 + 2.5 φ was fitted; the nearer one decides.
-    φ_J is published with three digits, λ as approximate.
+    φ_J is published with three digits, λ as "about 1.5", which is no essential statement.
     """
     jammed, exponent = PUBLISHED[peclet]
     fits = {reading: fit_with_error(curve, reading) for reading in READINGS}
@@ -97,9 +97,9 @@ def fit_rows(peclet, name, curve):
         (found, whole, error, _), (power, _, power_error, _) = fits[reading]
         ends, seeds = (jammed - 0.01, jammed + 0.01), min(r["seeds"] for r in curve) - 1
         text = f"{name}: φ_J of {of} (published: {jammed})"
-        yield Statement(text, "L4.9a", found, error, *ends, seeds, reading == nearer)
+        yield Statement(text, "L4.9a", found, error, *ends, seeds, essential and reading == nearer)
         text = f"{name}: λ of {of} (published: about 1.5)"
-        yield Statement(text, "L4.9a", power, power_error, exponent - 0.2, exponent + 0.2, seeds, reading == nearer)
+        yield Statement(text, "L4.9a", power, power_error, exponent - 0.2, exponent + 0.2, seeds, False)
         text = f"{name}: φ_J of {of}, its error with that by leaving out volume fractions"
         yield Finding(text, "form", found, whole, degrees)
 
@@ -144,7 +144,10 @@ def judge():
     rest, how = rows_at_rest()
     name = f"Pe → 0 ({how})"
     recipe, curves[0] = curves[0], [rest[f] for f in sorted(rest) if f >= FRACTIONS[0]]
-    yield from fit_rows(0, name, curves[0])
+    # The published estimate of the limit is the Green-Kubo integral of the structural stress, plus lubrication. It is
+    # biased for soft spheres, so that the exact limit, by linear response, is another statement.
+    yield from fit_rows(0, "Pe → 0 by the published recipe", recipe)
+    yield from fit_rows(0, name, curves[0], essential=False)
     for reading, of in READINGS.items():  # at rest one exponent does not describe all volume fractions
         value, _, error = fit_with_error(curves[0], reading, jammed_at)[0][:3]
         seeds = min(r["seeds"] for r in curves[0])
@@ -152,10 +155,6 @@ def judge():
     yield from fit_rows(1e4, NAMES[1e4], curves[1e4])
     yield from shift_rows(curves)
     yield from lowest_rows(curves, name)
-    # The published estimate of the limit: the Green-Kubo integral of the structural stress, plus lubrication.
-    for reading, of in READINGS.items():
-        for (value, error, *_), what in zip(fit_with_error(recipe, reading), ("φ_J", "λ")):
-            yield Finding(f"Pe → 0 by the published recipe: {what} of {of}", "L4.9a", value, error, len(recipe) - 2)
     methods = [first(table, method=f"{m} at rate 0.045") for m in ("implicit", "explicit")]
     text = "φ = 0.5, Pe = 10⁴, rate 0.045: η_r with implicit steps over that with explicit ones"
     yield Check(text, "method", *row_ratio(*methods, "viscosity"), 0.9, 1.1, methods[1]["seeds"] - 1)

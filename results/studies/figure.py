@@ -69,6 +69,7 @@ class Panel:
         if grid:
             axes.grid(color=LIGHT_GREY, linewidth=0.6)
         self._ranges, self._step, self._titled = {"x": x_range, "y": y_range}, y_step, []
+        self._words = {}
 
     def points(self, rows, title, colour, mark=7, size=1.0, joined=False, width=1.0):
         """Draws points from rows of (x, y), (x, y, half-width of the bar) or (x, y, lower end, upper end)."""
@@ -105,6 +106,10 @@ class Panel:
             style = {"color": colour, "fontsize": size, "ha": "center", "va": "center"}
             shift = (0, 1.25 * size * above)
             self.axes.annotate(formatted(text), (x, y), shift, textcoords="offset points", **style)
+
+    def words(self, axis, words):
+        """Has words at 0, 1, 2 ... of the axis "x" or "y" in the place of numbers."""
+        self._words[axis] = words
 
     def line(self, rows, title, colour=BLACK, dash=1, width=1.0):
         """Draws straight lines between rows of (x, y)."""
@@ -164,6 +169,10 @@ class Panel:
         """Sets the ranges, the numbers at the axes, and the legend."""
         self.axes.set(xlim=self._ranges["x"], ylim=self._ranges["y"])
         for name, axis in (("x", self.axes.xaxis), ("y", self.axes.yaxis)):
+            if name in self._words:
+                axis.set_ticks(range(len(self._words[name])), self._words[name])
+                axis.set_tick_params(which="both", length=0)
+                continue
             ends = tuple(axis.get_view_interval())
             set_ticks(axis, axis.get_scale() == "log", ends)
             if name in self._powers:
