@@ -17,7 +17,7 @@ namespace peclet::runner {
 // The files of runner/page/assets, and the script that draws figures.
 extern const char* const page_template;  // with @STYLE@, @SCRIPT@ and others where they go
 extern const char* const page_style;
-extern const std::array<const char*, 11> page_scripts;  // in this order
+extern const std::array<const char*, 12> page_scripts;  // in this order
 // python/peclet/drawing.py. With `FIGURE = ...` and `main(FIGURE)` behind it, it draws that figure.
 extern const char* const drawing_script;
 

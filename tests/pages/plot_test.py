@@ -190,6 +190,42 @@ class Curves(PageTest):
     def export(self):
         return json.loads(Stage.folder.peclet("export", "start.json"))
 
+    def on_page(self, quantity, *choices):
+        """Returns the rows of the page's figure after these choices (list, beginning of its entry)."""
+        page = self.open("start.json.html")
+        choose(page, "#quantity", quantity)
+        for select, text in choices:
+            choose(page, select, text)
+        return rows(saved(page, "#sweep", "CSV"))
+
+    def test_are_scaled_on_the_page_as_by_plot(self):
+        drawn = self.draw("--quantity", "pressure", "--scale-y", "thermal_stress", "--over", "brownian_time")
+        page = self.on_page("pressure", ("#scale-y", "/ thermal stress"), ("#axis", "Brownian time"))
+        expected = {point["label"]: point for point in drawn["points"]}
+        self.assertEqual({row["label"] for row in page}, set(expected))
+        for row in page:
+            self.assertEqual(row["quantity"], "pressure / (k_B T / a^3)")
+            for name in ("mean", "standard_error", "half_width"):
+                self.assertAlmostEqual(float(row[name]) / expected[row["label"]][name], 1, places=9)
+
+    def test_along_an_axis_are_scaled_on_the_page_as_by_plot(self):
+        words = ["--quantity", "transient/shear_stress", "--scale-y", "thermal_stress"]
+        drawn = points_of(self.draw(*words))
+        found = {}
+        for row in self.on_page("transient, shear stress", ("#scale-y", "/ thermal stress")):
+            found.setdefault(row["label"], []).append(float(row["mean"]))
+        self.assertEqual(set(found), set(drawn))
+        for label, numbers in found.items():
+            for ours, given in zip(numbers, drawn[label]["mean"], strict=True):
+                self.assertAlmostEqual(ours / given, 1, places=9)
+
+    def test_of_two_quantities_are_in_one_frame_of_the_page(self):
+        page = self.on_page("first normal difference", ("#second", "second normal difference"))
+        drawn = self.draw("--quantity", "first_normal_difference", "--quantity", "second_normal_difference")
+        expected = {(point["label"], point["quantity"]): point["mean"] for point in drawn["points"]}
+        found = {(row["label"], row["quantity"]): float(row["mean"]) for row in page}
+        self.assertEqual(found, expected)
+
     def test_are_those_of_the_page(self):
         page = self.open("start.json.html")
         choose(page, "#quantity", "transient, shear stress")

@@ -11,6 +11,8 @@ class Sweep {
     const first = this.parameters
       .filter((one) => one.numeric && one.values.length > 1)
       .reduce((best, one) => (!best || one.values.length > best.values.length ? one : best), null);
+    this.derived = new Derived(data);
+    this.axes = [...this.parameters, ...this.derived.axes()];
     this.usual = first || this.parameters.find((one) => one.values.length > 1) || this.parameters[0];
   }
 
@@ -103,7 +105,8 @@ class Sweep {
       for (const profile of (point.details || Live.known(point) || { profiles: [] }).profiles) {
         if (drawn.some((one) => one.id === profile.name)) continue;
         const about = Format.quantity({ ...profile, element: '' });
-        drawn.push({ id: profile.name, indices: [], isCurve: true, about, group: 'along an axis' });
+        const unitAlong = Format.unit(profile.axis.unit);
+        drawn.push({ id: profile.name, indices: [], isCurve: true, about, unitAlong, group: 'along an axis' });
       }
     }
     const order = ['target', 'measured', 'along an axis', 'split by term', 'components', 'control variates'];
@@ -132,9 +135,20 @@ class Sweep {
     return [...name, ...Format.parts(` = ${cell}`)];
   }
 
+  // Returns the choice of one more quantity in the same frame.
+  static with(choice, other) {
+    return {
+      ...choice,
+      id: `${choice.id} and ${other.id}`,
+      indices: [...choice.indices, ...other.indices],
+      about: { words: `${choice.about.words}; ${other.about.words}`, symbol: [], unit: choice.about.unit },
+    };
+  }
+
   // Returns the figure of a choice over `axis`, with a panel for each combination of values of `panelBy`. The numbers
-  // decide whether scales are logarithmic, unless log.x or log.y is given.
-  figure(choice, axis, panelBy, log = {}, stacked = false) {
+  // decide whether scales are logarithmic, unless log.x or log.y is given. `scale.x` and `scale.y` are of Derived.scales(),
+  // or absent.
+  figure(choice, axis, panelBy, log = {}, stacked = false, scale = {}) {
     const { quantities } = this.data,
       panels = new Map(),
       series = new Map(),
@@ -143,7 +157,11 @@ class Sweep {
     const others = this.others(axis).filter((one) => !panelBy.includes(one)),
       terms = choice.indices.length > 1;
     const joined = (list) => list.flatMap((parts, i) => [...(i ? Format.parts(', ') : []), ...parts]);
-    const term = (index) => Format.words(quantities[index].name.split('/').slice(1).join('/'));
+    const term = (index) =>
+      choice.group === 'split by term'
+        ? Format.words(quantities[index].name.split('/').slice(1).join('/'))
+        : Format.quantity(quantities[index]).words;
+    const along = (x, i) => (scale.x ? x * scale.x.factors[i] : x);
     let absent = 0;
     this.points.forEach((point, i) => {
       for (const index of choice.indices) {
@@ -153,7 +171,13 @@ class Sweep {
           absent += 1;
           continue;
         }
-        const [y, error, half, count] = known ? point.estimates[index] : [null, null, null, endings.ended],
+        const factor = scale.y ? scale.y.factors[i] : 1,
+          scaled = (value) => (Format.isNumber(value) ? factor * value : value),
+          measured = known ? point.estimates[index] : [null, null, null, endings.ended],
+          [y, error, half] = measured.slice(0, 3).map(scaled),
+          count = measured[3],
+          own = point.curve[quantities[index].path],
+          curve = own && Object.fromEntries(Object.entries(own).map(([name, value]) => [name, scaled(value)])),
           kind = Sweep.kind(point),
           { path } = quantities[index];
         const number = known ? Format.withError(y, half) : 'no number',
@@ -168,20 +192,21 @@ class Sweep {
           name = joined(terms ? [Format.parts(term(index)), ...named] : named),
           id = JSON.stringify(name);
         if (!series.has(id)) series.set(id, { series: series.size, name });
-        const x = axis.numeric ? axis.cells[i] : axis.values.indexOf(axis.cells[i]);
+        const x = axis.numeric ? along(axis.cells[i], i) : axis.values.indexOf(axis.cells[i]);
         panels.get(key).marks.push({
           series: series.get(id).series,
           x,
           y,
           half,
-          allowed: point.good_enough[path],
-          curve: point.curve[path],
+          allowed: scaled(point.good_enough[path]),
+          curve,
           kind,
           point: i,
           text: `${point.label}${terms ? `, ${term(index)}` : ''}: ${number} (${Format.counted(count, 'seed')}, ${state})`,
         });
         kinds.add(kind);
-        const row = [point.label, ...this.parameters.map((one) => one.cells[i]), path, y, error, half, count];
+        const shown = path + (scale.y ? scale.y.text : '');
+        const row = [point.label, ...this.parameters.map((one) => one.cells[i]), shown, y, error, half, count];
         rows.push([...row, endings.has_jammed ? `${point.state}, jammed` : point.state]);
       }
     });
@@ -190,7 +215,7 @@ class Sweep {
     const list = [...panels.values()].sort(inOrder);
     const marks = list.flatMap((panel) => panel.marks);
     const scales = {
-      x: axis.numeric && (log.x ?? isLogarithmic(axis.values)),
+      x: axis.numeric && (log.x ?? isLogarithmic(scale.x ? [...new Set(axis.cells.map(along))] : axis.values)),
       y: !stacked && (log.y ?? isLogarithmic(Chart.reached(list, false))),
     };
     const total = stacked ? choice.indices.findIndex((index) => quantities[index].name.endsWith('/total')) : -1;
@@ -209,8 +234,8 @@ class Sweep {
       panels: list,
       notes,
       pick: true,
-      x: { about: axis.about, log: scales.x, categories: axis.numeric ? null : axis.values },
-      y: { about: choice.about, log: scales.y },
+      x: { about: Derived.scaled(axis.about, scale.x), log: scales.x, categories: axis.numeric ? null : axis.values },
+      y: { about: Derived.scaled(choice.about, scale.y), log: scales.y },
       legend:
         series.size > 1
           ? [...series.values()].map((one) => (stacked && one.series !== total ? { ...one, kind: 'column' } : one))
@@ -239,7 +264,7 @@ class Sweep {
 
   // Returns the figure of a quantity along its own axis, as over_axis() of drawing.py makes it: a curve for each point
   // whose details are known, with shades instead of colours if they are many and in an order.
-  curves(choice, panelBy, log = {}) {
+  curves(choice, panelBy, log = {}, scale = {}) {
     const by = this.distinguishing(),
       isMany = this.points.length > Svg.colours,
       isShaded = isMany && by.length === 1 && by[0].numeric,
@@ -280,7 +305,15 @@ class Sweep {
       if (!panels.has(key)) panels.set(key, { title, marks: [], lines: [], bands: [] });
       const panel = panels.get(key),
         empty = { axis: { values: [] }, mean: [], half_width: [], standard_error: [] },
-        drawn = isKnown ? profile : empty,
+        times = (of, value) => (of && Format.isNumber(value) ? value * of.factors[i] : value),
+        scaled = (of, values) => values.map((value) => times(of, value)),
+        whole = isKnown ? profile : empty,
+        drawn = {
+          axis: { values: scaled(scale.x, whole.axis.values) },
+          mean: scaled(scale.y, whole.mean),
+          half_width: scaled(scale.y, whole.half_width),
+          standard_error: scaled(scale.y, whole.standard_error),
+        },
         curve = DetailsView.curve(drawn.axis.values, drawn);
       for (const line of curve.lines)
         panel.lines.push({ ...line, ...look, style: kind === 'provisional' ? 'dashed' : 'line' });
@@ -292,7 +325,7 @@ class Sweep {
       if (kind === 'jammed' || kind === 'provisional') kinds.add(kind);
       drawn.axis.values.forEach((x, k) => {
         const cells = this.parameters.map((one) => one.cells[i]);
-        rows.push([point.label, ...cells, choice.id, x, drawn.mean[k], drawn.standard_error[k], drawn.half_width[k]]);
+        rows.push([point.label, ...cells, choice.id + (scale.y ? scale.y.text : ''), x, drawn.mean[k], drawn.standard_error[k], drawn.half_width[k]]);
       });
     }
     const list = [...panels.values()],
@@ -308,8 +341,11 @@ class Sweep {
       name: `${this.data.campaign} ${choice.id}`,
       panels: list,
       notes: absent ? [`Points without this quantity yet are left out: ${absent}.`] : [],
-      x: { about: axis ? Format.about(Format.words(axis.name), Format.unit(axis.unit)) : Format.about(''), log: scales.x },
-      y: { about: choice.about, log: scales.y },
+      x: {
+        about: Derived.scaled(axis ? Format.about(Format.words(axis.name), Format.unit(axis.unit)) : Format.about(''), scale.x),
+        log: scales.x,
+      },
+      y: { about: Derived.scaled(choice.about, scale.y), log: scales.y },
       legend: names.length > 1 ? names.filter((_, i) => i % step === 0) : [],
       kinds: [...kinds],
       hasBand: list.some((panel) => panel.bands.length),
@@ -414,7 +450,8 @@ class Sweep {
 // The chart over the sweep, with its controls.
 class SweepView {
   constructor(host, onPick) {
-    [this.quantity, this.axis, this.panels] = ['quantity', 'axis', 'panels'].map((id) => {
+    const ids = ['quantity', 'second', 'axis', 'panels', 'scale-y', 'scale-x'];
+    [this.quantity, this.second, this.axis, this.panels, this.scaleY, this.scaleX] = ids.map((id) => {
       const select = Page.select([], () => (id === 'panels' ? this.draw() : this.renew()));
       select.id = id;
       return select;
@@ -436,7 +473,10 @@ class SweepView {
       'div',
       { className: 'controls' },
       Page.labelled('Quantity', this.quantity),
+      (this.secondLabel = Page.labelled('and', this.second)),
+      (this.scaleYLabel = Page.labelled('in', this.scaleY)),
       Page.labelled('Over', this.axis),
+      (this.scaleXLabel = Page.labelled('in', this.scaleX)),
       Page.labelled('Panels', this.panels),
       scales,
     );
@@ -454,7 +494,8 @@ class SweepView {
       option = (one, i) => [String(i), Format.option(one.about)];
     const quantities = this.choices.map((one, i) => [...option(one, i), one.group]);
     Page.refill(this.quantity, quantities);
-    Page.refill(this.axis, sweep.parameters.map(option));
+    const derived = (one, i) => [...option(one, i), i < sweep.parameters.length ? 'swept' : 'follows from the scene'];
+    Page.refill(this.axis, sweep.axes.length > sweep.parameters.length ? sweep.axes.map(derived) : sweep.axes.map(option));
     Page.refill(this.panels, [['usual', 'automatic'], ['none', 'none'], ...sweep.parameters.map(option)]);
     if (isFirst) this.axis.value = String(sweep.parameters.indexOf(sweep.usual));
     this.draw();
@@ -466,10 +507,38 @@ class SweepView {
     this.draw();
   }
 
+  // Returns the chosen quantity, with the second one if there is one; nothing without a quantity.
+  chosen() {
+    const choice = this.choices[Number(this.quantity.value)],
+      isSingle = choice && choice.indices.length === 1;
+    const fitting = isSingle
+      ? this.choices.filter((one) => one !== choice && one.indices.length === 1 && one.about.unit === choice.about.unit)
+      : [];
+    Page.refill(this.second, [['', 'nothing else'], ...fitting.map((one) => [one.id, Format.option(one.about)])]);
+    this.secondLabel.hidden = fitting.length === 0;
+    const other = fitting.find((one) => one.id === this.second.value);
+    return other ? Sweep.with(choice, other) : choice;
+  }
+
+  // Returns the chosen scales of numbers in these units, and offers those that there are.
+  scale(unitY, unitX) {
+    const found = {};
+    for (const [name, select, label, unit] of [
+      ['y', this.scaleY, this.scaleYLabel, unitY],
+      ['x', this.scaleX, this.scaleXLabel, unitX],
+    ]) {
+      const scales = this.sweep.derived.scales(unit || '');
+      Page.refill(select, [['', unit || 'its unit'], ...scales.map((one) => [one.id, one.option])]);
+      label.hidden = scales.length === 0;
+      found[name] = scales.find((one) => one.id === select.value);
+    }
+    return found;
+  }
+
   draw() {
     const { sweep } = this,
-      choice = this.choices[Number(this.quantity.value)],
-      axis = sweep.parameters[Number(this.axis.value)];
+      axis = sweep.axes[Number(this.axis.value)];
+    const choice = this.chosen();
     const chosen = sweep.parameters[Number(this.panels.value)],
       by =
         this.panels.value === 'usual'
@@ -489,7 +558,7 @@ class SweepView {
     this.stacking.hidden = choice.indices.length < 2;
     this.stacked.disabled = !canStack;
     const log = this.setByHand ? { x: this.logX.checked, y: this.logY.checked } : {},
-      figure = sweep.figure(choice, axis, by, log, stacked);
+      figure = sweep.figure(choice, axis, by, log, stacked, this.scale(choice.about.unit, axis.numeric ? axis.about.unit : ''));
     this.logY.disabled = stacked;
     this.logX.checked = figure.x.log;
     this.logY.checked = figure.y.log;
@@ -510,7 +579,7 @@ class SweepView {
       chosen = sweep.parameters[Number(this.panels.value)],
       by = this.panels.value === 'usual' ? null : [chosen].filter(Boolean),
       log = this.setByHand ? { x: this.logX.checked, y: this.logY.checked } : {},
-      figure = sweep.curves(choice, by, log);
+      figure = sweep.curves(choice, by, log, this.scale(choice.about.unit, choice.unitAlong));
     this.stacking.hidden = true;
     this.logX.disabled = this.logY.disabled = false;
     [this.logX.checked, this.logY.checked] = [figure.x.log, figure.y.log];
