@@ -77,7 +77,8 @@ class Rules(PageTest):
             for form in ("a", "b")
         ]
         key = {"meaning": "", "words": "", "symbol": "", "unit": ""}
-        data = {"points": points, "parameters": [{"pointer": p, **key} for p in ("/phi", "/count", "/form")]}
+        parameters = [{"pointer": p, **key} for p in ("/phi", "/count", "/form")]
+        data = {"points": points, "parameters": parameters, "derived": []}
         names = page.evaluate(
             f"""(sweep => [sweep.usual.pointer, sweep.others(sweep.usual).map(one => one.pointer),
             sweep.parameters[2].numeric])(new Sweep({json.dumps(data)}))"""

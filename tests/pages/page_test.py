@@ -121,12 +121,29 @@ class Controls(PageTest):
         drawn = page.evaluate(
             """(() => { const lists = ['quantity', 'axis', 'panels'].map(id => document.getElementById(id));
             let drawn = 0;
-            for (const quantity of lists[0].options) for (const axis of lists[1].options)
+            for (const quantity of lists[0].options) for (const axis of [...lists[1].options].slice(0, 2))
             for (const panels of lists[2].options) {
                 [quantity, axis, panels].forEach((entry, i) => { lists[i].value = entry.value; });
                 lists[0].dispatchEvent(new Event('change'));
                 for (const box of ['log-x', 'log-y', 'log-x', 'log-y']) document.getElementById(box).click();
                 drawn += document.querySelectorAll('#sweep svg .mark').length > 0;
+            } return drawn; })()"""
+        )
+        self.assertGreater(drawn, 200)
+        drawn = page.evaluate(
+            """(() => { let drawn = 0;
+            const choose = (id, value) => {
+                const list = document.getElementById(id);
+                list.value = value;
+                list.dispatchEvent(new Event('change'));
+                drawn += document.querySelectorAll('#sweep svg .mark').length > 0;
+            };
+            const values = id => [...document.getElementById(id).options].map(one => one.value);
+            for (const quantity of values('quantity')) {
+                choose('quantity', quantity);
+                for (const id of ['second', 'scale-y', 'scale-x', 'axis'])
+                    for (const value of values(id)) choose(id, value);
+                for (const id of ['second', 'scale-y', 'scale-x', 'axis']) choose(id, values(id)[0]);
             } return drawn; })()"""
         )
         self.assertGreater(drawn, 200)
