@@ -10,18 +10,14 @@ from studies.driver import BLACK, BLUE, Check, Figure, Finding, GREEN, GREY, JAM
 from studies.driver import SLOWEST, Statement, TABLE_SCENE, diverging, during, entries, estimate, first, log_minimum
 from studies.driver import logarithm, main, merged, number, over, propagated, propagated_lists, quotient, read_rows
 from studies.driver import row_ratio, rows_at_rest, table_at_rest, term, viscosity_row, where, write_table
+import costs
 import numpy as np
+from scipy.stats import t
 
 TITLE = "Flow curves of Brownian suspensions"
 FRACTIONS = (0.45, 0.50, 0.55)
 SOURCES = {0.45: "L4.5a", 0.50: "L4.5b", 0.55: "L4.5c"}
-# Campaigns: Peclet numbers, seeds, window [Brownian times].
-CAMPAIGNS = {
-    "flow-curve": ((1, 4.6, 22, 100, 460, 2200, 1e4), 16, 40),
-    "flow-curve-0.22": ((0.22,), 16, 60),
-    "flow-curve-0.046": ((0.046,), 16, 200),
-    "flow-curve-0.01": ((0.01,), 8, 400),
-}
+CURVES, WITHOUT_NOISE = ("curves", "curve-55"), "without-noise"  # campaigns in this folder, of 1000 spheres
 STIFFNESSES, STIFFNESS_PECLET = (2.5e3, 1e4, 4e4), (1, 1e4)
 
 
@@ -42,20 +38,35 @@ def controlled_contact(mean):
     return mean["relative_viscosity_pair"] - term(mean, "lubrication")
 
 
+def row_of(point, fraction, stiffness, peclet):
+    means = point.means
+    row = {"fraction": fraction, "stiffness": stiffness, "peclet": peclet} | viscosity_row(point)
+    row |= entries("controlled_contact", estimate([controlled_contact(m) for m in means]))
+    row |= entries("structural_over_contact", structural_over(means, controlled_contact))
+    return row | entries("structural_over_plain_contact", structural_over(means, plain_contact))
+
+
 def rows_of(program, name, cases, seeds, patch=None):
     """Returns rows for cases (fraction, stiffness, Peclet number)."""
     settings = [{"/volume_fraction": f, "/contact/normal_stiffness": k, "/peclet": p} for f, k, p in cases]
-    rows = []
-    for case, point in zip(cases, program.run(name, merged(TABLE_SCENE, patch or {}), settings, seeds)):
-        means = point.means
-        row = dict(zip(("fraction", "stiffness", "peclet"), case)) | viscosity_row(point)
-        row |= entries("controlled_contact", estimate([controlled_contact(m) for m in means]))
-        row |= entries("structural_over_contact", structural_over(means, controlled_contact))
-        rows.append(row | entries("structural_over_plain_contact", structural_over(means, plain_contact)))
-    return rows
+    points = program.run(name, merged(TABLE_SCENE, patch or {}), settings, seeds)
+    return [row_of(point, *case) for case, point in zip(cases, points)]
 
 
-USUAL = {"method": "implicit", "count": 250, "stiffness": 1e4}
+def rows_of_curves(program):
+    """Returns the rows of the curves, without their points at rest."""
+    points = [point for name in CURVES for point in program.run_file(HERE / f"{name}.json")]
+    places = [(point["settings"]["/volume_fraction"], 1e4, point["settings"]["/peclet"]) for point in points]
+    return [row_of(point, *place) for place, point in zip(places, points) if place[-1] > 0]
+
+
+def rows_without_noise(program):
+    points = program.run_file(HERE / f"{WITHOUT_NOISE}.json")
+    return [row_of(point, point["settings"]["/volume_fraction"], 1e4, math.inf) for point in points]
+
+
+USUAL = {"method": "implicit", "stiffness": 1e4}
+COUNT = {0.45: 250, 0.50: 250, 0.55: 1000}  # number of spheres of the curves in the table
 LOWEST = 4.6  # Peclet number of the published minimum
 FOSS_AND_BRADY = 0.45  # volume fraction compared with theirs, up to 0.49 (abstract): J. Fluid Mech. 407, 167 (2000)
 KNOWN = 0.22  # below this Peclet number errors are as large as the differences between points
@@ -146,10 +157,10 @@ def rest_rows(curves):
 
 
 def high_rows(curves):
-    """Yields statements about Pe = 10^4 against the same suspensions without noise, from the study literature."""
-    steady = read_rows(HERE.parent / "literature" / "table.csv")
+    """Yields statements about Pe = 10^4 against the same suspensions without noise."""
+    table = read_rows(HERE / "table.csv")
     for fraction, curve in curves.items():
-        bare = first(steady, method="implicit", fraction=fraction, friction=0, gap=0.05)
+        bare = first(table, method=WITHOUT_NOISE, fraction=fraction)
         found = row_ratio(curve.at[1e4], bare, "pairs")
         yield curve.row(Statement, "η_r of pairs at Pe = 10⁴ over that without noise", found, low=0.9, high=1.1)
     noisy = read_rows(HERE.parent / "literature" / "peclet.csv")
@@ -161,14 +172,18 @@ def high_rows(curves):
 
 def comparison_rows(table):
     """Yields statements that viscosities do not depend on stiffness, particle number and method."""
-    for row in where(table, method="implicit", count=250):
+    small = where(table, method="implicit", count=250)
+    large = {row["peclet"]: row for row in where(table, **USUAL, count=1000, fraction=0.45)}
+    for row in where(small, fraction=0.5):
         if row["stiffness"] != 1e4:
             text = f"φ = 0.5, Pe = {row['peclet']:g}: η_r at k_n = {row['stiffness']:g} over that at 10⁴"
-            ratio = row_ratio(row, first(table, **USUAL, fraction=0.5, peclet=row["peclet"]), "viscosity")
+            ratio = row_ratio(row, first(small, fraction=0.5, stiffness=1e4, peclet=row["peclet"]), "viscosity")
             yield Statement(text, "L4.5b", *ratio, 0.95, 1.05, row["seeds"] - 1)
-    for row in where(table, method="implicit", count=1000):
+    for row in where(small, fraction=0.45):
+        if row["peclet"] not in large:
+            continue
         text = f"φ = 0.45, Pe = {row['peclet']:g}: η_r with N = 1000 over that with 250"
-        ratio = row_ratio(row, first(table, **USUAL, fraction=0.45, peclet=row["peclet"]), "viscosity")
+        ratio = row_ratio(large[row["peclet"]], row, "viscosity")
         yield Check(text, "N", *ratio, 0.95, 1.05, row["seeds"] - 1)
     text = "φ = 0.45, Pe = 100, rate 0.045: η_r with implicit steps over that with explicit ones"
     implicit, explicit = (first(table, method=f"{m} at rate 0.045") for m in ("implicit", "explicit"))
@@ -177,7 +192,7 @@ def comparison_rows(table):
 
 def curves_of_table():
     table = read_rows(HERE / "table.csv")
-    return {f: Curve(where(table, **USUAL), f) for f in FRACTIONS}, table
+    return {f: Curve(where(table, **USUAL, count=COUNT[f]), f) for f in FRACTIONS}, table
 
 
 def judge():
@@ -195,20 +210,18 @@ def measure(program):
     if not program.long:
         print("flow-curve: rows are made of Pe = 0.046 and 0.01, too, which take an hour: say --long", file=sys.stderr)
         sys.exit(2)
-    rows = []
-    for name, (peclets, seeds, times) in CAMPAIGNS.items():
-        patch = {"duration": {"production": {"brownian_times": times}}}
-        rows += rows_of(program, name, [(f, 1e4, p) for f in FRACTIONS for p in peclets], seeds, patch)
-    cases = [(0.5, k, p) for k in STIFFNESSES if k != 1e4 for p in STIFFNESS_PECLET]
-    stiffness = rows_of(program, "stiffness", cases, 16)
-    large = rows_of(program, "large", [(0.45, 1e4, p) for p in (100, 1e4)], 8, {"particles": {"count": 1000}})
+    curves, bare = rows_of_curves(program), rows_without_noise(program)
+    costs.write_curves(program.peclet, Path(program.folder))
+    cases = [(0.5, k, p) for k in STIFFNESSES for p in STIFFNESS_PECLET] + [(0.45, 1e4, p) for p in (100, 1e4)]
+    small = rows_of(program, "small", cases, 16)
     methods = {}
     for method in ("implicit", "explicit"):
         patch = {"limits": {"shear_rate": 0.045}, "integrator": {"method": method}}
         methods[method] = rows_of(program, method, [(0.45, 1e4, 100)], 6, patch)[0]
 
-    table = [{"method": "implicit", "count": 250, **r} for r in rows + stiffness]
-    table += [{"method": "implicit", "count": 1000, **r} for r in large]
+    table = [{"method": "implicit", "count": 1000, **r} for r in curves]
+    table += [{"method": WITHOUT_NOISE, "count": 1000, **r} for r in bare]
+    table += [{"method": "implicit", "count": 250, **r} for r in small]
     table += [{"method": f"{m} at rate 0.045", "count": 250, **r} for m, r in methods.items()]
     names = "method, count, fraction, stiffness, peclet, seeds, lost, transient, viscosity±, pairs±, lubrication±, "
     names += "contact±, controlled_contact±, structural±, structural_over_contact±, structural_over_plain_contact±"
@@ -216,9 +229,10 @@ def measure(program):
 
 
 def draw_overview():
-    """Draws η_r of the curves that were run to 5 %, with intervals of the points and bands; rest is at the left."""
+    """Draws η_r of the curves, with intervals of the points and bands; rest is at the left, no noise at the right."""
     figure = Figure(HERE / "overview.png", columns=1, size=(1000, 460))
-    ends = {"x_range": (3.5e-3, 2e4), "y_range": (3, 130)}
+    ends = {"x_range": (3.5e-3, 4e4), "y_range": (3, 130)}
+    bare = {row["fraction"]: row for row in where(read_rows(HERE / "table.csv"), method=WITHOUT_NOISE)}
     titles = "Péclet number Pe (shear over Brownian motion)", "relative viscosity η_r"
     panel = figure.panel(*titles, log="xy", powers="x", **ends)
     table = read_rows(HERE / "curve.csv")
@@ -231,6 +245,9 @@ def draw_overview():
         panel.line([(row["peclet"], row["curve"]) for row in flowing], None, colour)
         rest = [(5e-3, row["viscosity"], row["half_width"]) for row in rows if row["peclet"] == 0]
         panel.points(rest, "at rest" if colour == BLUE else None, colour, 6)
+        value, error = number(bare[fraction], "viscosity")
+        half = t.ppf(0.975, bare[fraction]["seeds"] - 1) * error
+        panel.points([(2.5e4, value, half)], "without noise" if colour == BLUE else None, colour, 4)
     figure.draw()
 
 

@@ -5,6 +5,7 @@ import json
 import math
 import operator
 import os
+import shutil
 import sqlite3
 import subprocess
 import sys
@@ -113,7 +114,13 @@ class Program:
         `settings` are dictionaries of values by JSON pointer. `observable` may be any number of the results. `options`
         are further options of `peclet run`.
         """
-        path = self.write(name, scene, settings, seeds, observable)
+        return self._carry_out(name, self.write(name, scene, settings, seeds, observable), options)
+
+    def run_file(self, path):
+        """Runs a copy of a campaign file in the folder and returns the Points of the export."""
+        return self._carry_out(path.stem, shutil.copy(path, self.folder))
+
+    def _carry_out(self, name, path, options=()):
         # Exit code 3: some points lost seeds, which studies accept.
         carry_out([self.peclet, "run", path, "--quiet", *options], allowed=(0, 3))
         export = json.loads(ask(self.peclet, "export", path))

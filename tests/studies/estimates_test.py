@@ -253,8 +253,8 @@ class AtRest(unittest.TestCase):
 
     SLOW = (
         "method,count,fraction,peclet,seeds,pairs,pairs_error\n"
-        "implicit,250,0.45,0.046,16,5.5,0.4\nimplicit,250,0.45,0.01,8,4.4,1.3\nimplicit,1000,0.45,0.046,8,9,1\n"
-        "explicit,250,0.45,0.046,8,9,1\n"
+        "implicit,1000,0.45,0.046,16,5.5,0.4\nimplicit,1000,0.45,0.01,8,4.4,1.3\nimplicit,250,0.45,0.046,8,9,1\n"
+        "explicit,1000,0.45,0.046,8,9,1\n"
     )
     EXACT = (
         "fraction,count,step,by,seeds,viscosity,viscosity_error\n0.5,100,automatic,momentum,60,15.25,0.5\n"
