@@ -21,6 +21,7 @@ SMALL_SCENE = {
     "fluid": {"viscosity": 0.1},
     "flow": {"shear_rate": 2},
     "contact": {"normal_stiffness": 1e4},
+    "guard": {"largest_overlap": 0.1},  # so that no seed is lost
     "lubrication": {"form": "kim-karrila", "inner_gap": 0.03, "outer_gap": 0.1},
     "integrator": {"method": "implicit"},
     "duration": {"equilibration": {"strain": 0.3}, "production": {"strain": 3}},

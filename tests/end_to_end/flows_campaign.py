@@ -27,6 +27,7 @@ SCENE = {
         "species": [{"radius": 1, "number_share": 1}, {"radius": 1.4, "number_share": 1}],
     },
     "volume_fraction": 0.4,
+    "guard": {"largest_overlap": 0.1},  # so that no seed is lost
     "fluid": {"viscosity": 1},
     "contact": {"normal_stiffness": 2e4, "friction": 0.5},
     "lubrication": {"form": "kim-karrila", "inner_gap": 0.001, "outer_gap": 0.05},
