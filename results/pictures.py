@@ -126,7 +126,7 @@ def published_viscosity(path):
 
 def timestep_gate(path):
     figure = Figure(path, columns=1, size=(900, 420))
-    labels = "step over the bound of the packing", "η_r differs from that at a small step by [%]"
+    labels = "step over the bound of the packing", "change of η_r from a small step [%], at least 0.005"
     panel = figure.panel(*labels, log="y", y_range=(3e-3, 100), key="top left")
     rows = [row for row in page_table("timestep-gate", "η_r differs by, %") if numbers(row["η_r differs by, %"])]
     last = "gate, apart from the scene's bound"

@@ -337,17 +337,15 @@ namespace {
 
 // Warns if a given stress presses contacts together by more than a result is flagged for (overlap).
 void warn_of_soft_contacts_under_stress(const Scene& scene, std::vector<Warning>& warnings) {
-  // The mean overlap over a is 14 to 15 times stress a / k_n at phi = 0.45 and 0.56 (friction 0.5, radii 1
-  // and 1.4, k_n from 10^4 to 10^5 stress a).
+  // The mean overlap over a is 14 to 15 times stress a / k_n at phi = 0.45 and 0.56 (results/stress-control).
   constexpr double overlap_by_stress = 15, most = 1e-3;
   const double stress = scene.physics.flow.deformation().at_stress()->stress();
   const double overlap =
       overlap_by_stress * stress * scene.particles.reference_radius / scene.physics.contact->normal_stiffness;
   if (overlap <= most) return;
   warn(warnings, "soft",
-       "spheres are soft: the stress presses contacts together by about {:.2g} of a radius, more than {:g}, "
-       "so "
-       "that spheres take up less than their volume fraction; a larger normal_stiffness cures it",
+       "spheres are soft: the stress presses contacts together by about {:.2g} of a radius, more than "
+       "{:g}, so that spheres take up less than their volume fraction; a larger normal_stiffness cures it",
        overlap, most);
 }
 
@@ -362,10 +360,9 @@ void warn_of_soft_contacts_with_noise(const Scene& scene, std::vector<Warning>& 
   const double gaps = overlap / physics.lubrication->inner_gap;
   if (gaps < most) return;
   warn(warnings, "soft",
-       "thermal motion presses spheres together by sqrt(k_B T / k_n) = {:.2g} of a radius, {:.2g} of the "
-       "inner "
-       "gap, so that friction acts where hard spheres do not touch: see whether four times the "
-       "normal_stiffness changes the viscosity",
+       "thermal motion presses spheres together by sqrt(k_B T / k_n) = {:.2g} of a radius, {:.2g} of "
+       "the inner gap, so that friction acts where hard spheres do not touch: see whether four times "
+       "the normal_stiffness changes the viscosity",
        overlap, gaps);
 }
 

@@ -66,7 +66,6 @@ def rows_without_noise(program):
 
 
 USUAL = {"method": "implicit", "stiffness": 1e4}
-COUNT = {0.45: 250, 0.50: 250, 0.55: 1000}  # number of spheres of the curves in the table
 LOWEST = 4.6  # Peclet number of the published minimum
 FOSS_AND_BRADY = 0.45  # volume fraction compared with theirs, up to 0.49 (abstract): J. Fluid Mech. 407, 167 (2000)
 KNOWN = 0.22  # below this Peclet number errors are as large as the differences between points
@@ -191,8 +190,11 @@ def comparison_rows(table):
 
 
 def curves_of_table():
+    """Returns the curves with the most spheres, by volume fraction, and the table."""
     table = read_rows(HERE / "table.csv")
-    return {f: Curve(where(table, **USUAL, count=COUNT[f]), f) for f in FRACTIONS}, table
+    rows = where(table, **USUAL)
+    most = {f: max(row["count"] for row in where(rows, fraction=f, peclet=SLOWEST)) for f in FRACTIONS}
+    return {f: Curve(where(rows, count=most[f]), f) for f in FRACTIONS}, table
 
 
 def judge():

@@ -219,6 +219,19 @@ class Curves(PageTest):
             for ours, given in zip(numbers, drawn[label]["mean"], strict=True):
                 self.assertAlmostEqual(ours / given, 1, places=9)
 
+    def test_stacked_parts_of_a_scaled_sum_add_up_to_it(self):
+        page = self.open("start.json.html")
+        choose(page, "#quantity", "stress by term, xy")
+        choose(page, "#scale-y", "/ thermal stress")
+        self.assertTrue(page.evaluate("document.getElementById('stacked').checked"))
+        panels = json.loads(page.evaluate("JSON.stringify(campaign.sweep.chart.figure.panels)"))
+        sums = [(panel, mark) for panel in panels for mark in panel["marks"]]
+        self.assertEqual(len(sums), 4)
+        for panel, mark in sums:
+            parts = [one for one in panel["columns"] if one["from"] < mark["x"] < one["to"]]
+            total = sum(one["high"] - one["low"] if one["high"] > 0 else one["low"] - one["high"] for one in parts)
+            self.assertAlmostEqual(total / mark["y"], 1, places=6)
+
     def test_of_two_quantities_are_in_one_frame_of_the_page(self):
         page = self.on_page("first normal difference", ("#second", "second normal difference"))
         drawn = self.draw("--quantity", "first_normal_difference", "--quantity", "second_normal_difference")

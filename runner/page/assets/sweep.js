@@ -198,6 +198,7 @@ class Sweep {
           x,
           y,
           half,
+          factor,
           allowed: scaled(point.good_enough[path]),
           curve,
           kind,
@@ -325,7 +326,8 @@ class Sweep {
       if (kind === 'jammed' || kind === 'provisional') kinds.add(kind);
       drawn.axis.values.forEach((x, k) => {
         const cells = this.parameters.map((one) => one.cells[i]);
-        rows.push([point.label, ...cells, choice.id + (scale.y ? scale.y.text : ''), x, drawn.mean[k], drawn.standard_error[k], drawn.half_width[k]]);
+        const shown = choice.id + (scale.y ? scale.y.text : '');
+        rows.push([point.label, ...cells, shown, x, drawn.mean[k], drawn.standard_error[k], drawn.half_width[k]]);
       });
     }
     const list = [...panels.values()],
@@ -377,9 +379,10 @@ class Sweep {
     for (const { marks } of panels) {
       for (const mark of marks.filter((one) => one.series === total && Format.isNumber(one.y))) {
         const plain = this.points[mark.point].plain[path];
-        if (!plain || plain[0] === mark.y) continue;
-        const text = `${this.points[mark.point].label}, control variate: ${Format.rough(mark.y - plain[0])}`;
-        marks.push({ ...mark, series: place, y: mark.y - plain[0], half: null, text });
+        if (!plain || plain[0] * mark.factor === mark.y) continue;
+        const y = mark.y - plain[0] * mark.factor,
+          text = `${this.points[mark.point].label}, control variate: ${Format.rough(y)}`;
+        marks.push({ ...mark, series: place, y, half: null, text });
         series.set('control', { series: place, name: Format.parts('control variate') });
       }
     }
@@ -558,7 +561,8 @@ class SweepView {
     this.stacking.hidden = choice.indices.length < 2;
     this.stacked.disabled = !canStack;
     const log = this.setByHand ? { x: this.logX.checked, y: this.logY.checked } : {},
-      figure = sweep.figure(choice, axis, by, log, stacked, this.scale(choice.about.unit, axis.numeric ? axis.about.unit : ''));
+      scale = this.scale(choice.about.unit, axis.numeric ? axis.about.unit : ''),
+      figure = sweep.figure(choice, axis, by, log, stacked, scale);
     this.logY.disabled = stacked;
     this.logX.checked = figure.x.log;
     this.logY.checked = figure.y.log;
