@@ -384,7 +384,7 @@ std::string rest_text(const Plan& plan) {
 std::string choice_text(const Plan& plan) {
   if (plan.values_to_choose == 0) return "";
   return fmt::format("\nThe run may add {} of {} (/choose), which {} not in this plan.\n",
-                     counted(plan.values_to_choose, "value"), plan.over,
+                     counted(static_cast<std::size_t>(plan.values_to_choose), "value"), plan.over,
                      plan.values_to_choose == 1 ? "is" : "are");
 }
 
