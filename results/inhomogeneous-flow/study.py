@@ -203,7 +203,7 @@ def steady_rows(tables):
     known = TRAINING + PUBLISHED
     text = "how much more φ(y) stands out in the second half of the window, relative: mean of ten flows"
     yield Statement(text, "L 6.1", *tables.mean(known, "change"), -0.1, 0.1, len(known) - 1)
-    text = "the same, of the flow where it is most"
+    text = "how much more φ(y) stands out in the second half of the window, relative: the most of ten flows"
     yield Statement(text, "L 6.1", *tables.largest(known, "change"), -0.1, 0.1, SEEDS - 1, essential=False)
     noiseless = [flow for flow in FLOWS if flow not in NOISY]
     text = "largest of all flows: dσ_xy and drag of a bin together, over the largest σ"

@@ -25,7 +25,8 @@ from studies.driver import (
     difference,
 )
 from studies.driver import entries, first, main, merged, number, over, place_of_largest, propagated, quotient
-from studies.driver import read_numbers, read_rows, row_ratio, viscosity_row, write_numbers, write_rows, write_table
+from studies.driver import read_numbers, read_rows, row_ratio, viscosity_row, where, write_numbers, write_rows
+from studies.driver import write_table
 import numpy as np
 
 TITLE = "The jamming map of colloids and grains"
@@ -312,7 +313,7 @@ def draw():
     ends = {"x_range": (-0.02, 1.02), "y_range": (0.53, 0.82)}
     panel = figure.panel("share of grains α", "φ_m", "the map", key="top left", **ends)
     for alone, colour in ((0.64, BLUE), (0.57, RED)):
-        draw_models(panel, alone, colour, titled=False)
+        draw_models(panel, alone, colour, titled=alone == 0.57)
     styles = {
         SMOOTH: ("μ = 0, no noise", BLUE, 7),
         0.1: ("Pe_{cg} = 0.1", PURPLE, 13),
@@ -325,12 +326,15 @@ def draw():
     for row, (title, colour, mark) in styles.items():
         panel.points([(a, *jams.jammed(row, a)) for a in jams.shares(row)], title, colour, mark)
     range_ = {"x_range": (0.54, 0.74), "y_range": (10, 1e4)}
-    panel = figure.panel("φ", "η_r", "α = 0.4 (filled) and 0 (open)", log="y", key="top right", **range_)
+    title = "α = 0.4 (filled) and 0 (open); ×: jams"
+    panel = figure.panel("φ", "η_r", title, log="y", key="center right", **range_)
     for alpha, marks in ((0.4, 7), (0, 6)):
         for row in (0.1, 1, 10, 100, ROUGH):
             title, colour, _ = styles[row]
-            curve = [r for r in jams.curve(row, alpha) if r["seeds"]]
-            panel.rows(curve, "fraction", "viscosity", None if alpha else title, colour, marks, joined=True)
+            flowing = where(jams.curve(row, alpha), state="flowing")
+            panel.rows(flowing, "fraction", "viscosity", None if alpha else title, colour, marks, joined=True)
+            jammed = [r["fraction"] for r in jams.curve(row, alpha) if r["state"] != "flowing"]
+            panel.points([(min(jammed), 9e3, 0)] if jammed else [], None, colour, 2)
     figure.draw()
 
 

@@ -234,12 +234,14 @@ def rows_of_colloids_added(table):
     best, fast = factor(of[1]), factor(of[1000])
     text = "grains at φ₀ = 0.55, Pe_c = 1: η_r at α = 1 over the smallest with colloids added"
     yield Statement(text, "L5.2b", *best, 4, 12, DEGREES)
-    yield Statement("α of that smallest", "L5.2b", *place_of_largest(COLLOIDS_ADDED[1:], of[1]), 0.6, 0.8)
+    yield Statement("grains at φ₀ = 0.55, Pe_c = 1: α of the smallest η_r with colloids added", "L5.2b", *place_of_largest(COLLOIDS_ADDED[1:], of[1]), 0.6, 0.8)
     decades = NUMBERS[:-1]
     strongest = propagated_lists(
         [of[peclet] for peclet in decades], lambda v: float(np.log10(decades[int(np.argmax([max(d) for d in v]))]))
     )
-    yield Statement("lg Pe_c at which that factor is largest, of 0.1, 1, 10, 100, 1000", "L5.2b", *strongest, -1, 1)
+    drop = "η_r of grains alone over the smallest with colloids added"
+    text = f"lg Pe_c at which {drop} is largest, of 0.1, 1, 10, 100, 1000"
+    yield Statement(text, "L5.2b", *strongest, -1, 1)
     then = table.ratio("colloids-added", (0.6, 0.7), 1)
     yield Statement("Pe_c = 1: η_r at α = 0.6 over that at 0.7", "L5.2b", *then, 1, math.inf, DEGREES)
     text = "Pe_c = 1, α = 0.5: d ln η_r/d ln k_n (jams: 1)"
@@ -248,14 +250,14 @@ def rows_of_colloids_added(table):
     yield Statement("grains alone: η_r at Pe_c = 1 over that at 10⁵", "L5.2b", *alone, 0.5, math.inf, DEGREES)
     near = propagated(table.curve("grains-added", 0, NUMBERS), lambda v: math.exp(v[1] - min(v)))
     yield Statement("colloids alone: η_r at Pe_c = 1 over its minimum", "L5.2b", *near, high=1.3, degrees=DEGREES)
-    yield Statement("Pe_c = 1000: the factor", "L5.2b", *fast, 1.2, math.inf, DEGREES)
+    yield Statement(f"Pe_c = 1000: {drop}", "L5.2b", *fast, 1.2, math.inf, DEGREES)
     less = quotient(fast, best)
-    yield Statement("the factor at Pe_c = 1000 over that at 1", "L5.2c", *less, high=0.5, degrees=DEGREES)
+    yield Statement(f"{drop}: at Pe_c = 1000 over at 1", "L5.2c", *less, high=0.5, degrees=DEGREES)
     for peclet in NUMBERS[1:-1]:
         text = f"Pe_c = {peclet:g}: η_r at α = 0.9 over that of grains alone"
         yield Statement(text, "L5.2c", *table.ratio("colloids-added", (0.9, 1), peclet), high=1, degrees=DEGREES)
     none = factor(drops(table, math.inf, "no-noise"))
-    yield Statement("without noise: the factor", "L5.2c", *none, 1.2, math.inf, DEGREES)
+    yield Statement(f"without noise: {drop}", "L5.2c", *none, 1.2, math.inf, DEGREES)
     curves = [table.curve("grains-alone", 1, [peclet / 125 for peclet in NUMBERS])]
     curves += [table.curve("colloids-added", alpha, NUMBERS) for alpha in SLOW_ADDED[1:]]
 
@@ -266,7 +268,7 @@ def rows_of_colloids_added(table):
     more = propagated_lists(curves, wider)
     yield Statement("decades of thickening, the most of α = 0.9, 0.8, 0.7 less those of α = 1", "L5.2b", *more, 0)
     less = quotient(none, best)
-    yield Statement("the factor without noise over that at Pe_c = 1", "L5.2c", *less, high=1, degrees=DEGREES)
+    yield Statement(f"{drop}: without noise over at Pe_c = 1", "L5.2c", *less, high=1, degrees=DEGREES)
     for before, then in ((1, 0.9), (0.9, 0.8)):
         text = f"without noise: η_r at α = {then:g} over that at {before:g}"
         yield Statement(text, "L5.2", *table.ratio("no-noise", (then, before), math.inf), high=1, degrees=DEGREES)
@@ -341,7 +343,7 @@ def checks(table):
 def rows_of_compositions(numbers):
     text = "largest distance of the volume fractions of 11 compositions from those in print"
     yield Statement(text, "L5.2", *numbers["fraction off"][:2], high=1e-3)
-    yield Finding("the same of α, of 10 000 whole spheres", "L5.2", *numbers["share off"][:2])
+    yield Finding("largest distance of α of 10 000 whole spheres from that asked for", "L5.2", *numbers["share off"][:2])
     *times, degrees = numbers["times of diffusion"]
     yield Statement("dilute: a²/D of radius 5 over that of radius 1", "L 5.1", *times, 0.97 * 125, 1.03 * 125, degrees)
 
@@ -380,11 +382,11 @@ def draw():
     for alpha in COLLOIDS_ADDED:
         title = f"α = {alpha:g}, φ = {colloids_added(alpha, BASE):.3f}"
         curve(one, "colloids-added", "peclet", title, COLOURS[alpha], alpha=alpha)
-    one = panel("share of grains α", "the same over the share of grains", "y", x_range=(0.55, 1.05), key="top right")
+    one = panel("share of grains α", "colloids added to grains, over the share of grains", "y", x_range=(0.55, 1.05), key="top right")
     for peclet, colour in ((0.1, GREY), (1, BLUE), (10, GREEN), (100, ORANGE), (1e3, RED)):
         curve(one, "colloids-added", "alpha", f"Pe_c = {peclet:g}", colour, peclet=peclet)
     curve(one, "no-noise", "alpha", "without noise", PURPLE)
-    one = panel("Pe of the mean radius", "one volume fraction, 0.565", **powers)
+    one = panel("Pe_{cg}, of the mean radius", "one volume fraction, 0.565", **powers)
     for alpha, colour in zip(SHARES, (BLUE, RED, GREEN, GREY)):
         part = "fraction-grains" if alpha == 1 else "fraction"
         curve(one, part, "mean peclet", f"α = {alpha:g}", colour, alpha=alpha)

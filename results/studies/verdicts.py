@@ -28,6 +28,8 @@ HEADS = {
     "finding": ("finding", "about", "value ± standard error"),
 }
 BEGIN, END = "<!-- rows, written by study.py -->", "<!-- end of rows -->"
+LEGEND = """A row is *open* while its 95 % interval contains a bound ([rules](../../docs/studies.md)). L and M are [the
+publications](../../docs/statements.md)."""
 ROUNDING = 1e-12  # a relative error below this is due to floating point
 
 
@@ -200,8 +202,8 @@ def with_part(page, begin, end, text):
 
 
 def with_rows(page, rows):
-    """Returns the page with these rows between its marks."""
-    return with_part(page, BEGIN, END, tables_of(rows))
+    """Returns the page with these rows between its marks, and what their columns mean."""
+    return with_part(page, BEGIN, END, f"{LEGEND}\n\n{tables_of(rows)}")
 
 
 def rewrite(path, rows):

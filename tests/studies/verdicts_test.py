@@ -16,7 +16,7 @@ RESULTS = os.path.join(os.path.dirname(os.path.dirname(os.path.dirname(os.path.a
 sys.path.insert(0, RESULTS)
 from studies.command_line import main
 from studies.tables import read_numbers, read_rows, write_numbers
-from studies.verdicts import BEGIN, END, Check, Finding, Statement, rows_of, tables_of, verdict, with_rows
+from studies.verdicts import BEGIN, END, LEGEND, Check, Finding, Statement, rows_of, tables_of, verdict, with_rows
 
 STUDIES = sorted(name for name in os.listdir(RESULTS) if os.path.exists(os.path.join(RESULTS, name, "study.json")))
 
@@ -166,6 +166,8 @@ class Pages(unittest.TestCase):
             [
                 "before",
                 BEGIN,
+                *LEGEND.split("\n"),
+                "",
                 "| published statement | source | value ± standard error | must be | answer |",
                 "|---|---|---|---|---|",
                 "| a | x | 1.235 ± 0.12 | 0 to 2 | holds |",
