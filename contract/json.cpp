@@ -99,7 +99,9 @@ std::string usual_fault(std::string_view text, std::size_t offset) {
   if (closes && before != std::string_view::npos && text[before] == ',') {
     return "; the comma before it is one too many";
   }
-  if (from_here.starts_with("/") || from_here.starts_with("#")) return "; JSON has no comments";
+  if (from_here.starts_with("#")) return "; comments begin with //";
+  if (from_here.starts_with("/*")) return "; the comment is not closed";
+  if (from_here.starts_with("/")) return "; JSON has no comments";
   if (from_here.starts_with("'")) return "; JSON has double quotation marks, \"";
   return "";
 }
@@ -217,14 +219,14 @@ void write_canonical(const Json& value, std::string& out) {
 
 }  // namespace
 
-Json parse_json(std::string_view text, const std::string& file) {
-  return parse_json_input(text, file, std::numeric_limits<std::size_t>::max());
-}
+namespace {
 
-Json parse_json_input(std::string_view text, const std::string& file, std::size_t most_values) {
+// Parses `text`, in which comments have been replaced by blanks; faults are placed in the text as `written`.
+Json parsed(std::string_view text, std::string_view written, const std::string& file,
+            std::size_t most_values) {
   const char* furthest = text.data();
   const auto fault = [&](std::size_t offset, const std::string& message) {
-    return InputError(file, "", "", place(text, offset) + ": " + message);
+    return InputError(file, "", "", place(written, offset) + ": " + message);
   };
   const auto here = [&] {
     const auto read = static_cast<std::size_t>(furthest - text.data());
@@ -248,6 +250,37 @@ Json parse_json_input(std::string_view text, const std::string& file, std::size_
   } catch (const Builder::Fault& refused) {
     throw fault(here(), refused.what);
   }
+}
+
+}  // namespace
+
+std::string without_comments(std::string text) {
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    if (text[at] == '"') {
+      for (++at; at < text.size() && text[at] != '"'; ++at) {
+        if (text[at] == '\\') ++at;
+      }
+      continue;
+    }
+    const bool is_block = text.compare(at, 2, "/*") == 0;
+    if (!is_block && text.compare(at, 2, "//") != 0) continue;
+    const std::size_t mark = text.find(is_block ? "*/" : "\n", at + 2);
+    if (is_block && mark == std::string::npos) break;  // never closed: a fault that the parser reports
+    const std::size_t end = is_block ? mark + 2 : std::min(mark, text.size());
+    for (; at < end; ++at) {
+      if (text[at] != '\n') text[at] = ' ';
+    }
+    --at;
+  }
+  return text;
+}
+
+Json parse_json(std::string_view text, const std::string& file) {
+  return parsed(text, text, file, std::numeric_limits<std::size_t>::max());
+}
+
+Json parse_json_input(std::string_view text, const std::string& file, std::size_t most_values) {
+  return parsed(without_comments(std::string(text)), text, file, most_values);
 }
 
 Json read_json(const std::filesystem::path& path) {

@@ -24,7 +24,8 @@ constexpr InputLimits input_limits{std::size_t{16} << 20, 1'000'000};
 // Returns the content of a file, pipe or device. Throws InputError if it is absent, unreadable or too large.
 std::string read_input(const std::filesystem::path& path, const InputLimits& limits = input_limits);
 
-// Parses JSON as parse_json(). Throws InputError also for more than `most_values` values.
+// Parses JSON as parse_json(), with comments as in without_comments(), which people write. Throws InputError
+// also for more than `most_values` values.
 Json parse_json_input(std::string_view text, const std::string& file,
                       std::size_t most_values = input_limits.values);
 

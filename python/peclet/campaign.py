@@ -1,6 +1,7 @@
 """Builds campaigns and has the program peclet run them."""
 import json
 import os
+import re
 
 from peclet.program import PecletError, ask, run_shown
 from peclet.results import open_results
@@ -8,6 +9,14 @@ from peclet.results import open_results
 # Exit codes of `peclet run` without an error: 0 all points converged or complete; 3 finished, but not all of them
 # converged; 75 stopped, and continued by the next run.
 ENDED, STOPPED = (0, 3), 75
+
+
+def read_json(path):
+    """Returns the content of a JSON file with or without comments. Raises OSError or ValueError."""
+    with open(path, encoding="utf-8-sig") as file:
+        text = file.read()
+    strings_and_comments = r'("(?:[^"\\]|\\.)*")|//[^\n]*|/\*.*?\*/'
+    return json.loads(re.sub(strings_and_comments, lambda found: found[1] or " ", text, flags=re.DOTALL))
 
 
 class Campaign:
@@ -18,8 +27,9 @@ class Campaign:
 
     name        name of the campaign
     scene       a dictionary, or the path of a JSON file (not that of the campaign file)
-    sweep       lists of values by JSON pointer into the scene, all combinations of which are run; or the list of
-                entries of a campaign file; None: a single point
+    sweep       lists of values, or ranges {"from": 0.01, "to": 1e4, "points": 7, "spaced": "log"}, by JSON pointer
+                into the scene, all combinations of which are run; or the list of entries of a campaign file; None: a
+                single point
     observable  name of the target's quantity
     tolerance   half-width of its confidence interval, relative to the mean
     confidence  level of the interval, in (0, 1)
@@ -48,13 +58,15 @@ class Campaign:
         self._scene_file = None if isinstance(scene, dict) else os.fspath(scene)
         if self._scene_file:
             try:
-                with open(scene, encoding="utf-8-sig") as file:
-                    scene = json.load(file)
+                scene = read_json(scene)
             except (OSError, ValueError) as error:
                 why = getattr(error, "strerror", None) or error
                 raise PecletError(f"{self._scene_file}: cannot be read as a scene: {why}") from error
         if isinstance(sweep, dict):
-            sweep = [{"set": pointer, "values": list(values)} for pointer, values in sweep.items()]
+            sweep = [
+                {"set": pointer, "values": values if isinstance(values, dict) else list(values)}
+                for pointer, values in sweep.items()
+            ]
         self.document = {
             "name": name,
             "scene": scene,
@@ -91,8 +103,7 @@ class Campaign:
     def _check_earlier(self, path):
         """Raises PecletError if the file is not a campaign of this name, for example if it is the scene."""
         try:
-            with open(path, encoding="utf-8-sig") as file:
-                earlier = json.load(file)
+            earlier = read_json(path)
             if self._scene_file is None or not os.path.samefile(path, self._scene_file):
                 if {"scene", "realisations"} <= set(earlier) and earlier["name"] == self.document["name"]:
                     return

@@ -76,6 +76,24 @@ int seeds_with_files(const Json& document) {
   return rule == "all" ? most_realisations : rule == "none" ? 0 : rule.get<int>();
 }
 
+// Puts the scene of a file in the place of its name, which starts at the campaign's folder. Throws InputError
+// that names the file at fault.
+void read_scene(Json& scene, const std::string& file) {
+  if (!scene.is_string()) return;
+  const auto path = home_of(file) / scene.get<std::string>();
+  Json read;
+  try {
+    read = read_json_input(path);
+  } catch (const InputError& error) {
+    throw InputError(file, "/scene", shortened(scene), error.what());
+  }
+  if (!read.is_object()) {
+    throw InputError(file, "/scene", shortened(scene),
+                     fmt::format("must name a file with a scene, an object; it has {}", shortened(read)));
+  }
+  scene = std::move(read);
+}
+
 // Throws InputError if the sweep sets the name of the script, whose text is added to the scene once.
 void refuse_swept_script(const std::vector<SweepEntry>& sweep, const std::string& file) {
   for (std::size_t entry = 0; entry < sweep.size(); ++entry) {
@@ -244,6 +262,8 @@ Campaign parse_campaign(const Json& written, const std::string& file) {
   refuse_bare_scene(written, file);
   Campaign campaign;
   campaign.document = campaign_keys().validate(written, file);
+  read_scene(campaign.document["scene"], file);
+  write_out_ranges(campaign.document["sweep"], file);
   const Json& document = campaign.document;
   campaign.name = document["name"].get<std::string>();
   check_campaign_name(campaign.name, file);
@@ -308,13 +328,18 @@ constexpr const char* tolerance_rows = R"(
 
 constexpr const char* campaign_rows = R"(
 /name | string | Name of the campaign: at most 100 letters, digits, dots, underscores and hyphens.
-/scene | object | The scene that all points share; the engine checks it.
+/scene | object or string | The scene that all points share, or the name of its file; the engine checks it. This
+    name and those in the file start at the campaign's folder.
 /sweep | array; default [] | Parameters that differ between the points. Several entries make a grid; the last
     varies fastest.
 /sweep/* | object
 /sweep/*/set | anything | JSON pointer into the scene, or an array of pointers that are set together.
-/sweep/*/values | array of 1 or more | The values along this axis; with several pointers, each is an array with
-    one value for every pointer.
+/sweep/*/values | array of 1 or more or object | The values along this axis; with several pointers, each is an
+    array with one value for every pointer. An object is a range of values of one pointer.
+/sweep/*/values/from, /sweep/*/values/to | number | First and last value of a range.
+/sweep/*/values/points | integer >= 2 and <= 100000 | Number of values. Those between the ends are rounded to six
+    digits.
+/sweep/*/values/spaced | one of log, linear | log: equal ratios of neighbours; linear: equal differences.
 /target? | object | The accuracy at which a point is done. Required, unless the number of realisations is fixed.
 /target/observable | string; default "{observable}" | Path of a number in the result's mean.
 {target}

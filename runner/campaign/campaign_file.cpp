@@ -81,10 +81,10 @@ struct Member {
   Span key, value;  // the key with its quotes
 };
 
-// Finds tokens in a text that is known to be JSON.
+// Finds tokens in a text that is known to be JSON, with or without comments.
 class Walker {
  public:
-  explicit Walker(const std::string& text) : text_(text) {}
+  explicit Walker(const std::string& text) : text_(without_comments(text)) {}
 
   std::size_t skip_blanks(std::size_t at) const { return text_.find_first_not_of(" \t\r\n", at); }
 
@@ -140,8 +140,14 @@ class Walker {
 
   std::string part(std::size_t begin, std::size_t end) const { return text_.substr(begin, end - begin); }
 
+  // Returns the end of the line on which nothing but a comment follows `at`; otherwise `at`.
+  std::size_t behind_comment(std::size_t at) const {
+    const std::size_t next = text_.find_first_not_of(" \t", at);
+    return next != std::string::npos && (text_[next] == '\r' || text_[next] == '\n') ? next : at;
+  }
+
  private:
-  const std::string& text_;
+  std::string text_;  // blanks in the place of comments
 };
 
 std::string with_new_member(const std::string& text, std::size_t object, const std::string& key,
@@ -155,11 +161,14 @@ std::string with_new_member(const std::string& text, std::size_t object, const s
   }
   const std::string before_key = walker.part(object + 1, known.front().key.begin);
   const std::string colon = walker.part(known.front().key.end, known.front().value.begin);
+  const std::size_t last_line = before_key.rfind('\n'), end = known.back().value.end;
+  const std::string member = quoted + colon + value.dump();
   std::string edited = text;
   // Members on one line are separated by one blank, whatever follows the brace.
-  const bool in_lines = before_key.find('\n') != std::string::npos;
-  return edited.insert(known.back().value.end,
-                       (in_lines ? "," + before_key : ", ") + quoted + colon + value.dump());
+  if (last_line == std::string::npos) return edited.insert(end, ", " + member);
+  const bool is_of_windows = last_line > 0 && before_key[last_line - 1] == '\r';
+  edited.insert(walker.behind_comment(end), before_key.substr(last_line - (is_of_windows ? 1 : 0)) + member);
+  return edited.insert(end, ",");
 }
 
 }  // namespace

@@ -27,8 +27,9 @@ std::string words_for(const std::filesystem::path& campaign_file, const std::fil
 std::string similar_name(const std::filesystem::path& given);
 
 // Returns the text with `value` at `path`, the keys of nested objects. Only this token changes: the author's
-// order, blanks and spelling stay. An absent last key is added behind the others of its object, spaced as the
-// first one. Throws std::invalid_argument if another key is absent. Requires a text that is valid JSON.
+// order, blanks, comments and spelling stay. An absent last key is added behind the others of its object,
+// spaced as the first one. Throws std::invalid_argument if another key is absent. Requires a text that is
+// valid JSON but for comments.
 std::string with_value(const std::string& text, const std::vector<std::string>& path, const Json& value);
 
 }  // namespace peclet::runner

@@ -93,6 +93,42 @@ void refuse_conflicts(const std::vector<SweepEntry>& sweep, const std::string& f
 
 }  // namespace
 
+namespace {
+
+// Returns value k of a range.
+Json value_of_range(const Json& range, int k) {
+  const int last = range.at("points").get<int>() - 1;
+  if (k == 0 || k == last) return range.at(k == 0 ? "from" : "to");
+  const double from = range.at("from").get<double>(), to = range.at("to").get<double>(),
+               share = 1.0 * k / last;
+  const double value =
+      range.at("spaced") == "log" ? from * std::pow(to / from, share) : std::lerp(from, to, share);
+  return Json::parse(fmt::format("{:.6g}", value));  // a value that labels and tables can show
+}
+
+}  // namespace
+
+void write_out_ranges(Json& sweep, const std::string& file) {
+  for (std::size_t entry = 0; entry < sweep.size(); ++entry) {
+    const Json range = sweep[entry].at("values");
+    if (!range.is_object()) continue;
+    const std::string where = fmt::format("/sweep/{}/values", entry);
+    if (sweep[entry].at("set").is_array()) {
+      throw InputError(file, where, shortened(range),
+                       "must be a list if set is one: a range has the values of one pointer");
+    }
+    for (const char* const end : {"from", "to"}) {
+      if (range.at("spaced") == "log" && range.at(end).get<double>() <= 0) {
+        throw InputError(file, fmt::format("{}/{}", where, end), shortened(range.at(end)),
+                         "must be above 0 for logarithmic spacing");
+      }
+    }
+    Json values = Json::array();
+    for (int k = 0; k < range.at("points").get<int>(); ++k) values.push_back(value_of_range(range, k));
+    sweep[entry]["values"] = std::move(values);
+  }
+}
+
 std::vector<SweepEntry> read_sweep(const Json& sweep, const std::string& file) {
   std::vector<SweepEntry> entries;
   for (const Json& entry : sweep) {

@@ -14,8 +14,14 @@ struct SweepEntry {
   std::vector<std::vector<Json>> rows;  // rows[k][i] is a value of pointers[i]
 };
 
-// Reads the "sweep" of a document that campaign_keys() has validated. Throws InputError for an invalid
-// pointer, for a row that has not one value per pointer, and for pointers of which one contains the other.
+// Replaces ranges, such as { "from": 0.01, "to": 1e4, "points": 7, "spaced": "log" }, by lists of their
+// values. Values between the ends have six digits. Throws InputError for logarithmic ranges with an end that
+// is not above 0, and for a range that has several pointers.
+void write_out_ranges(Json& sweep, const std::string& file);
+
+// Reads the "sweep" of a document that campaign_keys() has validated, without ranges. Throws InputError for
+// an invalid pointer, for a row that has not one value per pointer, and for pointers of which one contains
+// the other.
 std::vector<SweepEntry> read_sweep(const Json& sweep, const std::string& file);
 
 // Sets the value at `pointer`. Absent objects on its way are created; elements of arrays must exist. Throws

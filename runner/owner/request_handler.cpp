@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "contract/errors.h"
+#include "contract/named_files.h"
 #include "contract/guarded_file.h"
 #include "contract/sha256.h"
 #include "runner/campaign/number_text.h"
@@ -278,7 +279,7 @@ RequestHandler::Done RequestHandler::apply(const TakeOver& wish) {
                 wish.file.string())};
   }
   const Campaign campaign = PointStore(database_).with_chosen_values(
-      parse_campaign(parse_json(text, wish.file.string()), wish.file.string()));
+      parse_campaign(parse_json_input(text, wish.file.string()), wish.file.string()));
   if (state_.has_engine() && campaign.engine != state_.campaign().engine) {
     throw InputError(wish.file.string(), "/engine", Json(campaign.engine).dump(),
                      "cannot be changed while the campaign runs: stop it, and start it again");

@@ -56,6 +56,35 @@ TEST(Json, WhatPeopleUsuallyTypeWrongIsNamedAndTheMessageIsWholeText) {
   EXPECT_FALSE(contains(message_of("[NaN]"), "too many"));
 }
 
+// Cases from the grammar of strings and of both kinds of comments; nothing else of the text changes.
+TEST(Json, CommentsBecomeBlanksAndKeepTheirLines) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"1 // one\n", "1       \n"},
+      {"[/* a\n\"b */ 2]", "[    \n      2]"},
+      {R"({"//": "/* \" // */"})", R"({"//": "/* \" // */"})"},
+      {"1/**/", "1    "},
+      {"1 //", "1   "},
+      {"1 /* open", "1 /* open"},
+      {"/*/ 1", "/*/ 1"},
+      {"\"open // text", "\"open // text"},
+  };
+  for (const auto& [text, plain] : cases) EXPECT_EQ(without_comments(text), plain) << text;
+}
+
+TEST(Json, InputsMayHaveCommentsAndFaultsBehindThemHaveTheirPlace) {
+  EXPECT_EQ(parse_json_input("{ // ä\n \"a\": /* 2 */ 1 }", "f")["a"], 1);
+  for (const auto& [text, message] : std::initializer_list<std::pair<const char*, const char*>>{
+           {"[1, /* äö */ x]", "f: line 1, column 14: "},
+           {"[1, // two\n ]", "f: line 2, column 2: must be JSON: unexpected ']'; the comma before it"},
+           {"[1 /* never closed",
+            "f: line 1, column 4: must be JSON: invalid literal; the comment is not closed"},
+           {"[1] # one", "comments begin with //"},
+       }) {
+    EXPECT_TRUE(contains(refusal_by([&] { parse_json_input(text, "f"); }), message))
+        << refusal_by([&] { parse_json_input(text, "f"); });
+  }
+}
+
 TEST(Json, TheSameKeyInTwoObjectsIsNoDuplicate) {
   EXPECT_EQ(parse_json(R"([{"a": {"a": 1}}, {"a": 2}])", "f")[1]["a"], 2);
 }

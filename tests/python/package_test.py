@@ -272,6 +272,15 @@ class Files(unittest.TestCase):
         self.assertEqual((document["realisations"], document["show"]), (16, ["pressure"]))
         self.assertNotIn("target", document)
 
+    def test_may_have_comments_and_ranges(self):
+        scene = os.path.join(os.path.dirname(self.path), "scene.json")
+        with open(scene, "w", encoding="utf-8") as file:
+            file.write('// "a"\n{"note": "// \\" /* kept */", /* gone */ "peclet": 1}')
+        pe = {"from": 1, "to": 100, "points": 3, "spaced": "log"}
+        document = peclet.Campaign("flow", scene, {"/peclet": pe}).document
+        self.assertEqual(document["scene"], {"note": '// " /* kept */', "peclet": 1})
+        self.assertEqual(document["sweep"], [{"set": "/peclet", "values": pe}])
+
     def test_only_a_campaign_of_the_same_name_is_overwritten(self):
         peclet.Campaign("flow", SCENE).write(self.path)
         written = Path(self.path).read_bytes()

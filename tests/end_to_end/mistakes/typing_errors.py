@@ -70,8 +70,8 @@ def commas_and_quotes(night):
     night.types("peclet run night.json", 2, ["line", "the comma before it is one too many"])
     night.write(text.replace('"night"', "\u201cnight\u201d"))
     night.types("peclet run night.json", 2, ["line 2", "typographic quotation mark"])
-    night.write(text.replace('"sweep"', '// three would do\n  "sweep"'))
-    night.types("peclet run night.json", 2, ["line", "JSON has no comments"])
+    night.write(text.replace('"sweep"', '# three would do\n  "sweep"'))
+    night.types("peclet run night.json", 2, ["line", "comments begin with //"])
 
 
 def foreign_line_ends(night):

@@ -84,13 +84,30 @@ const Fault faults[] = {
     {R"({"sweep": [{"set": "/peclet", "values": [1, 2, 3, 4]}], "choose": {"points": 8, "values": [4]},
          "target": {"relative_tolerance": null, "curve": {"over": "/peclet", "relative_tolerance": 0.1}}})",
      "/sweep/0/values/4", "4", "must differ from the others: it is the axis of curves"},
-    {R"({"scene": null})", "/scene", "missing", "must be an object"},
-    {R"({"scene": "dense"})", "/scene", "dense", "must be an object"},
+    {R"({"scene": null})", "/scene", "missing", "must be an object, or a string"},
+    {R"({"scene": 7})", "/scene", "7", "must be an object, or a string"},
+    {R"({"scene": "dense.json"})", "/scene", "dense.json", "dense.json: cannot be read: No such file"},
+    {R"({"scene": "."})", "/scene", ".", "cannot be read: Is a directory"},
+    {R"({"scene": "list.json"})", "/scene", "list.json",
+     "must name a file with a scene, an object; it has [1]"},
+    {R"({"scene": "open.json"})", "/scene", "open.json", "open.json: line 1, column 2: must be JSON"},
     {R"({"seeds": 10})", "/seeds", "unknown key", "allowed keys: name, scene, sweep"},
     {R"({"sweep": {"set": "/peclet"}})", "/sweep", "{", "must be an array"},
     {R"({"sweep": [{"values": [1]}]})", "/sweep/0/set", "missing", ""},
     {R"({"sweep": [{"set": "/peclet"}]})", "/sweep/0/values", "missing", "must be an array of 1 or more"},
     {R"({"sweep": [{"set": "/peclet", "values": []}]})", "/sweep/0/values", "[]", "array of 1 or more"},
+    {R"({"sweep": [{"set": "/peclet", "values": {"from": 1, "to": 9, "points": 1, "spaced": "log"}}]})",
+     "/sweep/0/values/points", "1", "must be an integer >= 2"},
+    {R"({"sweep": [{"set": "/peclet", "values": {"from": 1, "to": 9, "points": 3}}]})",
+     "/sweep/0/values/spaced", "missing", "one of: log, linear"},
+    {R"({"sweep": [{"set": "/peclet", "values": {"from": 0, "to": 9, "points": 3, "spaced": "log"}}]})",
+     "/sweep/0/values/from", "0", "must be above 0 for logarithmic spacing"},
+    {R"({"sweep": [{"set": "/peclet", "values": {"from": 9, "to": -1, "points": 3, "spaced": "log"}}]})",
+     "/sweep/0/values/to", "-1", "must be above 0"},
+    {R"({"sweep": [{"set": ["/a"], "values": {"from": 1, "to": 9, "points": 3, "spaced": "log"}}]})",
+     "/sweep/0/values", "{", "must be a list if set is one"},
+    {R"({"sweep": [{"set": "/peclet", "values": {"from": 1, "to": 1, "points": 2, "spaced": "linear"}}]})",
+     "/sweep/0/values/1", "peclet=1", "must differ from the other points"},
     {R"({"sweep": [{"set": "peclet", "values": [1]}]})", "/sweep/0/set", "peclet", "JSON pointer"},
     {R"({"sweep": [{"set": "", "values": [1]}]})", "/sweep/0/set", "\"\"", "JSON pointer"},
     {R"({"sweep": [{"set": "/a~b", "values": [1]}]})", "/sweep/0/set", "/a~b", "JSON pointer"},
@@ -163,6 +180,8 @@ std::filesystem::path write(const TemporaryFolder& folder, const std::string& te
 
 TEST(CampaignFaults, EachIsNamedWithPointerValueAndWhatIsAllowed) {
   const TemporaryFolder folder;
+  std::ofstream(folder.path() / "list.json") << "[1]";
+  std::ofstream(folder.path() / "open.json") << "{";
   for (const Fault& fault : faults) {
     Json document = Json::parse(whole_campaign);
     document.merge_patch(Json::parse(fault.edit));

@@ -43,16 +43,26 @@ const Case cases[] = {
      2,
      "{\r\n  \"t\": {\r\n    \"x\": 1,\r\n    \"y\": 2\r\n  }\r\n}"},
     {R"({"t": {}})", {"t", "y"}, 2, R"({"t": {"y": 2}})"},
+    // Comments stay where they are, whatever they say.
+    {"{ // \"t\": {\n  \"t\": { /* } */ \"x\": 0.05// five\n  } }",
+     {"t", "x"},
+     0.03,
+     "{ // \"t\": {\n  \"t\": { /* } */ \"x\": 0.03// five\n  } }"},
+    {"{\n  // of the curve\n  \"t\": {\n    // x, \"y\"\n    \"x\": \"//\" // last\n  }\n}",
+     {"t", "y"},
+     2,
+     "{\n  // of the curve\n  \"t\": {\n    // x, \"y\"\n    \"x\": \"//\", // last\n    \"y\": 2\n  }\n}"},
 };
 
 TEST(DocumentEdit, ReplacesTheTokenOrAddsTheKeyAndKeepsEveryOtherByte) {
   for (const Case& edit : cases) {
     EXPECT_EQ(with_value(edit.before, edit.path, edit.value), edit.after) << edit.before;
-    Json expected = Json::parse(edit.before);
+    const auto parsed = [](const std::string& text) { return Json::parse(text, nullptr, true, true); };
+    Json expected = parsed(edit.before);
     Json* place = &expected;
     for (const std::string& key : edit.path) place = &(*place)[key];
     *place = edit.value;
-    EXPECT_EQ(Json::parse(with_value(edit.before, edit.path, edit.value)), expected) << edit.before;
+    EXPECT_EQ(parsed(with_value(edit.before, edit.path, edit.value)), expected) << edit.before;
   }
 }
 

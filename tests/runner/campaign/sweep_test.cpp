@@ -38,6 +38,18 @@ TEST(Sweep, PointersOfOneEntryAreSetInStep) {
   EXPECT_EQ(found[1].label, "peclet=10 volume_fraction=0.3");
 }
 
+// The expected values are those of numpy.geomspace and numpy.linspace, to six digits.
+TEST(Sweep, ARangeIsTheListOfItsValues) {
+  Json sweep = Json::parse(R"([
+    {"set": "/peclet", "values": {"from": 0.01, "to": 1e4, "points": 5, "spaced": "log"}},
+    {"set": "/contact/friction", "values": {"from": 1, "to": 0, "points": 4, "spaced": "linear"}},
+    {"set": "/volume_fraction", "values": [0.4]}])");
+  write_out_ranges(sweep, "campaign.json");
+  EXPECT_EQ(sweep[0]["values"].dump(), "[0.01,0.316228,10,316.228,10000.0]");
+  EXPECT_EQ(sweep[1]["values"].dump(), "[1,0.666667,0.333333,0]");
+  EXPECT_EQ(sweep[2]["values"].dump(), "[0.4]");
+}
+
 TEST(Sweep, MissingObjectsAreMadeAndElementsOfArraysAreFound) {
   const std::vector<StatePoint> found =
       points(R"([{"set": ["/limits/shear_rate", "/species/1/radius"], "values": [[0.009, 2]]}])");
