@@ -5,6 +5,7 @@
 
 #include "contract/named_files.h"
 #include "runner/campaign/quoting.h"
+#include "runner/command_line/list.h"
 #include "runner/command_line/print.h"
 #include "runner/command_line/verb_set.h"
 #include "runner/command_line/watch.h"
@@ -64,6 +65,32 @@ last stop test, and the verdict. Only reads, and may be used at any time.
   verb->add_flag("--check", options->check,
                  "Exit with 0 (every point is converged or complete), 3 (every point is decided, but some "
                  "otherwise), 4 (not finished) or 6 (a point is suspect)");
+}
+
+struct ListOptions {
+  std::filesystem::path folder = ".";
+  bool json = false;
+};
+
+std::string list_campaigns(const ListOptions& options) {
+  const std::vector<ListedCampaign> campaigns = campaigns_below(options.folder);
+  return options.json ? list_json(campaigns).dump(2) + '\n' : list_table(campaigns);
+}
+
+void add_list(VerbSet& verbs) {
+  const auto [verb, options] = verbs.add<ListOptions>(
+      list_campaigns, "list", "List the campaigns in a folder and below it", {0, 1, 2}, R"(
+Shows for every campaign that has been run how many of its points are decided, its seeds and their processor
+time, its state and the time to go. A campaign is running, stopped, handed-over (to a batch system),
+converged, ended (decided, but some points are capped, failed or cancelled, or lost seeds), suspect or
+unreadable. Links are not followed.
+
+  peclet list ~/suspensions
+  # the campaigns that `peclet run` would continue
+  peclet list --json | jq -r '.[] | select(.state == "stopped") | .campaign'
+)");
+  add_option(verb, "folder FOLDER", options->folder, "Folder to search; the working folder unless given");
+  add_json(verb, options->json);
 }
 
 void add_watch(VerbSet& verbs) {
@@ -544,6 +571,7 @@ run are not run again.
 
 void add_viewing_verbs(VerbSet& verbs) {
   add_status(verbs);
+  add_list(verbs);
   add_watch(verbs);
   add_explain(verbs);
   add_files(verbs);
