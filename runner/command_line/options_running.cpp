@@ -3,6 +3,7 @@
 #include "runner/campaign/campaign.h"
 #include "runner/command_line/ask_owner.h"
 #include "runner/command_line/hand_over.h"
+#include "runner/command_line/init.h"
 #include "runner/command_line/print.h"
 #include "runner/command_line/run.h"
 #include "runner/command_line/validate.h"
@@ -38,14 +39,17 @@ void add_file_of_hosts(CLI::App* verb, std::filesystem::path& hosts) {
 
 void add_init(VerbSet& verbs) {
   const auto [verb, options] =
-      verbs.add<InitOptions>(init_campaign, "init", "Write a small campaign to begin with", {0, 1, 2}, R"(
-The file is a complete campaign that runs in minutes: 100 spheres with friction at three Péclet numbers.
-Adapt it to your question; `peclet validate` says what is wrong with it.
+      verbs.add<InitOptions>(init_campaign, "init", "Write a campaign to begin with", {0, 1, 2}, R"(
+The file is a complete campaign that runs in seconds to three minutes: an example of what the programs can do.
+Its first lines say what to change and how to draw the results. Adapt it to your question; `peclet validate`
+says what is wrong with it.
 
-  peclet init flow-curve.json
+  peclet init --list
+  peclet init thickening.json --example thickening
 )");
-  add_option(verb, "campaign FILE.json", options->campaign, "Campaign file (JSON) to write; must not exist")
-      ->required();
+  add_option(verb, "campaign FILE.json", options->campaign, "Campaign file (JSON) to write; must not exist");
+  add_option(verb, "--example NAME", options->example, "Example to begin with")->capture_default_str();
+  verb->add_flag("--list", options->list, "List the examples, and write nothing");
 }
 
 void add_validate(VerbSet& verbs) {

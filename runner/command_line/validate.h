@@ -1,19 +1,10 @@
-// The verbs `peclet init` and `peclet validate`, for a campaign before its first run.
+// The verb `peclet validate`, for a campaign before its first run.
 #pragma once
 
 #include <filesystem>
 #include <string>
 
 namespace peclet::runner {
-
-struct InitOptions {
-  std::filesystem::path campaign;  // file to write
-};
-
-// Writes a small campaign that runs as it is: a Brownian suspension at three Péclet numbers, in the usual
-// units of the literature. Returns the message with the next commands. Throws InputError if the file exists
-// or its name cannot be that of a campaign, std::system_error if it cannot be written.
-std::string init_campaign(const InitOptions& options);
 
 struct ValidateOptions {
   std::filesystem::path campaign;

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """gallery.py BIN FOLDER [NAME...]
 
-Runs the campaigns of docs/gallery that docs/gallery.md draws, then its commands, and moves the pictures into FOLDER.
+Runs the campaigns of docs/examples that docs/gallery.md draws, then its commands, and moves the pictures into FOLDER.
 NAME chooses pictures by the end of their command: flow.png. All take six minutes on two cores.
 """
 
@@ -32,7 +32,7 @@ def main(binaries, target, names):
     os.makedirs(target, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix="peclet-gallery-") as place:
         for campaign in sorted({words[2] for words in chosen}):
-            shutil.copy(os.path.join(DOCS, "gallery", campaign), place)
+            shutil.copy(os.path.join(DOCS, "examples", campaign), place)
             run = ["peclet", "run", campaign, "--quiet"]
             done = subprocess.run(run, cwd=place, env=environment, stdout=subprocess.DEVNULL)
             if done.returncode not in (0, 3):  # 3: seeds that jam are lost

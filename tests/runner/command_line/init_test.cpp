@@ -1,3 +1,5 @@
+#include "runner/command_line/init.h"
+
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -5,7 +7,6 @@
 #include "contract/durable_file.h"
 #include "contract/errors.h"
 #include "runner/campaign/campaign.h"
-#include "runner/command_line/validate.h"
 #include "tests/runner/runner_fixture.h"
 
 namespace peclet::runner {
@@ -18,6 +19,36 @@ TEST(Init, WritesACampaignThatIsNamedForItsFile) {
   const Campaign campaign = read_campaign(file);
   EXPECT_EQ(campaign.name, "flow-curve");
   EXPECT_EQ(campaign.points.size(), 3U);
+}
+
+TEST(Init, EveryExampleIsACampaignThatSaysWhatItIs) {
+  const TemporaryFolder folder;
+  const std::string list = init_campaign({{}, "", true});
+  EXPECT_GE(example_texts().size(), 14U);
+  for (const auto& [key, text] : example_texts()) {
+    const std::string name = key.substr(key.find('-') + 1);
+    const std::filesystem::path file = folder.path() / ("my-" + name + ".json");
+    const std::string message = init_campaign({file, name});
+    EXPECT_EQ(read_campaign(file).name, "my-" + name);
+    EXPECT_TRUE(text.starts_with("// ")) << name;
+    const std::string subject = text.substr(3, text.find('\n') - 3);
+    EXPECT_NE(list.find(name), std::string::npos);
+    EXPECT_NE(list.find(subject), std::string::npos) << name;
+    EXPECT_NE(message.find(subject), std::string::npos) << name;
+  }
+}
+
+TEST(Init, NamesTheExamplesIfThereIsNoneOfTheName) {
+  const TemporaryFolder folder;
+  try {
+    init_campaign({folder.path() / "new.json", "reversals"});
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.pointer(), "--example");
+    EXPECT_NE(error.allowed().find("did you mean reversal?"), std::string::npos) << error.what();
+  }
+  EXPECT_THROW(init_campaign({}), InputError);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
 TEST(Init, LeavesWhatIsThereAlone) {
