@@ -80,11 +80,9 @@ demo() {
 
 package() {
   say "Building programs that need no shared library into build/package"
-  cmake --preset package >/dev/null
-  cmake --build --preset package
-  cpack --preset package >/dev/null
+  python3 python/build_backend.py >/dev/null
   say "build/package has"
-  (cd build/package && ls -lh peclet-*.tar.gz peclet_*.deb)
+  (cd build/package && ls -lh peclet-*.tar.gz peclet_*.deb peclet-*.whl)
 }
 
 run_tests() {

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "contract/exec_words.h"
+#include "contract/own_folder.h"
 
 namespace peclet::engine {
 namespace {
@@ -55,7 +56,7 @@ ScriptProcess::ScriptProcess(const Script& script)
   socket_.emplace(ends[0]);
   Descriptor other(ends[1]);
   channel_ = FrameChannel(socket_->number());
-  std::vector<std::string> words = {"python3", "-c", script_driver()};
+  std::vector<std::string> words = {own_python(), "-c", script_driver()};
   // The first of two equal names counts. The order of sets must not change from process to process.
   std::vector<std::string> variables = {"PYTHONHASHSEED=0"};
   for (char** variable = environ; *variable != nullptr; ++variable) variables.emplace_back(*variable);

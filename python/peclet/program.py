@@ -5,6 +5,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import sysconfig
 
 PR_SET_PDEATHSIG = 1
 libc = ctypes.CDLL(None)
@@ -17,12 +18,13 @@ class PecletError(Exception):
 def find_program(program=None):
     """Returns the path of the program peclet.
 
-    program    path or name; by default the environment variable PECLET, or else "peclet" on PATH
+    program    path or name; by default the environment variable PECLET, or else "peclet" on PATH, or else beside this
+               interpreter, where pip has put it
 
     Raises PecletError if it is not found.
     """
     name = program or os.environ.get("PECLET") or "peclet"
-    path = shutil.which(name)
+    path = shutil.which(name) or shutil.which(name, path=sysconfig.get_path("scripts"))
     if path is None:
         raise PecletError(
             f"{name}: no such program; install peclet, or set the environment variable PECLET to its path"

@@ -22,6 +22,7 @@
 
 #include "contract/errors.h"
 #include "contract/exec_words.h"
+#include "contract/own_folder.h"
 #include "runner/campaign/campaign_file.h"
 #include "runner/store/campaign_directory.h"
 

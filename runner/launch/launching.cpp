@@ -9,8 +9,8 @@
 
 #include "contract/errors.h"
 #include "contract/guarded_file.h"
+#include "contract/own_folder.h"
 #include "contract/text.h"
-#include "runner/store/campaign_directory.h"
 
 namespace peclet::runner {
 namespace {

@@ -16,8 +16,8 @@
 #include <thread>
 
 #include "contract/documents.h"
+#include "contract/own_folder.h"
 #include "runner/campaign/quoting.h"
-#include "runner/store/campaign_directory.h"
 
 namespace peclet::runner {
 namespace {

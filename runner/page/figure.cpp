@@ -8,6 +8,7 @@
 
 #include "contract/durable_file.h"
 #include "contract/errors.h"
+#include "contract/own_folder.h"
 #include "contract/sha256.h"
 #include "runner/engines/engine_process.h"
 #include "runner/page/page_html.h"
@@ -80,7 +81,7 @@ Picture drawn(const std::string& script, PictureForm form) {
                                                                       : "figure.svg");
   write_durably(source, script);
   try {
-    const CommandAnswer answer = run_command({"python3", source.string(), output.string()}, patience);
+    const CommandAnswer answer = run_command({own_python(), source.string(), output.string()}, patience);
     // The script itself says what cures a lack of matplotlib.
     if (!answer.succeeded()) throw NotDrawn("python3 could not draw the picture: " + answer.complaint());
     return {read_file(output), answer.output};

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "contract/errors.h"
+#include "contract/own_folder.h"
 #include "runner/engines/engine_process.h"
 #include "runner/store/campaign_directory.h"
 
@@ -20,10 +21,10 @@ namespace fs = std::filesystem;
 
 std::vector<std::string> command_of(const std::string& module) {
   const fs::path package = own_folder().parent_path() / "lib/python3/dist-packages/peclet";
-  if (fs::exists(package / "answer.py")) return {"python3", (package / "answer.py").string(), module};
+  if (fs::exists(package / "answer.py")) return {own_python(), (package / "answer.py").string(), module};
   if (const std::optional<fs::path> source = own_file("python/peclet/answer.py"))
-    return {"python3", source->string(), module};
-  return {"python3", "-m", "peclet.answer", module};
+    return {own_python(), source->string(), module};
+  return {own_python(), "-m", "peclet.answer", module};
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 
 #include "contract/durable_file.h"
 #include "contract/guarded_file.h"
+#include "contract/own_folder.h"
 #include "runner/campaign/quoting.h"
 
 namespace peclet::runner {
@@ -230,8 +231,6 @@ std::string make_way(const fs::path& path, const std::string& wanted) {
   return fmt::format("{}: was {} in the place of {}; moved to {}", path.string(), kind, wanted,
                      plain_name(aside));
 }
-
-fs::path own_folder() { return fs::read_symlink("/proc/self/exe").parent_path(); }
 
 std::optional<fs::path> own_file(const fs::path& name) {
   const fs::path installed = own_folder().parent_path() / "share" / "peclet" / name;

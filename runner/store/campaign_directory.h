@@ -103,9 +103,6 @@ std::string make_way(const fs::path& path, const std::string& wanted);
 
 // Files installed with the program: adapters of other engines, the fit of the jamming point.
 
-// Returns the folder of the running program.
-fs::path own_folder();
-
 // Returns the file `name` (relative, as in the source tree) that was installed with the program, in
 // ../share/peclet of its folder; for a program that was not installed, the file in the source of its build
 // tree. Returns nothing if it is not there. No other folder is searched, because a folder above the program
