@@ -80,7 +80,7 @@ demo() {
 
 package() {
   say "Building programs that need no shared library into build/package"
-  python3 python/build_backend.py >/dev/null
+  python3 python/build_backend.py
   say "build/package has"
   (cd build/package && ls -lh peclet-*.tar.gz peclet_*.deb peclet-*.whl)
 }

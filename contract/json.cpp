@@ -99,9 +99,9 @@ std::string usual_fault(std::string_view text, std::size_t offset) {
   if (closes && before != std::string_view::npos && text[before] == ',') {
     return "; the comma before it is one too many";
   }
-  if (from_here.starts_with("#")) return "; comments begin with //";
   if (from_here.starts_with("/*")) return "; the comment is not closed";
-  if (from_here.starts_with("/")) return "; JSON has no comments";
+  if (from_here.starts_with("//")) return "; JSON has no comments";
+  if (from_here.starts_with("/") || from_here.starts_with("#")) return "; comments begin with //";
   if (from_here.starts_with("'")) return "; JSON has double quotation marks, \"";
   return "";
 }
@@ -264,13 +264,12 @@ std::string without_comments(std::string text) {
     }
     const bool is_block = text.compare(at, 2, "/*") == 0;
     if (!is_block && text.compare(at, 2, "//") != 0) continue;
-    const std::size_t mark = text.find(is_block ? "*/" : "\n", at + 2);
+    const std::size_t mark = is_block ? text.find("*/", at + 2) : text.find_first_of("\r\n", at);
     if (is_block && mark == std::string::npos) break;  // never closed: a fault that the parser reports
     const std::size_t end = is_block ? mark + 2 : std::min(mark, text.size());
-    for (; at < end; ++at) {
-      if (text[at] != '\n') text[at] = ' ';
-    }
-    --at;
+    std::fill(text.begin() + static_cast<std::ptrdiff_t>(at), text.begin() + static_cast<std::ptrdiff_t>(end),
+              ' ');
+    at = end - 1;
   }
   return text;
 }

@@ -15,8 +15,8 @@ using Json = nlohmann::json;
 // comments and trailing text are faults.
 Json parse_json(std::string_view text, const std::string& file);
 
-// Returns JSON in which comments, // to the end of the line and /* to */, have been replaced by blanks. Every
-// other byte keeps its place.
+// Returns JSON in which comments, // to the end of the line and /* to */, have been replaced by blanks, also
+// the line breaks in them. Every other byte keeps its place.
 std::string without_comments(std::string text);
 
 // Reads and parses a file. Throws InputError if it is absent, unreadable or not JSON.

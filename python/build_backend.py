@@ -5,6 +5,7 @@ adapters and studies in share. The programs are static, so one wheel suits every
 functions are those of PEP 517.
 """
 import base64
+import gzip
 import hashlib
 import io
 import os
@@ -89,27 +90,37 @@ def source_files():
         listed = subprocess.run(["git", "-C", SOURCE, "ls-files", "-z"], check=True, capture_output=True, text=True)
         return listed.stdout.split("\0")[:-1]
     found = (path.relative_to(SOURCE) for path in SOURCE.rglob("*") if path.is_file())
-    return sorted(str(path) for path in found if path.parts[0] != "build")
+    return sorted(str(path) for path in found if path.parts[0] not in ("build", "PKG-INFO"))
+
+
+def of_nobody(member):
+    """Returns the member of an archive without owner and time: equal contents give equal archives."""
+    member.uid = member.gid = member.mtime = 0
+    member.uname = member.gname = ""
+    return member
 
 
 def build_sdist(sdist_directory, config_settings=None):
     about = project()
     stem = f"{about['name']}-{about['version']}"
-    with tarfile.open(Path(sdist_directory) / f"{stem}.tar.gz", "w:gz", format=tarfile.PAX_FORMAT) as tar:
+    written = io.BytesIO()
+    with tarfile.open(fileobj=written, mode="w", format=tarfile.PAX_FORMAT) as tar:
         for path in source_files():
-            tar.add(SOURCE / path, f"{stem}/{path}")
+            tar.add(SOURCE / path, f"{stem}/{path}", filter=of_nobody)
         text = metadata()
         member = tarfile.TarInfo(f"{stem}/PKG-INFO")
         member.size = len(text)
         tar.addfile(member, io.BytesIO(text))
+    (Path(sdist_directory) / f"{stem}.tar.gz").write_bytes(gzip.compress(written.getvalue(), mtime=0))
     return f"{stem}.tar.gz"
 
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
-    for command in (["cmake", "--preset", "package"], ["cmake", "--build", "--preset", "package"]):
-        subprocess.run(command, cwd=SOURCE, check=True)
-    subprocess.run(["cpack", "--preset", "package"], cwd=SOURCE, check=True)
-    [archive] = (SOURCE / "build/package").glob("peclet-*-linux-x86_64.tar.gz")
+    quiet = {"cwd": SOURCE, "check": True, "stdout": subprocess.DEVNULL}
+    subprocess.run(["cmake", "--preset", "package"], **quiet)
+    subprocess.run(["cmake", "--build", "--preset", "package"], cwd=SOURCE, check=True)
+    subprocess.run(["cpack", "--preset", "package"], **quiet)
+    archive = SOURCE / f"build/package/peclet-{project()['version']}-linux-x86_64.tar.gz"
     return make_wheel(archive, wheel_directory)
 
 

@@ -623,7 +623,7 @@ class Refused(Exception):
 def added_to_sweep(sweep, over, fractions):
     """Adds volume fractions to a sweep.
 
-    sweep        list of entries of a campaign file
+    sweep        list of entries of a campaign file, with lists in the place of ranges
     over         JSON pointer of the volume fraction
     fractions    list of numbers
 
@@ -638,7 +638,7 @@ def added_to_sweep(sweep, over, fractions):
             rule = "sets the fraction in step with others, whose values at new fractions are yours to choose: add the"
             raise Refused(f"/sweep/{place}/set", json.dumps(pointers, separators=(",", ":")), rule + " rows by hand")
         rows = [[fraction] if isinstance(entry["set"], list) else fraction for fraction in fractions]
-        patch = [{"op": "add", "path": f"/sweep/{place}/values/-", "value": row} for row in rows]
         changed = {**entry, "values": [*entry["values"], *rows]}
+        patch = [{"op": "replace", "path": f"/sweep/{place}/values", "value": changed["values"]}]
         return patch, [*sweep[:place], changed, *sweep[place + 1 :]]
     raise Refused("/sweep", over, "is set by no entry")

@@ -15,16 +15,27 @@ class PecletError(Exception):
     """An error that the program peclet or this package reports; its text is meant for users."""
 
 
+def installed_beside():
+    """Returns the folder of the programs that pip installs together with a package in the folder of this one."""
+    package = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+    for scheme in sysconfig.get_scheme_names():
+        if package in (sysconfig.get_path("platlib", scheme), sysconfig.get_path("purelib", scheme)):
+            return sysconfig.get_path("scripts", scheme)
+    return os.devnull  # not installed by pip
+
+
 def find_program(program=None):
     """Returns the path of the program peclet.
 
-    program    path or name; by default the environment variable PECLET, or else "peclet" on PATH, or else beside this
-               interpreter, where pip has put it
+    program    path or name; by default the environment variable PECLET, or else the program that pip installed
+               together with this package, or else "peclet" on PATH
 
     Raises PecletError if it is not found.
     """
     name = program or os.environ.get("PECLET") or "peclet"
-    path = shutil.which(name) or shutil.which(name, path=sysconfig.get_path("scripts"))
+    chosen = program or os.environ.get("PECLET")
+    beside = None if chosen else shutil.which(name, path=installed_beside())
+    path = beside or shutil.which(name)
     if path is None:
         raise PecletError(
             f"{name}: no such program; install peclet, or set the environment variable PECLET to its path"

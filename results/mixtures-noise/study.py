@@ -234,7 +234,8 @@ def rows_of_colloids_added(table):
     best, fast = factor(of[1]), factor(of[1000])
     text = "grains at φ₀ = 0.55, Pe_c = 1: η_r at α = 1 over the smallest with colloids added"
     yield Statement(text, "L5.2b", *best, 4, 12, DEGREES)
-    yield Statement("grains at φ₀ = 0.55, Pe_c = 1: α of the smallest η_r with colloids added", "L5.2b", *place_of_largest(COLLOIDS_ADDED[1:], of[1]), 0.6, 0.8)
+    text = "grains at φ₀ = 0.55, Pe_c = 1: α of the smallest η_r with colloids added"
+    yield Statement(text, "L5.2b", *place_of_largest(COLLOIDS_ADDED[1:], of[1]), 0.6, 0.8)
     decades = NUMBERS[:-1]
     strongest = propagated_lists(
         [of[peclet] for peclet in decades], lambda v: float(np.log10(decades[int(np.argmax([max(d) for d in v]))]))
@@ -343,7 +344,9 @@ def checks(table):
 def rows_of_compositions(numbers):
     text = "largest distance of the volume fractions of 11 compositions from those in print"
     yield Statement(text, "L5.2", *numbers["fraction off"][:2], high=1e-3)
-    yield Finding("largest distance of α of 10 000 whole spheres from that asked for", "L5.2", *numbers["share off"][:2])
+    yield Finding(
+        "largest distance of α of 10 000 whole spheres from that asked for", "L5.2", *numbers["share off"][:2]
+    )
     *times, degrees = numbers["times of diffusion"]
     yield Statement("dilute: a²/D of radius 5 over that of radius 1", "L 5.1", *times, 0.97 * 125, 1.03 * 125, degrees)
 
@@ -382,7 +385,13 @@ def draw():
     for alpha in COLLOIDS_ADDED:
         title = f"α = {alpha:g}, φ = {colloids_added(alpha, BASE):.3f}"
         curve(one, "colloids-added", "peclet", title, COLOURS[alpha], alpha=alpha)
-    one = panel("share of grains α", "colloids added to grains, over the share of grains", "y", x_range=(0.55, 1.05), key="top right")
+    one = panel(
+        "share of grains α",
+        "colloids added to grains, over the share of grains",
+        "y",
+        x_range=(0.55, 1.05),
+        key="top right",
+    )
     for peclet, colour in ((0.1, GREY), (1, BLUE), (10, GREEN), (100, ORANGE), (1e3, RED)):
         curve(one, "colloids-added", "alpha", f"Pe_c = {peclet:g}", colour, peclet=peclet)
     curve(one, "no-noise", "alpha", "without noise", PURPLE)

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <system_error>
 #include <utility>
 
 #include "contract/errors.h"
@@ -81,6 +82,9 @@ int seeds_with_files(const Json& document) {
 void read_scene(Json& scene, const std::string& file) {
   if (!scene.is_string()) return;
   const auto path = home_of(file) / scene.get<std::string>();
+  std::error_code impossible;  // reading it says why
+  if (std::filesystem::exists(path, impossible) && !std::filesystem::is_regular_file(path, impossible))
+    throw InputError(file, "/scene", shortened(scene), "must name a file; this is none");
   Json read;
   try {
     read = read_json_input(path);
@@ -263,7 +267,7 @@ Campaign parse_campaign(const Json& written, const std::string& file) {
   Campaign campaign;
   campaign.document = campaign_keys().validate(written, file);
   read_scene(campaign.document["scene"], file);
-  write_out_ranges(campaign.document["sweep"], file);
+  campaign.document["sweep"] = without_ranges(std::move(campaign.document["sweep"]), file);
   const Json& document = campaign.document;
   campaign.name = document["name"].get<std::string>();
   check_campaign_name(campaign.name, file);
@@ -338,7 +342,7 @@ constexpr const char* campaign_rows = R"(
     array with one value for every pointer. An object is a range of values of one pointer.
 /sweep/*/values/from, /sweep/*/values/to | number | First and last value of a range.
 /sweep/*/values/points | integer >= 2 and <= 100000 | Number of values. Those between the ends are rounded to six
-    digits.
+    digits; whole numbers need a list.
 /sweep/*/values/spaced | one of log, linear | log: equal ratios of neighbours; linear: equal differences.
 /target? | object | The accuracy at which a point is done. Required, unless the number of realisations is fixed.
 /target/observable | string; default "{observable}" | Path of a number in the result's mean.

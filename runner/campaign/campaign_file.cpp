@@ -67,8 +67,10 @@ void require_campaign_file(const fs::path& given) {
 
 fs::path home_of(const fs::path& campaign_file) {
   std::error_code impossible;
-  return fs::is_regular_file(campaign_file, impossible) ? fs::absolute(campaign_file).parent_path()
-                                                        : fs::current_path();
+  const fs::file_type type = fs::status(campaign_file, impossible).type();
+  const bool has_no_folder =
+      campaign_file.empty() || type == fs::file_type::fifo || type == fs::file_type::character;
+  return has_no_folder ? fs::current_path() : fs::absolute(campaign_file).parent_path();
 }
 
 namespace {
@@ -175,7 +177,7 @@ std::string with_new_member(const std::string& text, std::size_t object, const s
 
 std::string with_value(const std::string& text, const std::vector<std::string>& path, const Json& value) {
   const Walker walker(text);
-  std::size_t object = walker.skip_blanks(0);
+  std::size_t object = walker.skip_blanks(text.starts_with("\xEF\xBB\xBF") ? 3 : 0);  // a byte-order mark
   for (std::size_t depth = 0; depth < path.size(); ++depth) {
     const std::optional<Member> member = walker.member(object, path[depth]);
     const bool is_last = depth + 1 == path.size();

@@ -19,6 +19,13 @@
 namespace peclet::runner {
 namespace {
 
+constexpr std::size_t most_points = 100'000;
+
+[[noreturn]] void refuse_points(const std::string& file) {
+  throw InputError(file, "/sweep", fmt::format("more than {} points", most_points),
+                   fmt::format("must make at most {} points", most_points));
+}
+
 const char* const pointer_rule =
     "must be a JSON pointer into the scene, such as \"/fluid/viscosity\", or an array of them";
 
@@ -91,42 +98,57 @@ void refuse_conflicts(const std::vector<SweepEntry>& sweep, const std::string& f
   }
 }
 
-}  // namespace
-
-namespace {
-
 // Returns value k of a range.
 Json value_of_range(const Json& range, int k) {
   const int last = range.at("points").get<int>() - 1;
   if (k == 0 || k == last) return range.at(k == 0 ? "from" : "to");
   const double from = range.at("from").get<double>(), to = range.at("to").get<double>(),
                share = 1.0 * k / last;
-  const double value =
-      range.at("spaced") == "log" ? from * std::pow(to / from, share) : std::lerp(from, to, share);
+  const bool is_logarithmic = range.at("spaced") == "log";
+  double value =
+      is_logarithmic ? std::exp(std::lerp(std::log(from), std::log(to), share)) : std::lerp(from, to, share);
+  // Where a linear range crosses zero, rounding leaves a residue.
+  if (!is_logarithmic && std::abs(value) < 1e-12 * std::max(std::abs(from), std::abs(to))) value = 0;
   return Json::parse(fmt::format("{:.6g}", value));  // a value that labels and tables can show
+}
+
+Json values_of_range(const Json& range, const std::string& where, const std::string& file) {
+  for (const char* const end : {"from", "to"}) {
+    if (range.at("spaced") == "log" && range.at(end).get<double>() <= 0) {
+      throw InputError(file, fmt::format("{}/{}", where, end), shortened(range.at(end)),
+                       "must be above 0 for logarithmic spacing");
+    }
+  }
+  Json values = Json::array();
+  for (int k = 0; k < range.at("points").get<int>(); ++k) values.push_back(value_of_range(range, k));
+  for (std::size_t k = 1; k < values.size(); ++k) {
+    if (values[k] == values[k - 1])
+      throw InputError(file, where, shortened(range),
+                       "must have values that differ in their first six digits");
+  }
+  return values;
 }
 
 }  // namespace
 
-void write_out_ranges(Json& sweep, const std::string& file) {
+Json without_ranges(Json sweep, const std::string& file) {
+  std::size_t points = 1;
+  for (const Json& entry : sweep) {
+    const Json& values = entry.at("values");
+    points *= values.is_object() ? values.at("points").get<std::size_t>() : values.size();
+    if (points > most_points) refuse_points(file);
+  }
   for (std::size_t entry = 0; entry < sweep.size(); ++entry) {
-    const Json range = sweep[entry].at("values");
-    if (!range.is_object()) continue;
+    Json& values = sweep[entry].at("values");
+    if (!values.is_object()) continue;
     const std::string where = fmt::format("/sweep/{}/values", entry);
     if (sweep[entry].at("set").is_array()) {
-      throw InputError(file, where, shortened(range),
+      throw InputError(file, where, shortened(values),
                        "must be a list if set is one: a range has the values of one pointer");
     }
-    for (const char* const end : {"from", "to"}) {
-      if (range.at("spaced") == "log" && range.at(end).get<double>() <= 0) {
-        throw InputError(file, fmt::format("{}/{}", where, end), shortened(range.at(end)),
-                         "must be above 0 for logarithmic spacing");
-      }
-    }
-    Json values = Json::array();
-    for (int k = 0; k < range.at("points").get<int>(); ++k) values.push_back(value_of_range(range, k));
-    sweep[entry]["values"] = std::move(values);
+    values = values_of_range(values, where, file);
   }
+  return sweep;
 }
 
 std::vector<SweepEntry> read_sweep(const Json& sweep, const std::string& file) {
@@ -188,8 +210,6 @@ std::string SweepLabels::of(const std::vector<std::size_t>& row_of_entry) const 
 
 namespace {
 
-constexpr std::size_t most_points = 100'000;
-
 // Returns the index of the element that a step of a pointer names; nothing if the array lacks it. RFC 6901
 // allows no leading zeros.
 std::optional<std::size_t> element(const Json& array, const std::string& step) {
@@ -241,10 +261,7 @@ std::size_t count_points(const std::vector<SweepEntry>& sweep, const std::string
   std::size_t count = 1;
   for (const SweepEntry& entry : sweep) {
     count *= entry.rows.size();
-    if (count > most_points) {
-      throw InputError(file, "/sweep", fmt::format("more than {} points", most_points),
-                       fmt::format("must make at most {} points", most_points));
-    }
+    if (count > most_points) refuse_points(file);
   }
   return count;
 }

@@ -14,10 +14,11 @@ struct SweepEntry {
   std::vector<std::vector<Json>> rows;  // rows[k][i] is a value of pointers[i]
 };
 
-// Replaces ranges, such as { "from": 0.01, "to": 1e4, "points": 7, "spaced": "log" }, by lists of their
-// values. Values between the ends have six digits. Throws InputError for logarithmic ranges with an end that
-// is not above 0, and for a range that has several pointers.
-void write_out_ranges(Json& sweep, const std::string& file);
+// Returns the sweep of a document that campaign_keys() has validated with lists in the place of ranges, such
+// as { "from": 0.01, "to": 1e4, "points": 7, "spaced": "log" }. Values between the ends have six digits.
+// Throws InputError for logarithmic ranges with an end that is not above 0, for values that do not differ,
+// for a range with several pointers, and for too many points.
+Json without_ranges(Json sweep, const std::string& file);
 
 // Reads the "sweep" of a document that campaign_keys() has validated, without ranges. Throws InputError for
 // an invalid pointer, for a row that has not one value per pointer, and for pointers of which one contains

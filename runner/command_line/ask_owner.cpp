@@ -238,7 +238,7 @@ Reply take_over(const SetOptions& options) {
                           text != before ? "changed" : "valid and unchanged",
                           words_for(options.campaign, options.directory))};
     }
-    request = write_request(directory, TakeOver{file, sha256(text)});
+    request = write_request(directory, TakeOver{fs::absolute(options.campaign), sha256(text)});
   }
   try {
     return await_reply(directory, request, words_for(options.campaign, options.directory), options.patience);

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "contract/errors.h"
+#include "contract/text.h"
 #include "runner/campaign/number_text.h"
 #include "runner/command_line/print.h"
 #include "runner/owner/open_campaign.h"
@@ -24,7 +25,9 @@ ListedCampaign listed(const fs::path& folder, const fs::path& searched) {
   const fs::path file = fs::path(folder).replace_extension(".json");
   std::error_code unreadable;
   const bool has_file = folder.extension() == ".peclet" && fs::is_regular_file(file, unreadable);
-  ListedCampaign campaign{(has_file ? file : folder).lexically_proximate(searched).string(), {}};
+  const fs::path shown =
+      folder == searched ? folder : (has_file ? file : folder).lexically_proximate(searched);
+  ListedCampaign campaign{printable(shown.string()), {}};
   try {
     OpenCampaign open = open_campaign(folder, "");
     campaign.status = read_status(open.database, current_owner(open.directory));
@@ -38,9 +41,11 @@ ListedCampaign listed(const fs::path& folder, const fs::path& searched) {
 
 std::vector<ListedCampaign> campaigns_below(const fs::path& folder) {
   std::error_code fault;
-  fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied, fault);
+  const fs::directory_iterator first(folder, fault);  // the recursive one passes over a folder closed to us
   if (fault) throw InputError(folder.string(), "", "", fault.message());
+  if (is_campaign(folder)) return {listed(folder, folder)};
   std::vector<fs::path> found;
+  fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied, fault);
   for (const fs::recursive_directory_iterator end; entry != end; entry.increment(fault)) {
     std::error_code unreadable;  // such an entry is no campaign
     if (entry->is_symlink(unreadable) || !entry->is_directory(unreadable) || !is_campaign(entry->path()))
@@ -48,6 +53,7 @@ std::vector<ListedCampaign> campaigns_below(const fs::path& folder) {
     found.push_back(entry->path());
     entry.disable_recursion_pending();
   }
+  if (fault) throw InputError(folder.string(), "", "", "cannot be searched: " + fault.message());
   std::sort(found.begin(), found.end());
   std::vector<ListedCampaign> campaigns;
   for (const fs::path& path : found) campaigns.push_back(listed(path, folder));

@@ -16,7 +16,8 @@ struct ListedCampaign {
   std::string fault{};                   // the reason
 };
 
-// Returns the campaigns that have been run in `folder` and the folders below it, sorted by name. Links are
+// Returns the campaigns that have been run in `folder` and the folders below it, sorted by name; `folder`
+// alone if it is a campaign's. Links are
 // not followed, and folders that may not be read are left out. Throws InputError if `folder` cannot be read.
 std::vector<ListedCampaign> campaigns_below(const std::filesystem::path& folder);
 

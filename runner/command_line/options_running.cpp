@@ -47,9 +47,10 @@ says what is wrong with it.
   peclet init --list
   peclet init thickening.json --example thickening
 )");
-  add_option(verb, "campaign FILE.json", options->campaign, "Campaign file (JSON) to write; must not exist");
+  CLI::Option* const file = add_option(verb, "campaign FILE.json", options->campaign,
+                                       "Campaign file (JSON) to write; must not exist");
   add_option(verb, "--example NAME", options->example, "Example to begin with")->capture_default_str();
-  verb->add_flag("--list", options->list, "List the examples, and write nothing");
+  verb->add_flag("--list", options->list, "List the examples, and write nothing")->excludes(file);
 }
 
 void add_validate(VerbSet& verbs) {

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "contract/errors.h"
-#include "contract/named_files.h"
 #include "contract/guarded_file.h"
+#include "contract/named_files.h"
 #include "contract/sha256.h"
 #include "runner/campaign/number_text.h"
 #include "runner/campaign/quoting.h"
@@ -267,7 +267,7 @@ void RequestHandler::carry_out(const Request& request) {
 RequestHandler::Done RequestHandler::apply(const TakeOver& wish) {
   std::string text;
   try {
-    text = read_regular(wish.file, largest_campaign_file);
+    text = read_regular(fs::canonical(wish.file), largest_campaign_file);  // wish.file may be a link
   } catch (const std::system_error& error) {
     throw InputError(wish.file.string(), "", "", error.what());
   }

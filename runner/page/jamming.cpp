@@ -160,7 +160,7 @@ Proposal find_jamming(const JammingOptions& options) {
   Json sweep = Json::array();
   if (options.propose) {
     source = source_of(options.campaign, campaign);
-    sweep = parse_json_input(source.text, source.file.string()).value("sweep", sweep);
+    sweep = sweep_of(source);
   }
   const Json found = answer_of_package("jamming", "jamming_report", "NumPy (Debian: python3-numpy)",
                                        document_of(options, curves, sweep), source.file.string());

@@ -161,7 +161,7 @@ Proposal propose_next(const NextOptions& options) {
   std::vector<Planned> curves;
   for (const Curve& curve : curves_of(campaign.document, target))
     curves.push_back(planned(curve, points, campaign.target, options));
-  const Json written = parse_json_input(source.text, source.file.string()).value("sweep", Json::array());
+  const Json written = sweep_of(source);
   const bool is_the_same = written == campaign.document.at("sweep");
   const Json patch = patch_of(curves, target, is_the_same ? whole_sweep(campaign.document, target) : written);
 

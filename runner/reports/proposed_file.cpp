@@ -7,6 +7,7 @@
 #include "contract/named_files.h"
 #include "runner/campaign/campaign.h"
 #include "runner/campaign/quoting.h"
+#include "runner/campaign/sweep.h"
 #include "runner/owner/open_campaign.h"
 
 namespace peclet::runner {
@@ -15,6 +16,12 @@ CampaignSource source_of(const fs::path& given, const CampaignRecord& campaign) 
   const fs::path file = campaign_file_of(given);
   if (fs::is_regular_file(file)) return {file, read_input(file)};
   return {given, campaign.document.dump(2) + '\n'};
+}
+
+Json sweep_of(const CampaignSource& source) {
+  const std::string file = source.file.string();
+  const Json document = campaign_keys().validate(parse_json_input(source.text, file), file);
+  return without_ranges(document["sweep"], file);
 }
 
 void check_new_file(const fs::path& file) {

@@ -22,6 +22,9 @@ struct CampaignSource {
 // `given` is the file or folder by which the campaign was named.
 CampaignSource source_of(const fs::path& given, const CampaignRecord& campaign);
 
+// Returns the sweep that the author wrote, with lists in the place of ranges. Throws InputError.
+Json sweep_of(const CampaignSource& source);
+
 // Throws InputError at --write if the file exists or cannot be written; does nothing for "". Called before
 // any work is done.
 void check_new_file(const fs::path& file);

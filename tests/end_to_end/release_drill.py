@@ -167,7 +167,8 @@ def main():
     for tool in ("debootstrap", "readelf"):
         if not shutil.which(tool):
             fail(f"needs {tool}: apt install debootstrap binutils")
-    archive, package = only(f"{arguments.folder}/peclet-*-linux-x86_64.tar.gz"), only(f"{arguments.folder}/peclet_*.deb")
+    archive = only(f"{arguments.folder}/peclet-*-linux-x86_64.tar.gz")
+    package = only(f"{arguments.folder}/peclet_*.deb")
     with debian(arguments) as root:
         try_package(root, package, try_archive(root, archive))
 

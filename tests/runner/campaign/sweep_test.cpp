@@ -43,11 +43,15 @@ TEST(Sweep, ARangeIsTheListOfItsValues) {
   Json sweep = Json::parse(R"([
     {"set": "/peclet", "values": {"from": 0.01, "to": 1e4, "points": 5, "spaced": "log"}},
     {"set": "/contact/friction", "values": {"from": 1, "to": 0, "points": 4, "spaced": "linear"}},
-    {"set": "/volume_fraction", "values": [0.4]}])");
-  write_out_ranges(sweep, "campaign.json");
+    {"set": "/volume_fraction", "values": [0.4]},
+    {"set": "/flow/uniaxial_rate", "values": {"from": -2, "to": 0.4, "points": 7, "spaced": "linear"}},
+    {"set": "/fluid/viscosity", "values": {"from": 1e-200, "to": 1e200, "points": 3, "spaced": "log"}}])");
+  sweep = without_ranges(sweep, "campaign.json");
   EXPECT_EQ(sweep[0]["values"].dump(), "[0.01,0.316228,10,316.228,10000.0]");
   EXPECT_EQ(sweep[1]["values"].dump(), "[1,0.666667,0.333333,0]");
   EXPECT_EQ(sweep[2]["values"].dump(), "[0.4]");
+  EXPECT_EQ(sweep[3]["values"], Json::parse("[-2, -1.6, -1.2, -0.8, -0.4, 0, 0.4]"));
+  EXPECT_EQ(sweep[4]["values"][1], 1);
 }
 
 TEST(Sweep, MissingObjectsAreMadeAndElementsOfArraysAreFound) {

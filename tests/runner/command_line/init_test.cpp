@@ -24,7 +24,7 @@ TEST(Init, WritesACampaignThatIsNamedForItsFile) {
 TEST(Init, EveryExampleIsACampaignThatSaysWhatItIs) {
   const TemporaryFolder folder;
   const std::string list = init_campaign({{}, "", true});
-  EXPECT_GE(example_texts().size(), 14U);
+  EXPECT_GE(example_texts().size(), 15U);
   for (const auto& [key, text] : example_texts()) {
     const std::string name = key.substr(key.find('-') + 1);
     const std::filesystem::path file = folder.path() / ("my-" + name + ".json");

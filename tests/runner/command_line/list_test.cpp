@@ -55,6 +55,11 @@ TEST(List, FindsCampaignsInFoldersBelowAndNamesThoseThatCannotBeRead) {
   fs::create_directory_symlink(folder.path() / "b", folder.path() / "c");
   EXPECT_EQ(states(folder.path()), "b/deep.peclet unreadable\n");
   EXPECT_NE(list_json(campaigns_below(folder.path()))[0]["fault"].get<std::string>(), "");
+  const fs::path campaign = folder.path() / "b" / "deep.peclet";
+  EXPECT_EQ(states(campaign), campaign.string() + " unreadable\n");
+  fs::create_directories(folder.path() / "b" / "\xff\n.peclet" / "backup");
+  EXPECT_NO_THROW(list_json(campaigns_below(folder.path())).dump());
+  EXPECT_EQ(list_table(campaigns_below(folder.path())).find('\xff'), std::string::npos);
 }
 
 TEST(List, RefusesWhatIsNoFolder) {

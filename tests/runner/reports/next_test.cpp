@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "contract/errors.h"
+#include "runner/reports/proposed_file.h"
 #include "tests/contract/refusal.h"
 #include "tests/runner/reports/curve_campaign.h"
 
@@ -90,6 +91,14 @@ TEST_F(Next, SaysWhatIsMissing) {
   complete(campaign_, 0, 10, 8);
   EXPECT_EQ(next({}).text, "the means of 1 point are known, and a curve needs 4\n");
   EXPECT_TRUE(json()["patch"].is_null());
+}
+
+// `peclet jamming --propose` adds its points to the same list.
+TEST(ProposedFile, HasListsInThePlaceOfRanges) {
+  const CampaignSource source{"curve.json", R"({"name": "curve", "scene": {}, // a range
+    "sweep": [{"set": "/peclet", "values": {"from": 1, "to": 1000, "points": 4, "spaced": "log"}}],
+    "realisations": 8})"};
+  EXPECT_EQ(sweep_of(source)[0]["values"], Json::parse("[1, 10, 100, 1000]"));
 }
 
 TEST(NextWithoutACurve, IsRefused) {
