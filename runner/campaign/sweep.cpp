@@ -122,9 +122,10 @@ Json values_of_range(const Json& range, const std::string& where, const std::str
   Json values = Json::array();
   for (int k = 0; k < range.at("points").get<int>(); ++k) values.push_back(value_of_range(range, k));
   for (std::size_t k = 1; k < values.size(); ++k) {
-    if (values[k] == values[k - 1])
+    if (values[k] == values[k - 1]) {
       throw InputError(file, where, shortened(range),
                        "must have values that differ in their first six digits");
+    }
   }
   return values;
 }

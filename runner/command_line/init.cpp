@@ -21,6 +21,7 @@ constexpr std::string_view folder_of_examples = "examples-";
 
 std::vector<std::string> example_names() {
   std::vector<std::string> names;
+  names.reserve(example_texts().size());
   for (const auto& [name, text] : example_texts()) names.push_back(name.substr(folder_of_examples.size()));
   return names;
 }

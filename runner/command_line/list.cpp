@@ -56,6 +56,7 @@ std::vector<ListedCampaign> campaigns_below(const fs::path& folder) {
   if (fault) throw InputError(folder.string(), "", "", "cannot be searched: " + fault.message());
   std::sort(found.begin(), found.end());
   std::vector<ListedCampaign> campaigns;
+  campaigns.reserve(found.size());
   for (const fs::path& path : found) campaigns.push_back(listed(path, folder));
   return campaigns;
 }
