@@ -10,7 +10,7 @@ install(DIRECTORY docs DESTINATION ${own})
 # With the prefix /usr this is in the path of Debian's python3.
 install(DIRECTORY python/peclet DESTINATION lib/python3/dist-packages ${unwanted})
 # Further pages that these pages link to; tests/pages/links.py checks the installed ones.
-foreach(page README.md CHANGELOG.md CONTRIBUTING.md LICENSE CITATION.cff engine/PHYSICS.md runner/HANDOVER.md tests/bench/README.md
+foreach(page README.md CHANGELOG.md CONTRIBUTING.md LICENSE CITATION.cff paper.md engine/PHYSICS.md runner/HANDOVER.md tests/bench/README.md
     tests/end_to_end/README.md tests/end_to_end/MISTAKES.md tests/mutations/mutations.md tests/physics/README.md
     tests/reference/README.md tests/reference/forces/README.md)
   cmake_path(GET page PARENT_PATH folder)
