@@ -16,7 +16,7 @@ to_build=(
   nlohmann-json3-dev libcli11-dev libfmt-dev libspdlog-dev                 # both programs
   librandom123-dev libsodium-dev libsqlite3-dev zlib1g-dev libboost-dev libeigen3-dev
 )
-to_package=(help2man)  # manual pages
+to_package=(help2man python3)  # manual pages; the wheel
 to_test=(
   libgtest-dev python3 python3-jsonschema sqlite3 libfaketime
   groff-base systemd                                                      # check manual pages and the unit
@@ -80,7 +80,7 @@ demo() {
 
 package() {
   say "Building programs that need no shared library into build/package"
-  python3 python/build_backend.py
+  /usr/bin/python3 python/build_backend.py
   say "build/package has"
   (cd build/package && ls -lh peclet-*.tar.gz peclet_*.deb peclet-*.whl)
 }

@@ -217,10 +217,6 @@ void write_canonical(const Json& value, std::string& out) {
   }
 }
 
-}  // namespace
-
-namespace {
-
 // Parses `text`, in which comments have been replaced by blanks; faults are placed in the text as `written`.
 Json parsed(std::string_view text, std::string_view written, const std::string& file,
             std::size_t most_values) {

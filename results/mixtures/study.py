@@ -193,6 +193,9 @@ def dense_rows(points):
         yield Statement(f"{name} at α = {alpha:g} (above 1: flows)", "L5.6", *room(alpha), low, high)
     text = f"{name} at α = 0.6 over that at 0.7 (further away)"
     yield Statement(text, "L5.6", *quotient(room(0.6), room(0.7)), low=1)
+    for name, model in packing_models(ALONE[1]).items():
+        of_model = [model(alpha) / colloids_added(alpha, DENSE) for alpha in (0.6, 0.7)]
+        yield Finding(f"{text}, {name}", "packing models", of_model[0] / of_model[1], 0)
 
 
 def consistency_rows(rows):

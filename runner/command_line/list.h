@@ -26,7 +26,7 @@ std::vector<ListedCampaign> campaigns_below(const std::filesystem::path& folder)
 std::string state_of(const ListedCampaign& campaign);
 
 std::string list_table(const std::vector<ListedCampaign>& campaigns);
-// Returns an array of objects, null where a number is not known.
+// Returns the array that schema/README.md describes (List).
 Json list_json(const std::vector<ListedCampaign>& campaigns);
 
 }  // namespace peclet::runner

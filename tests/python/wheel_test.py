@@ -77,7 +77,12 @@ class Wheel(unittest.TestCase):
         self.assertIn("Version: ", said_by(*self.pip, "show", "peclet"))
 
     def test_runs_as_a_module_with_the_programs_beside_the_interpreter(self):
-        bare = {"PATH": "/usr/bin:/bin", "HOME": str(self.path)}
+        # A program of another release in PATH is not taken.
+        (self.path / "other").mkdir()
+        other = self.path / "other/peclet"
+        other.write_text("#!/bin/sh\nexit 9\n")
+        other.chmod(0o755)
+        bare = {"PATH": f"{other.parent}:/usr/bin:/bin", "HOME": str(self.path)}
         python = self.path / "env/bin/python3"
         version = said_by(BUILD / "bin/peclet", "--version")
         self.assertEqual(said_by(python, "-m", "peclet", "--version", env=bare), version)
