@@ -99,7 +99,6 @@ std::string usual_fault(std::string_view text, std::size_t offset) {
   if (closes && before != std::string_view::npos && text[before] == ',') {
     return "; the comma before it is one too many";
   }
-  if (from_here.starts_with("/*")) return "; the comment is not closed";
   if (from_here.starts_with("//")) return "; JSON has no comments";
   if (from_here.starts_with("/") || from_here.starts_with("#")) return "; comments begin with //";
   if (from_here.starts_with("'")) return "; JSON has double quotation marks, \"";
@@ -217,12 +216,10 @@ void write_canonical(const Json& value, std::string& out) {
   }
 }
 
-// Parses `text`, in which comments have been replaced by blanks; faults are placed in the text as `written`.
-Json parsed(std::string_view text, std::string_view written, const std::string& file,
-            std::size_t most_values) {
+Json parsed(std::string_view text, const std::string& file, std::size_t most_values, bool has_comments) {
   const char* furthest = text.data();
   const auto fault = [&](std::size_t offset, const std::string& message) {
-    return InputError(file, "", "", place(written, offset) + ": " + message);
+    return InputError(file, "", "", place(text, offset) + ": " + message);
   };
   const auto here = [&] {
     const auto read = static_cast<std::size_t>(furthest - text.data());
@@ -236,11 +233,16 @@ Json parsed(std::string_view text, std::string_view written, const std::string& 
   Builder builder(most_values);
   try {
     const char* const end = text.data() + text.size();
-    Json::sax_parse(TrackedIterator(text.data(), &furthest), TrackedIterator(end, &furthest), &builder);
+    Json::sax_parse(TrackedIterator(text.data(), &furthest), TrackedIterator(end, &furthest), &builder,
+                    Json::input_format_t::json, true, has_comments);
     return builder.take();
   } catch (const Json::parse_error& error) {
     const std::size_t offset = std::min(text.size(), error.byte == 0 ? 0 : error.byte - 1);
-    const std::string why = reason(error.what()), usual = usual_fault(text, offset);
+    const std::string why = reason(error.what());
+    const bool is_open_comment = why.find("missing closing '*/'") != std::string::npos;
+    const std::string usual = is_open_comment ? "; the comment is not closed"
+                              : has_comments  ? usual_fault(without_comments(std::string(text)), offset)
+                                              : usual_fault(text, offset);
     // The explanation of a usual fault replaces what the parser read last and expected.
     throw fault(offset, usual.empty() ? why : why.substr(0, why.find("; ")) + usual);
   } catch (const Builder::Fault& refused) {
@@ -271,11 +273,11 @@ std::string without_comments(std::string text) {
 }
 
 Json parse_json(std::string_view text, const std::string& file) {
-  return parsed(text, text, file, std::numeric_limits<std::size_t>::max());
+  return parsed(text, file, std::numeric_limits<std::size_t>::max(), false);
 }
 
 Json parse_json_input(std::string_view text, const std::string& file, std::size_t most_values) {
-  return parsed(without_comments(std::string(text)), text, file, most_values);
+  return parsed(text, file, most_values, true);
 }
 
 Json read_json(const std::filesystem::path& path) {

@@ -99,7 +99,8 @@ def text_faults():
         "that is no UTF-8": b'{"name": "\xff\xfe"}',
         "with a half of a surrogate": b'{"name": "\\ud800"}',
         "with a raw control character": b'{"name": "a\x1bb"}',
-        "with a comment": b"// one\n" + sound.encode(),
+        "with a comment without end": sound.encode() + b"/*" + b" one" * 1_000_000,
+        "with half a comment": b"/ one\n" + sound.encode(),
         "with a comma too many": sound[:-1].encode() + b",}",
         "with single quotes": sound.replace('"', "'").encode(),
         "with typographic quotes": "{\u201cname\u201d: 1}".encode(),
@@ -116,7 +117,7 @@ def text_faults():
         "a text without end": b'{"name": "' + b"x" * 5_000_000,
         "a number without end": b'{"name": ' + b"1" * 1_000_000,
         "too many values": b"[" + b"0," * 8_000_000 + b"0]",
-        "too many objects": b"[" + b'{"a":{}},' * 1_500_000 + b"{}]",
+        "too many objects": b"// many\n[" + b'{"a":{}},' * 1_500_000 + b"{}]",
         "17 MB": b"[" + b" " * 17_000_000 + b"]",
         "a program": open(sys.executable, "rb").read(1_000_000),
     }
