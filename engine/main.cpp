@@ -314,7 +314,8 @@ int main(int argc, char** argv) {
   ConversionOptions conversion;
   CLI::App* trajectory_command =
       app.add_subcommand("trajectory", "Convert frames of a realisation to a text for other programs");
-  trajectory_command->add_option("file", conversion.file, "GSD file or extended XYZ")->required();
+  trajectory_command->add_option("file", conversion.file, "GSD, extended XYZ, or a file of LAMMPS or LF_DEM")
+      ->required();
   trajectory_command
       ->add_option("--format", conversion.format, "lammps (dump) or xyz; else by the output's name")
       ->check(one_of({"lammps", "xyz"}));
@@ -326,7 +327,8 @@ int main(int argc, char** argv) {
   PictureOptions picture;
   picture.threads = std::min(omp_get_num_procs(), 8);
   CLI::App* snapshot_command = app.add_subcommand("snapshot", "Draw a frame as a picture");
-  snapshot_command->add_option("file", picture.file, "GSD file or extended XYZ")->required();
+  snapshot_command->add_option("file", picture.file, "GSD, extended XYZ, or a file of LAMMPS or LF_DEM")
+      ->required();
   snapshot_command->add_option("--output", picture.output, "PNG file")->required();
   snapshot_command->add_option("--frame", picture.frame, "Number of the frame; -1 is the last one")
       ->capture_default_str();

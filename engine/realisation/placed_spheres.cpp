@@ -6,6 +6,8 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <numeric>
+#include <ranges>
 #include <system_error>
 #include <vector>
 
@@ -25,11 +27,12 @@ constexpr double rounding = 5e-6;
 
 bool is_near(double a, double b, double scale) { return std::abs(a - b) <= rounding * scale; }
 
-// Returns true if the radii agree in some order.
-bool are_the_same(std::vector<double> found, std::vector<double> wanted) {
-  std::ranges::sort(found);
-  std::ranges::sort(wanted);
-  return std::ranges::equal(found, wanted, [](double a, double b) { return is_near(a, b, b); });
+// Returns the indices of radii in increasing order; those of equal radii stay in order.
+std::vector<std::size_t> order_of(const std::vector<double>& radius) {
+  std::vector<std::size_t> order(radius.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return radius[i]; });
+  return order;
 }
 
 class Placing {
@@ -41,7 +44,7 @@ class Placing {
     const std::string path = start_.is_list ? listed(seed) : start_.path;
     if (!start_.is_list) require_hash(path, start_.sha256, "/start/sha256");
     const SnapshotFile frames(path);
-    const Snapshot snapshot = frames.read(frames.index_of(start_.frame));
+    Snapshot snapshot = frames.read(frames.index_of(start_.frame));
     PlacedSpheres placed;
     placed.system.particles = make_particles(radii_of(snapshot), species_densities(scene_.particles));
     placed.system.box = box_of(snapshot);
@@ -147,7 +150,8 @@ class Placing {
     return PeriodicCell(box, scene_.physics.flow.deformation().velocity_gradient(0), b.x);
   }
 
-  std::vector<double> radii_of(const Snapshot& snapshot) const {
+  // Returns the radii of the scene, and brings the spheres of the snapshot into its order.
+  std::vector<double> radii_of(Snapshot& snapshot) const {
     const std::vector<double> radius = species_radii(scene_.particles);
     if (snapshot.count() != radius.size()) {
       refuse("/particles/count", std::to_string(radius.size()),
@@ -158,14 +162,19 @@ class Placing {
              "must have particles/diameter, which is absent: HOOMD-blue 4 writes diameters if its "
              "GSD.write_diameter is True");
     }
-    for (std::size_t i = 0; i < radius.size(); ++i) {
-      if (is_near(snapshot.radius[i], radius[i], radius[i])) continue;
-      refuse("/particles/species", fmt::format("sphere {} of radius {}", i, radius[i]),
-             "must be as in the start, where its radius is {:.8g}{}", snapshot.radius[i],
-             are_the_same(snapshot.radius, radius)
-                 ? ": the start has the same radii in another order, and they must follow each "
-                   "other as the species do, from the first one on"
-                 : "");
+    // Spheres of the scene are ordered by species. Those of a file that are not are brought into that order.
+    const auto differs = [&](std::size_t i) { return !is_near(snapshot.radius[i], radius[i], radius[i]); };
+    const auto all = std::views::iota(std::size_t{0}, radius.size());
+    if (std::ranges::any_of(all, differs)) {
+      const std::vector<std::size_t> wanted = order_of(radius), found = order_of(snapshot.radius);
+      std::vector<std::size_t> order(radius.size());
+      for (std::size_t k = 0; k < order.size(); ++k) order[wanted[k]] = found[k];
+      arrange(snapshot, order);
+    }
+    const auto other = std::ranges::find_if(all, differs);
+    if (other != all.end()) {
+      refuse("/particles/species", fmt::format("radius {}", radius[*other]),
+             "must be that of a sphere of the start, whose nearest has {:.8g}", snapshot.radius[*other]);
     }
     return radius;
   }

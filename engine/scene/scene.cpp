@@ -21,8 +21,8 @@ constexpr double unlimited = std::numeric_limits<double>::infinity();
 constexpr const char* start_keys = R"(
 /start? | object | Where the spheres begin: at a frame of a file with the same spheres and the same cell,
     which may be sheared; absent: in a random packing. Strain and time count from there.
-/start/file | string | Absolute path of a trajectory (GSD) or a final configuration (extended XYZ), at which
-    every seed begins. A campaign needs noise with it, because seeds do not differ otherwise.
+/start/file | string | Absolute path of a trajectory (GSD), a final configuration (extended XYZ), or a file of
+    LAMMPS or LF_DEM, at which every seed begins. A campaign needs noise with it: otherwise seeds do not differ.
 /start/list | string; instead of file | Absolute path of a list of such files, as sha256sum writes it: seed k
     begins at the file of line k + 1. Seeds beyond the list fail.
 /start/sha256 | hash | SHA-256 of the file or the list, as sha256sum prints it. It belongs to the point; a

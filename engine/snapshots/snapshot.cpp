@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <utility>
 
 #include "contract/errors.h"
 #include "contract/named_files.h"
+#include "contract/text.h"
 
 namespace peclet::engine {
 namespace {
@@ -160,17 +162,47 @@ std::int64_t whole(std::string_view text, std::int64_t missing, const std::strin
 
 void check_snapshot(const Snapshot& snapshot, const std::string& file) { Check(snapshot, file).run(); }
 
+void arrange(Snapshot& snapshot, const std::vector<std::size_t>& order) {
+  const auto arrange_list = [&](auto& values) {
+    if (values.empty()) return;
+    auto arranged = values;
+    for (std::size_t k = 0; k < order.size(); ++k) arranged[k] = values[order[k]];
+    values = std::move(arranged);
+  };
+  arrange_list(snapshot.position);
+  arrange_list(snapshot.radius);
+  arrange_list(snapshot.species);
+  arrange_list(snapshot.velocity);
+  arrange_list(snapshot.spin);
+  arrange_list(snapshot.image);
+  arrange_list(snapshot.stress);
+  arrange_list(snapshot.contact_number);
+  snapshot.contacts.reset();
+}
+
 std::string note_on_sizes(const std::string& file) {
   return file + " has no diameters (particles/diameter): its spheres are shown with the diameter 1";
+}
+
+SnapshotFile::Text::Text(const std::filesystem::path& path) : text(read_input(path, text_limits)) {
+  const std::string_view plain = without_byte_order_mark(text);
+  if (plain.starts_with("ITEM:")) {
+    frames = lammps_dump_frames(plain, path.string());
+    read = read_lammps_dump_frame;
+  } else if (plain.starts_with('#') || begins_as_lammps_data(plain)) {
+    frames = {plain};
+    read = plain.starts_with('#') ? read_lf_dem : read_lammps_data;
+  } else {
+    frames = xyz_frames(plain, path.string());
+    read = read_xyz_frame;
+  }
 }
 
 SnapshotFile::SnapshotFile(const std::filesystem::path& path) : path_(path) {
   if (gsd::begins_as_gsd(path)) {
     gsd_.emplace(path);
   } else {
-    text_ = std::make_unique<Text>();
-    text_->text = read_input(path, text_limits);
-    text_->frames = xyz_frames(text_->text, path.string());
+    text_ = std::make_unique<Text>(path);
   }
   if (frames() == 0) throw InputError(path.string(), "", "", "must have at least one frame");
 }
@@ -188,7 +220,7 @@ std::uint64_t SnapshotFile::index_of(std::int64_t frame) const {
 }
 
 Snapshot SnapshotFile::read(std::uint64_t frame) const {
-  return gsd_ ? read_gsd_frame(*gsd_, frame) : read_xyz_frame(text_->frames.at(frame), path_.string());
+  return gsd_ ? read_gsd_frame(*gsd_, frame) : text_->read(text_->frames.at(frame), path_.string());
 }
 
 std::vector<std::uint64_t> chosen_frames(const std::string& range, const SnapshotFile& file,

@@ -60,6 +60,10 @@ inline bool is_turned(const Snapshot& snapshot) {
   return a.y != 0 || a.z != 0 || b.z != 0 || !(a.x > 0 && b.y > 0 && c.z > 0);
 }
 
+// Puts the spheres in another order: those of the indices `order` in the lists as they are, one after the
+// other. Contacts, which name spheres by their old places, are left out.
+void arrange(Snapshot& snapshot, const std::vector<std::size_t>& order);
+
 // Throws InputError, naming `file`, unless the snapshot can be computed with:
 //   lattice vectors: linearly independent, from 1e-30 to 1e30 long, none of them shorter across those before
 //     it than a millionth of the longest one;
@@ -87,7 +91,24 @@ std::vector<std::string_view> xyz_frames(std::string_view text, const std::strin
 // the frame is faulty or check_snapshot() refuses it.
 Snapshot read_xyz_frame(std::string_view frame, const std::string& file);
 
-// A file of frames: GSD, or extended XYZ of up to 256 MiB. Its first bytes, not its name, tell which.
+// Returns the texts of the frames of a dump of LAMMPS, and reads one of them: a periodic box with or without
+// tilt; x y z, xu yu zu, xs ys zs or xsu ysu zsu; radius or diameter; and, where they are, id, by which
+// spheres are sorted, type, ix iy iz, vx vy vz, omegax omegay omegaz, and what lammps_frame() writes. Ignores
+// other columns. Throw InputError as those of extended XYZ.
+std::vector<std::string_view> lammps_dump_frames(std::string_view text, const std::string& file);
+Snapshot read_lammps_dump_frame(std::string_view frame, const std::string& file);
+
+// Returns true if one of the first lines of a text is "N atoms", as in a data file of LAMMPS.
+bool begins_as_lammps_data(std::string_view text);
+// Reads a data file of LAMMPS with "Atoms # sphere", and its velocities. Throws InputError as above.
+Snapshot read_lammps_data(std::string_view text, const std::string& file);
+
+// Reads a configuration of LF_DEM: two lines with # and the names and values of lx, ly, lz, disp ..., then x,
+// y, z and radius of each sphere. LF_DEM has the gradient of shear along z; y and z are exchanged, so that it
+// is along y. Throws InputError as above, and for walls.
+Snapshot read_lf_dem(std::string_view text, const std::string& file);
+
+// A file of frames: GSD, or a text of up to 256 MiB. Its beginning, not its name, tells which.
 class SnapshotFile {
  public:
   // Throws InputError if the file cannot be read or has no frame.
@@ -101,8 +122,10 @@ class SnapshotFile {
 
  private:
   struct Text {
+    explicit Text(const std::filesystem::path& path);
     std::string text;
     std::vector<std::string_view> frames;  // parts of the text
+    Snapshot (*read)(std::string_view frame, const std::string& file);
   };
 
   std::filesystem::path path_;

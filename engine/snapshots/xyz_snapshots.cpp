@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
-#include <optional>
 #include <set>
 #include <utility>
 
 #include "contract/errors.h"
 #include "contract/text.h"
 #include "engine/snapshots/snapshot.h"
+#include "engine/snapshots/sphere_text.h"
 
 namespace peclet::engine {
 namespace {
@@ -35,9 +34,9 @@ constexpr std::array<Column, 10> known_columns = {{{"id", 1, Field::id},
                                                    {"stress", 6, Field::stress},
                                                    {"contacts", 1, Field::contacts}}};
 
-class XyzReading {
+class XyzReading : SphereText {
  public:
-  XyzReading(std::string_view frame, std::string file) : rest_(frame), file_(std::move(file)) {}
+  XyzReading(std::string_view frame, const std::string& file) : SphereText(file), rest_(frame) {}
 
   Snapshot read() {
     std::string_view first = take_line(rest_);
@@ -47,25 +46,11 @@ class XyzReading {
     read_about(snapshot);
     read_columns();
     for (std::size_t row = 0; row < count; ++row) read_sphere(take_line(rest_), row, snapshot);
-    sort(snapshot);
-    check_snapshot(snapshot, file_);
+    finish(snapshot, id_);
     return snapshot;
   }
 
  private:
-  template <class... Arguments>
-  [[noreturn]] void refuse(const std::string& value, fmt::format_string<Arguments...> rule,
-                           Arguments&&... arguments) const {
-    throw InputError(file_, "", value, fmt::format(rule, std::forward<Arguments>(arguments)...));
-  }
-
-  template <class Number>
-  Number number(std::string_view word, const std::string& what) const {
-    const std::optional<Number> value = number_in<Number>(word);
-    if (!value) refuse(fmt::format("{}: \"{}\"", what, word), "must be a number");
-    return *value;
-  }
-
   // Splits the second line: NAME=VALUE NAME="VALUE" NAME='VALUE' ... Ignores words without a value.
   void read_keys(std::string_view about) {
     while (!is_blank(about)) {
@@ -100,12 +85,6 @@ class XyzReading {
       value = text;
     }
     return value;
-  }
-
-  Vector3 vector(std::string_view& words, const std::string& what) const {
-    Vector3 v;
-    for (double* const x : {&v.x, &v.y, &v.z}) *x = number<double>(take_word(words), what);
-    return v;
   }
 
   Matrix3 matrix(std::string_view words, const std::string& what) const {
@@ -203,55 +182,7 @@ class XyzReading {
     }
   }
 
-  std::uint32_t species(std::string_view name, const std::string& where, Snapshot& snapshot) const {
-    if (name.empty()) refuse(where, "must have a species");
-    std::vector<std::string>& names = snapshot.species_names;
-    const auto known = std::ranges::find(names, name);
-    if (known != names.end()) return static_cast<std::uint32_t>(known - names.begin());
-    if (names.size() == most_types) refuse("species", "must be at most {}", most_types);
-    names.emplace_back(name);
-    return static_cast<std::uint32_t>(names.size() - 1);
-  }
-
-  // Sorts the spheres by id, if there are ids. Refuses an id that occurs twice.
-  void sort(Snapshot& snapshot) const {
-    if (snapshot.species.empty()) name_by_radius(snapshot);
-    if (id_.empty()) return;
-    std::vector<std::size_t> order(id_.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::sort(order, {}, [&](std::size_t row) { return id_[row]; });
-    const auto twice = std::ranges::adjacent_find(order, {}, [&](std::size_t row) { return id_[row]; });
-    if (twice != order.end()) refuse(fmt::format("id {}", id_[*twice]), "must be there once");
-    const auto arrange = [&](auto& values) {
-      if (values.empty()) return;
-      auto sorted = values;
-      for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = values[order[k]];
-      values = std::move(sorted);
-    };
-    arrange(snapshot.position);
-    arrange(snapshot.radius);
-    arrange(snapshot.species);
-    arrange(snapshot.velocity);
-    arrange(snapshot.spin);
-    arrange(snapshot.image);
-    arrange(snapshot.stress);
-    arrange(snapshot.contact_number);
-  }
-
-  // Makes each radius a species, if the file has no species.
-  static void name_by_radius(Snapshot& snapshot) {
-    std::vector<double> sizes = snapshot.radius;
-    std::ranges::sort(sizes);
-    sizes.erase(std::unique(sizes.begin(), sizes.end()), sizes.end());
-    for (const double size : sizes) snapshot.species_names.push_back(fmt::format("a = {}", size));
-    for (const double a : snapshot.radius) {
-      snapshot.species.push_back(
-          static_cast<std::uint32_t>(std::ranges::lower_bound(sizes, a) - sizes.begin()));
-    }
-  }
-
   std::string_view rest_;
-  std::string file_;
   std::vector<std::pair<std::string_view, std::string_view>> keys_;  // keys and values of the second line
   std::vector<Column> columns_;
   std::vector<std::int64_t> id_;
@@ -268,11 +199,11 @@ std::vector<std::string_view> xyz_frames(std::string_view text, const std::strin
     const std::string_view word = take_word(line);
     const auto count = number_in<std::size_t>(word);
     if (!count || *count < 1 || *count > most_spheres) {
-      throw InputError(file, "",
-                       fmt::format("frame {} begins with \"{}\"", frames.size(), word.substr(0, 40)),
-                       fmt::format("must be a GSD file, or extended XYZ whose frames begin with the "
-                                   "number of their spheres, 1 to {}",
-                                   most_spheres));
+      throw InputError(
+          file, "", fmt::format("frame {} begins with \"{}\"", frames.size(), word.substr(0, 40)),
+          fmt::format("must be GSD, a dump or data file of LAMMPS, a configuration of LF_DEM, or "
+                      "extended XYZ whose frames begin with the number of their spheres, 1 to {}",
+                      most_spheres));
     }
     for (std::size_t left = *count + 1; left > 0; --left) {
       if (rest.empty()) {

@@ -1,15 +1,21 @@
 // peclet: campaigns of realisations, from scenes to converged averages.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
+#include <cerrno>
 #include <exception>
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "contract/errors.h"
+#include "contract/own_folder.h"
 #include "contract/provenance.h"
 #include "contract/usage_fault.h"
 #include "runner/command_line/print.h"
@@ -22,6 +28,19 @@ std::string version_text() {
   const Json& origin = provenance();
   return fmt::format("peclet {} (commit {}{})", version(), origin.value("git_commit", "unknown"),
                      origin.value("git_dirty", Json()) == true ? ", with changes" : "");
+}
+
+// Verbs of the engine for files of users: `peclet sizes` is `peclet-engine sizes`.
+constexpr std::array<std::string_view, 3> engine_verbs = {"sizes", "snapshot", "trajectory"};
+
+[[noreturn]] void become_engine(std::vector<std::string> words) {
+  const std::string engine = (own_folder() / "peclet-engine").string();
+  words.insert(words.begin(), engine);
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  ::execv(engine.c_str(), arguments.data());
+  throw std::system_error(errno, std::generic_category(), engine);
 }
 
 struct CompletionOptions {
@@ -51,7 +70,9 @@ void add_all(VerbSet& verbs) {
   app.require_subcommand(1);
   // A function, called on demand, because it reads the program file.
   app.set_version_flag("--version", std::function<std::string()>(version_text));
-  app.footer(exit_code_lines({}) + "`peclet help VERB` says more about a verb.");
+  app.footer(exit_code_lines({}) +
+             "`peclet help VERB` says more about a verb.\n"
+             "`peclet sizes`, `peclet snapshot` and `peclet trajectory` are those of peclet-engine.");
   app.formatter(std::make_shared<HelpFormatter>());
   add_running_verbs(verbs);
   add_viewing_verbs(verbs);
@@ -76,6 +97,8 @@ int complain(const std::string& fault) {
 
 // Runs the verb that is named and returns its exit code; 0 after help or version, 2 after a fault of usage.
 int obey(const std::vector<std::string>& words) {
+  if (!words.empty() && std::ranges::find(engine_verbs, words.front()) != engine_verbs.end())
+    become_engine(words);
   VerbSet verbs;
   add_all(verbs);
   CLI::App& app = verbs.app();

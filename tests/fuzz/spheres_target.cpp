@@ -1,4 +1,4 @@
-// Fuzz target for files of spheres, GSD or extended XYZ: read, written as text, read again and drawn.
+// Fuzz target for files of spheres, GSD and texts: read, written as text, read again and drawn.
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -131,12 +131,21 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 }
 
 std::vector<std::string> valid_inputs() {
-  return {trajectory(),
-          "3\nLattice=\"6 0 0 1.5 6 0 0 0 6\" Origin=\"-3 -3 -3\" "
-          "Properties=id:I:1:type:S:1:pos:R:3:radius:R:1:velo:R:3:angular_velocity:R:3:image:I:3:stress:R:6:"
-          "contacts:I:1 pbc=\"T T T\" Step=7 Time=0.5 Strain=1 stress_total=\"1 2 3 4 5 6\"\n"
-          "0 A -2 0 0 1 1 2 3 1 0 -1 0 1 0 1 2 3 4 5 6 1\n1 A 0 0 0 1 1 2 3 1 0 -1 0 1 0 1 2 3 4 5 6 2\n"
-          "2 B 2.3 0.5 1 1.4 1 2 3 1 0 -1 0 1 0 1 2 3 4 5 6 1\n",
-          "1\r\nLattice='-7 -5.6 0 4.4 -9 0 0 0 9.4' Properties=pos:R:3:radius:R:1 "
-          "Velocity_gradient='1 0 0 0 -1 0 0 0 0'\r\n1 +2 3 1\r\n\r\n"};
+  return {
+      trajectory(),
+      "3\nLattice=\"6 0 0 1.5 6 0 0 0 6\" Origin=\"-3 -3 -3\" "
+      "Properties=id:I:1:type:S:1:pos:R:3:radius:R:1:velo:R:3:angular_velocity:R:3:image:I:3:stress:R:6:"
+      "contacts:I:1 pbc=\"T T T\" Step=7 Time=0.5 Strain=1 stress_total=\"1 2 3 4 5 6\"\n"
+      "0 A -2 0 0 1 1 2 3 1 0 -1 0 1 0 1 2 3 4 5 6 1\n1 A 0 0 0 1 1 2 3 1 0 -1 0 1 0 1 2 3 4 5 6 2\n"
+      "2 B 2.3 0.5 1 1.4 1 2 3 1 0 -1 0 1 0 1 2 3 4 5 6 1\n",
+      "1\r\nLattice='-7 -5.6 0 4.4 -9 0 0 0 9.4' Properties=pos:R:3:radius:R:1 "
+      "Velocity_gradient='1 0 0 0 -1 0 0 0 0'\r\n1 +2 3 1\r\n\r\n",
+      "ITEM: TIMESTEP\n7\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS xy xz yz pp pp pp\n-1 11 -2\n0 20 0\n0 "
+      "30 0\n"
+      "ITEM: ATOMS id type xs ys zs diameter vx vy vz omegax omegay omegaz ix iy iz\n"
+      "2 1 0.5 0.5 0.1 2.8 1 2 3 4 5 6 0 -1 0\n1 2 0.2 0.7 0.9 2 1 2 3 4 5 6 0 0 0\n",
+      "LAMMPS data file\n\n2 atoms\n\n0 10 xlo xhi\n0 20 ylo yhi\n-1 29 zlo zhi\n2.5 0 0 xy xz yz\n\nAtoms # "
+      "sphere\n\n2 1 2 1 1 2 3 0 0 1\n1 2 2.8 1 4 5 6 0 0 0\n\nVelocities\n\n1 1 2 3 4 5 6\n2 -1 -2 -3 -4 -5 "
+      "-6\n",
+      "# np1 np2 vf lx ly lz vf1 vf2 disp\n# 1 1 0.01 10 20 30 0.01 0 2.5\n1 2 3 1 \n4 5 6 1.4 \n"};
 }

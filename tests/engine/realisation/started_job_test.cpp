@@ -2,6 +2,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
+
 #include "contract/durable_file.h"
 #include "contract/sha256.h"
 #include "engine/realisation/packing.h"
@@ -196,11 +199,31 @@ TEST_F(StartedJob, OfAFileWithSixDigitsIsTaken) {
   EXPECT_TRUE(contains(with_edge(edge * (1 + 5.1e-6)), "must be as long within 5e-06"));
 }
 
-TEST_F(StartedJob, OfSpheresInAnotherOrderNamesTheOrder) {
+// Every sphere keeps its place and its radius; those of one radius keep their order.
+TEST_F(StartedJob, OfSpheresInAnotherOrderHasThemSpeciesBySpecies) {
   std::vector<double> radius = species_radii(read_scene(small_scene(), "").particles);
+  const std::vector<double> of_scene = radius;
   std::ranges::reverse(radius);
-  EXPECT_TRUE(contains(refusal_of_spheres(edge(), radius),
-                       "where its radius is 1.4: the start has the same radii in another order"));
+  const double edge = this->edge();
+  std::string text =
+      fmt::format("60\nLattice=\"{0} 0 0 0 {0} 0 0 0 {0}\" Properties=pos:R:3:radius:R:1\n", edge);
+  std::map<double, std::vector<double>> places;
+  for (std::size_t i = 0; i < radius.size(); ++i) {
+    const double place = 0.1 * static_cast<double>(i);
+    places[radius[i]].push_back(place);
+    text += fmt::format("{} 2 3 {}\n", place, radius[i]);
+  }
+  write_durably(path("spheres.xyz"), text);
+  const ParticleState particles = placed(start("spheres.xyz")).system.particles;
+  std::map<double, std::vector<double>> found;
+  for (std::size_t i = 0; i < particles.count(); ++i) {
+    EXPECT_EQ(particles.radius[i], of_scene[i]);
+    found[particles.radius[i]].push_back(particles.position[i].x);
+  }
+  EXPECT_EQ(found, places);
+  radius[7] = 1.2;
+  EXPECT_TRUE(
+      contains(refusal_of_spheres(edge, radius), "must be that of a sphere of the start, whose nearest"));
 }
 
 TEST_F(StartedJob, OfAGsdFileWithoutDiametersSaysSo) {
