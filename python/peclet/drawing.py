@@ -302,7 +302,8 @@ def names_by(columns, points, names):
     at = {one["path"]: name for one, name in names}
     named = []
     for k, point in enumerate(points):
-        own = [one["name"] + plain(" = " + one["words"][k]) for one in columns]
+        own = [plain(one["words"][k]) for one in columns if one["pointer"] == "campaign"]
+        own += [one["name"] + plain(" = " + one["words"][k]) for one in columns if one["pointer"] != "campaign"]
         named.append(joined([*filter(None, [at[point["quantity"]]]), *own]))
     return named
 

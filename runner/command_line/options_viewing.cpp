@@ -287,7 +287,24 @@ SIGTERM, with the exit code of `status --check`, and does not affect the campaig
 // The options of `peclet plot`: `json` prints the numbers and draws nothing, `quiet` prints no notes.
 struct PlotOptions : ViewOptions {
   FigureChoice choice;
+  std::vector<std::filesystem::path> others;  // campaigns in the same figure
 };
+
+// Returns the data of the figure of one campaign or of several.
+Json figure_of(const PlotOptions& options) {
+  OpenCampaign open = open_for_viewing(options.campaign, options.directory);
+  if (options.others.empty()) return figure_data(open.database, options.choice);
+  std::vector<OpenCampaign> others;
+  for (const std::filesystem::path& other : options.others) others.push_back(open_for_viewing(other, ""));
+  std::vector<FigureSource> sources{{open.database, open.database.campaign().name}};
+  for (OpenCampaign& other : others) {
+    const std::string name = other.database.campaign().name;
+    if (std::ranges::any_of(sources, [&](const FigureSource& one) { return one.name == name; }))
+      throw InputError("", "--with", name, "must be a campaign of another name: names tell the curves apart");
+    sources.push_back({other.database, name});
+  }
+  return figure_data_of_several(sources, options.choice);
+}
 
 // The files of a figure: the picture and the script beside it.
 class FigureFiles {
@@ -332,13 +349,11 @@ class FigureFiles {
 void draw_campaign(const PlotOptions& options) {
   if (options.json) {
     if (!options.output.empty()) check_output(options.output);
-    OpenCampaign open = open_for_viewing(options.campaign, options.directory);
-    deliver(figure_data(open.database, options.choice).dump(1) + '\n', options.output, options.quiet);
+    deliver(figure_of(options).dump(1) + '\n', options.output, options.quiet);
     return;
   }
   const FigureFiles files(options.output);
-  OpenCampaign open = open_for_viewing(options.campaign, options.directory);
-  files.write(figure_data(open.database, options.choice), options.quiet);
+  files.write(figure_of(options), options.quiet);
 }
 
 void add_plot(VerbSet& verbs) {
@@ -358,6 +373,9 @@ needs their elements, as profiles/stress/total/xy.
 stresses such as brownian_time, shear_time, thermal_stress, critical_stress, repulsion_stress. An axis in 1 /
 time is multiplied by a time.
 
+--with adds the points of another campaign. Curves then have the campaign's name; a parameter that one of the
+campaigns does not sweep has the value of its scene.
+
 The ending of --output chooses the form. Pictures are drawn with matplotlib, by the python3 in PATH. Beside
 the picture a script of the same name and the ending .py is written, which holds the numbers and draws the
 figure again by itself. Without python3 or matplotlib only the script is written, and the exit code is 1. A
@@ -374,10 +392,15 @@ script that was changed is never replaced. Axes are logarithmic if the numbers t
   # both moduli in units of k_B T / a^3 over the frequency in Brownian times
   peclet plot moduli.json --quantity linear_response/storage --quantity linear_response/loss \
     --scale-x brownian_time --scale-y thermal_stress --output moduli.pdf
+  # two campaigns in one figure
+  peclet plot rough.json --with smooth.json --over volume_fraction --output both.pdf
   # the script alone, which needs no matplotlib yet
   peclet plot flow-curve.json --output xy.py
 )");
   add_campaign(verb, *options);
+  add_option(verb, "--with CAMPAIGN", options->others,
+             "Another campaign in the same figure, its file or its .peclet folder; may be repeated")
+      ->allow_extra_args(false);
   add_option(verb, "--quantity NAME", options->choice.quantities,
              "Quantity to draw, as `export` calls it; the campaign's target unless given; may be repeated")
       ->allow_extra_args(false);

@@ -31,6 +31,16 @@ struct FigureChoice {
 // the axes can show no point. Throws IntegrityError.
 Json figure_data(Database& database, const FigureChoice& choice);
 
+struct FigureSource {
+  Database& database;
+  std::string name;  // of the campaign, in the figure
+};
+
+// Returns one such document of the points of several campaigns. Their names are a parameter, "campaign". A
+// parameter that one of them does not sweep has the value of its scene there. Throws as figure_data(), and
+// InputError for campaigns that do not have the same quantities, confidence and axis.
+Json figure_data_of_several(const std::vector<FigureSource>& sources, const FigureChoice& choice);
+
 // Returns drawing.py with these data in it, one line for each member and each point. The last line has the
 // SHA-256 of all before it. The same data give the same bytes.
 std::string figure_script(const Json& data);

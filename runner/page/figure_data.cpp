@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -221,7 +222,30 @@ class Figure {
     if (is_by_group) add_derived_parameter();
   }
 
-  Json data() {
+  const Json& parameters() const { return sweep_.parameters; }
+
+  // Adds a parameter whose value at each point is that of its scene, null if the scene has none.
+  void add_parameter(const Json& parameter) {
+    const std::string pointer = parameter.at("pointer");
+    sweep_.parameters.push_back(parameter);
+    for (std::size_t i = 0; i < sweep_.page.points.size(); ++i) {
+      const Json& scene = sweep_.status.points[i].point.scene;
+      const bool is_key = pointer.starts_with('/') && scene.contains(Json::json_pointer(pointer));
+      sweep_.page.points[i]["settings"][pointer] = is_key ? scene.at(Json::json_pointer(pointer)) : Json();
+    }
+  }
+
+  // Adds the name of the campaign as a parameter, by which curves of several campaigns are told apart.
+  void add_name(const std::string& name) {
+    const Json parameter = {
+        {"pointer", "campaign"}, {"words", "campaign"}, {"symbol", ""}, {"unit", ""}, {"meaning", ""}};
+    sweep_.parameters.insert(sweep_.parameters.begin(), parameter);
+    for (Json& point : sweep_.page.points) point["settings"]["campaign"] = name;
+  }
+
+  // Returns the document; `over` is the parameter on the axis, chosen if empty.
+  Json data(const std::string& over = "") {
+    if (!over.empty()) choice_.over = over;
     Json quantities = Json::array();
     const AxisScale of_y = scale("--scale-y", choice_.scale_y, chosen_.about.front().unit);
     for (const Drawable& one : chosen_.about) {
@@ -363,7 +387,7 @@ class Figure {
   }
 
   Database& database_;
-  const FigureChoice& choice_;
+  FigureChoice choice_;
   MeasuredSweep sweep_;
   const TargetRecord& target_;
   Vocabulary words_;
@@ -375,5 +399,63 @@ class Figure {
 }  // namespace
 
 Json figure_data(Database& database, const FigureChoice& choice) { return Figure(database, choice).data(); }
+
+namespace {
+
+// Throws InputError unless both documents have the same value of a member.
+void require_same(const Json& first, const Json& other, const char* member, const std::string& what,
+                  const std::string& name) {
+  if (first.value(member, Json()) == other.value(member, Json())) return;
+  throw InputError("", "--with", name,
+                   fmt::format("must have {} as in the first campaign, {}; it has {}", what,
+                               first.value(member, Json()).dump(), other.value(member, Json()).dump()));
+}
+
+// True if the list has a parameter of the same pointer.
+bool has_parameter(const Json& list, const Json& parameter) {
+  return std::any_of(list.begin(), list.end(),
+                     [&](const Json& one) { return one.at("pointer") == parameter.at("pointer"); });
+}
+
+}  // namespace
+
+Json figure_data_of_several(const std::vector<FigureSource>& sources, const FigureChoice& choice) {
+  std::vector<std::unique_ptr<Figure>> figures;
+  Json all = Json::array();  // parameters that are swept in any of the campaigns
+  for (const FigureSource& source : sources) {
+    try {
+      figures.push_back(std::make_unique<Figure>(source.database, choice));
+    } catch (const InputError& fault) {
+      throw fault.within("campaign " + source.name, "");
+    }
+    for (const Json& parameter : figures.back()->parameters()) {
+      if (!has_parameter(all, parameter)) all.push_back(parameter);
+    }
+  }
+  for (std::size_t k = 0; k < sources.size(); ++k) {
+    for (const Json& parameter : all) {
+      if (!has_parameter(figures[k]->parameters(), parameter)) figures[k]->add_parameter(parameter);
+    }
+    figures[k]->add_name(sources[k].name);
+  }
+  Json joined = figures.front()->data();
+  const std::string over = joined.value("over", "");
+  for (std::size_t k = 1; k < sources.size(); ++k) {
+    Json data = figures[k]->data(over);
+    require_same(joined, data, "quantities", "the quantities", sources[k].name);
+    require_same(joined, data, "confidence", "the confidence", sources[k].name);
+    require_same(joined, data, "axis", "the axis", sources[k].name);
+    for (Json& point : data["points"]) {
+      if (!over.empty() && point.at("settings").at(over).is_null()) {
+        throw InputError("", "--with", sources[k].name,
+                         fmt::format("has no value of {}, the axis of the figure, at {}", over,
+                                     point.at("label").get<std::string>()));
+      }
+      joined["points"].push_back(std::move(point));
+    }
+    joined["absent"] = joined["absent"].get<std::size_t>() + data["absent"].get<std::size_t>();
+  }
+  return joined;
+}
 
 }  // namespace peclet::runner

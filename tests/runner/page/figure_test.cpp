@@ -69,6 +69,23 @@ TEST_F(CampaignFigure, HasAnyQuantityThatIsMeasured) {
   EXPECT_TRUE(drawn["points"][1]["mean"].is_null());
 }
 
+TEST_F(CampaignFigure, OfTwoCampaignsHasThePointsOfBothWithTheirNames) {
+  StoredCampaign other(2, 4, 4);
+  complete_widely(0);
+  for (int seed = 0; seed < 4; ++seed) other.complete(1, seed, 20 + 0.01 * seed);
+  const auto both = [&](const FigureChoice& choice) {
+    return figure_data_of_several({{campaign_.database(), "rough"}, {other.database(), "smooth"}}, choice);
+  };
+  const Json drawn = both({});
+  ASSERT_EQ(drawn["points"].size(), 5U);
+  EXPECT_EQ(drawn["over"], "/point");
+  EXPECT_EQ(drawn["parameters"][0]["pointer"], "campaign");
+  EXPECT_EQ(drawn["points"][0]["settings"], (Json{{"/point", 0}, {"campaign", "rough"}}));
+  EXPECT_EQ(drawn["points"][4]["settings"], (Json{{"/point", 1}, {"campaign", "smooth"}}));
+  EXPECT_EQ(drawn["points"][4]["state"], "converged");
+  EXPECT_EQ(refusal_by([&] { both({.where = {"peclet=1"}}); }).find("campaign rough: --where: peclet"), 0U);
+}
+
 TEST_F(CampaignFigure, RefusesWhatIsNotThere) {
   EXPECT_EQ(refusal({}), "--quantity: relative_viscosity: nothing has been measured yet");
   complete_widely(0);
