@@ -21,8 +21,9 @@ constexpr std::string_view folder_of_examples = "examples-";
 
 std::vector<std::string> example_names() {
   std::vector<std::string> names;
-  names.reserve(example_texts().size());
-  for (const auto& [name, text] : example_texts()) names.push_back(name.substr(folder_of_examples.size()));
+  for (const auto& [name, text] : example_texts()) {
+    if (name.starts_with(folder_of_examples)) names.push_back(name.substr(folder_of_examples.size()));
+  }
   return names;
 }
 
@@ -34,6 +35,31 @@ const std::string& example_text(const std::string& name) {
   throw InputError("", "--example", name,
                    fmt::format("must be one of {}{}", fmt::join(names, ", "),
                                nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest)));
+}
+
+struct CompanionFile {
+  std::filesystem::path path;
+  const std::string& text;
+};
+
+// Returns the files beside the campaign that its engine's words name, as far as they are compiled in.
+std::vector<CompanionFile> companions_of(const std::string& text, const std::filesystem::path& campaign) {
+  std::vector<CompanionFile> companions;
+  for (const Json& word : parse_json_input(text, "").value("engine", Json::array())) {
+    const std::filesystem::path name = word.get<std::string>();
+    for (const auto& [known, content] : example_texts()) {
+      const bool is_it =
+          known.ends_with("-" + name.stem().string()) && !known.starts_with(folder_of_examples);
+      if (is_it) companions.push_back({campaign.parent_path() / name, content});
+    }
+  }
+  return companions;
+}
+
+// Throws InputError if something is there, also a dangling link.
+void require_absent(const std::filesystem::path& file) {
+  if (!kind_of(file).empty())
+    throw InputError(file.string(), "", "", "is there already, and is not replaced");
 }
 
 // Returns the first line of an example without the marks of a comment.
@@ -60,11 +86,17 @@ std::string init_campaign(const InitOptions& options) {
   }
   const std::string name = file.stem().string();
   check_campaign_name(name, file.string());
-  if (!kind_of(file).empty()) {  // also a dangling link
-    throw InputError(file.string(), "", "", "is there already, and is not replaced");
-  }
+  require_absent(file);
   const std::string& text = example_text(options.example);
+  const std::vector<CompanionFile> companions = companions_of(text, file);
+  for (const CompanionFile& companion : companions) require_absent(companion.path);
   check_output(file);
+  for (const CompanionFile& companion : companions) {
+    write_durably(companion.path, companion.text);
+    if (!companion.text.starts_with("#!")) continue;
+    using enum std::filesystem::perms;  // a program
+    permissions(companion.path, owner_exec | group_exec | others_exec, std::filesystem::perm_options::add);
+  }
   write_durably(file, with_value(text, {"name"}, name));
   return fmt::format(
       "{0} is written: {2}\n"

@@ -31,7 +31,7 @@ def main(binaries, target, names):
     environment = dict(os.environ, PATH=f"{os.path.abspath(binaries)}:/usr/bin:/bin")
     os.makedirs(target, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix="peclet-gallery-") as place:
-        for campaign in sorted({words[2] for words in chosen}):
+        for campaign in sorted({word for words in chosen for word in words if word.endswith(".json")}):
             shutil.copy(os.path.join(DOCS, "examples", campaign), place)
             run = ["peclet", "run", campaign, "--quiet"]
             done = subprocess.run(run, cwd=place, env=environment, stdout=subprocess.DEVNULL)
