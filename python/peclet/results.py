@@ -4,6 +4,7 @@ import io
 import json
 import os
 
+from peclet.dataset import dataset_of
 from peclet.drawing import cure_for, draw_panel, figure_of, legend_of, plain
 from peclet.program import PecletError, ask
 from peclet.table import Table, cell_of
@@ -205,6 +206,39 @@ class Results:
         for row in rows:
             row |= {name: row[f"axis_{k + 1}_value"] for k, name in enumerate(names)}
         return Table.of_rows(axes + ["label", *names, "count", *ESTIMATE], rows).where(**wanted)
+
+    def to_xarray(self):
+        """Returns the estimates of all quantities as an xarray.Dataset.
+
+        Dimensions are the swept parameters; one that follows from others, such as a duration that is set together with
+        the volume fraction, is a coordinate along them. Axes of quantities are further dimensions; if the values on
+        an axis differ between points, the dimension AXIS_element counts them. Places of the grid that are not a point
+        have NaN, "" and False.
+
+        Arrays, with _ in the place of /: for each quantity its mean under its name, and NAME_standard_error,
+        NAME_half_width, NAME_count, with symbol, units and estimator as attributes; those of the target are the numbers
+        of estimates(). For each point label, verdict, seeds, lost, provisional, jammed. A quantity with the name of
+        another array is called measured_NAME. Raises PecletError if xarray is not installed.
+        """
+        target, columns = self.target, self.estimates().to_dict()
+        points = [dict(zip(columns, values)) for values in zip(*columns.values())]
+        endings = {"mean": "", "standard_error": "_standard_error", "half_width": "_half_width", "count": "_count"}
+        quantities = {target["observable"]: {"attributes": {}, "axes": [], "rows": []}}
+        for row in self._named(self._rows("long"))[0]:
+            axes = [k for k in (1, 2, 3) if row.get(f"axis_{k}")]
+            attributes = {"symbol": row["symbol"], "units": row["unit"], "estimator": row["estimator"]}
+            known = quantities.setdefault(row["quantity"], {"attributes": attributes, "rows": []})
+            known["axes"] = [(row[f"axis_{k}"], row[f"axis_{k}_unit"]) for k in axes]
+            if row["quantity"] == target["observable"]:
+                known["attributes"] = attributes
+                continue
+            at = {"label": row["label"], "at": tuple(row[f"axis_{k}_value"] for k in axes)}
+            known["rows"].append(at | {ending: row[name] for name, ending in endings.items()})
+        for point in points:
+            own = {ending: point.pop(name) for name, ending in endings.items()}
+            quantities[target["observable"]]["rows"].append({"label": point["label"], "at": ()} | own)
+        about = {"campaign": self.name, "target": target["observable"], "confidence": target["confidence"]}
+        return dataset_of(self._pointers(), points, quantities, about)
 
     def realisations(self, **wanted):
         """Returns a Table with a row for each seed that has ended.

@@ -16,6 +16,7 @@ sys.path.insert(0, str(ROOT / "python"))
 import matplotlib
 import numpy as np
 import peclet
+from peclet.dataset import dataset_of
 from peclet.drawing import cure_for
 from peclet.results import short_names
 
@@ -228,6 +229,29 @@ class OfACampaign(unittest.TestCase):
     def test_tables_go_to_pandas(self):
         frame = self.results.estimates().to_pandas()
         self.assertEqual(list(frame["label"]), [p["label"] for p in self.export["points"]])
+
+    def test_a_data_set_has_every_quantity_on_the_grid(self):
+        data = self.results.to_xarray()
+        self.assertEqual(dict(data.sizes), {"peclet": 2, "volume_fraction": 2, "component": 6})
+        for point in self.export["points"]:
+            one = data.sel(peclet=point["settings"]["/peclet"], volume_fraction=point["settings"]["/volume_fraction"])
+            self.assertEqual((one["label"], one["verdict"]), (point["label"], point["verdict"]))
+            self.assertEqual((one["seeds"], one["lost"], one["jammed"].item()), (8, 0, False))
+            for name, there in point["quantities"].items():
+                known = point["stop_test"] if name == "relative_viscosity" else there
+                name = name.replace("/", "_")
+                for number, ending in (("mean", ""), ("standard_error", "_standard_error"), ("count", "_count")):
+                    np.testing.assert_allclose(one[name + ending], known[number], rtol=1e-12, err_msg=name + ending)
+                self.assertEqual(one[name].attrs["units"], there["unit"])
+            half_width = one["relative_viscosity_half_width"].item()
+            self.assertAlmostEqual(half_width, point["stop_test"]["half_width"], delta=1e-12)
+        self.assertEqual(data["component"].values.tolist(), ["xx", "yy", "zz", "xy", "xz", "yz"])
+        self.assertEqual(data.attrs, {"campaign": "small", "target": "relative_viscosity", "confidence": 0.95})
+
+    def test_a_data_set_without_xarray_says_how_to_install_it(self):
+        with unittest.mock.patch.dict(sys.modules, xarray=None):
+            with self.assertRaisesRegex(peclet.PecletError, "^data sets need xarray: .*xarray$"):
+                self.results.to_xarray()
 
     def test_jamming_points_are_asked_of_the_program_by_this_python(self):
         found = self.results.jamming("--by=law")
@@ -452,6 +476,60 @@ class Words(unittest.TestCase):
         results = campaign.run(os.path.join(self.scratch.name, "2024.json"), PECLET, ["--quiet"])
         self.assertEqual(results.estimates()["label"].tolist(), ["2024"])
         self.assertEqual(len(results.estimates("pressure").where(label="2024")), 1)
+
+
+class DataSets(unittest.TestCase):
+    """Data sets of points and quantities that are given here."""
+
+    @staticmethod
+    def of(swept, values, quantities=()):
+        points = [{"label": str(k), **dict(zip(swept, own)), "seeds": float(k)} for k, own in enumerate(values)]
+        return dataset_of(swept, points, dict(quantities), {})
+
+    @staticmethod
+    def along(axis, values):
+        """Returns a quantity whose value at each place of point k is k plus the place."""
+        rows = [{"label": str(k), "at": (one,), "": k + one} for k, own in enumerate(values) for one in own]
+        return {"attributes": {}, "axes": [(axis, "1")], "rows": rows}
+
+    def test_a_parameter_that_follows_from_others_is_a_coordinate(self):
+        swept = {"strain": "/duration/production/strain", "phi": "/phi", "pe": "/pe", "count": "/particles/count"}
+        data = self.of(swept, [(5 if pe == 1 else 7, phi, pe, 40) for phi in (0.3, 0.2) for pe in (100, 1)])
+        self.assertEqual(dict(data.sizes), {"phi": 2, "pe": 2})
+        self.assertEqual((data["strain"].dims, data["strain"].values.tolist()), (("pe",), [5, 7]))
+        self.assertEqual((data["count"].dims, data["count"].item()), ((), 40))
+        self.assertEqual(data["seeds"].values.tolist(), [[3, 2], [1, 0]])
+        tied = self.of({"strain": "/duration/strain", "phi": "/phi"}, [(9, 0.2), (8, 0.3)])
+        self.assertEqual((dict(tied.sizes), tied["strain"].values.tolist()), ({"phi": 2}, [9, 8]))
+
+    def test_places_that_are_no_points_are_blank(self):
+        data = self.of({"a": "/a", "b": "/b"}, [(1, 1), (1, "auto"), (2, 1)])
+        self.assertEqual(data["b"].values.tolist(), [1, "auto"])
+        self.assertEqual(data["label"].values.tolist(), [["0", "1"], ["2", ""]])
+        np.testing.assert_array_equal(data["seeds"], [[0, 1], [2, np.nan]])
+
+    def test_a_single_point_has_no_dimensions(self):
+        self.assertEqual(self.of({}, [()])["seeds"].item(), 0)
+
+    def test_an_axis_that_begins_alike_at_all_points_is_a_dimension(self):
+        long, short = self.along("time", [[1.0, 2.0], [1.0, 2.0, 3.0]]), self.along("time", [[1.0], [1.0]])
+        data = self.of({"a": "/a"}, [(5,), (6,)], {"G/storage": long})
+        np.testing.assert_array_equal(data["G_storage"].sel(a=5), [1, 2, np.nan])
+        self.assertEqual(data["G_storage"].sel(a=6, time=3), 4)
+        both = self.of({"a": "/a"}, [(5,), (6,)], {"G/storage": long, "G/loss": long, "C": short})
+        self.assertEqual(both["G_loss"].dims, ("a", "G_storage_time"))
+        self.assertEqual(both["C"].dims, ("a", "C_time"))
+
+    def test_an_axis_that_depends_on_the_point_is_a_coordinate_along_its_elements(self):
+        data = self.of({"a": "/a"}, [(5,), (6,)], {"G": self.along("a", [[1.0, 2.0], [0.5]])})
+        self.assertEqual(data["G"].dims, ("a", "axis_a_element"))
+        np.testing.assert_array_equal(data["axis_a"], [[1, 2], [0.5, np.nan]])
+        np.testing.assert_array_equal(data["G"], [[1, 2], [1.5, np.nan]])
+
+    def test_a_quantity_is_told_from_what_is_swept(self):
+        number = {"attributes": {}, "axes": [], "rows": [{"label": "0", "at": (), "": 7}]}
+        data = self.of({"phi": "/phi"}, [(0.3,)], {"phi": number})
+        self.assertEqual((data["phi"].item(), data["measured_phi"].item()), (0.3, 7))
 
 
 class Tables(unittest.TestCase):

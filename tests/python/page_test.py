@@ -9,7 +9,7 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-PICTURES = ("flow.png", "paper.png")  # of each example
+PICTURES = ("flow.png", "paper.png", "lines.png")  # of each example
 
 
 def main():
