@@ -3,8 +3,9 @@ import json
 import os
 import re
 
+from peclet.notebook import LiveTable, is_notebook
 from peclet.program import PecletError, ask, run_shown
-from peclet.results import open_results
+from peclet.results import open_results, read_status
 
 # Exit codes of `peclet run` without an error: 0 all points converged or complete; 3 finished, but not all of them
 # converged; 75 stopped, and continued by the next run.
@@ -86,7 +87,7 @@ class Campaign:
 
         Raises PecletError if the file cannot be written, or exists and is not a campaign of this name.
         """
-        path = os.fspath(path) if path else self.document["name"] + ".json"
+        path = self._path(path)
         if os.path.exists(path):
             self._check_earlier(path)
         text = json.dumps(self.document, indent=1, default=plain) + "\n"
@@ -99,6 +100,9 @@ class Campaign:
         except OSError as error:
             raise PecletError(f"{path}: cannot be written: {error.strerror}") from error
         return path
+
+    def _path(self, path):
+        return os.fspath(path) if path else self.document["name"] + ".json"
 
     def _check_earlier(self, path):
         """Raises PecletError if the file is not a campaign of this name, for example if it is the scene."""
@@ -132,11 +136,15 @@ class Campaign:
         program    path or name of the program peclet, as for peclet.open()
         options    further options of `peclet run`, such as ["--workers=4"]
 
-        Shows the output of `peclet run`. A campaign that was stopped continues. Raises PecletError if it fails or is
-        stopped, KeyboardInterrupt if it is interrupted.
+        Shows the output of `peclet run`; in a notebook a bar and a table that are kept up to date, unless options have
+        "--quiet" or "--jsonl". A campaign that was stopped continues. Raises PecletError if it fails or is stopped,
+        KeyboardInterrupt if it is interrupted.
         """
         path = self.write(path)
-        code, said, interrupted = run_shown(program, "run", *options, "--", path)
+        show = None
+        if is_notebook() and not {"--quiet", "--jsonl"} & set(options):
+            show, options = LiveTable(lambda: read_status(path, program)), [*options, "--quiet"]
+        code, said, interrupted = run_shown(program, "run", *options, "--", path, show=show)
         if interrupted:
             raise KeyboardInterrupt(f"{path}: stopped; run it again to go on")
         if code == STOPPED:
@@ -144,6 +152,16 @@ class Campaign:
         if code not in ENDED:
             raise PecletError(said or f"{path}: peclet run ended with {code}; it says why on standard error")
         return open_results(path, program)
+
+    def status(self, path=None, program=None):
+        """Returns the state of the campaign as a Table, also while it runs; see Results.status().
+
+        path       path of the campaign file, as for write(); it is only read
+        program    path or name of the program peclet, as for peclet.open()
+
+        Raises PecletError if the campaign has not been run yet.
+        """
+        return open_results(self._path(path), program).status()
 
 
 def plain(value):

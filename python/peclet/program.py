@@ -1,6 +1,8 @@
 """Finds and calls the program peclet."""
+import codecs
 import ctypes
 import os
+import select
 import shutil
 import signal
 import subprocess
@@ -61,31 +63,44 @@ def ask(program, *arguments, allowed=(0,)):
     return done.stdout
 
 
-def run_shown(program, *arguments):
+def run_shown(program, *arguments, show=None):
     """Calls `peclet ARGUMENTS` and shows its output.
+
+    show    function that is called every second or more often, and at the end, in the place of standard output
 
     Returns the exit code, the last message on standard error, and True if the call was interrupted. Passes an interrupt
     on to the program and waits for its end.
     """
     # The program has its own process group: a terminal or notebook sends signals to the whole group, and a second one
-    # would stop it without checkpoints. The kernel asks it to stop if Python is killed.
+    # would stop it without checkpoints. The kernel asks it to stop if Python is killed. No thread reads its output: the
+    # kernel would ask once for each thread of Python.
     process = subprocess.Popen(
         [find_program(program), *arguments],
-        stderr=None if sys.stderr.isatty() else subprocess.PIPE,
+        stdout=subprocess.DEVNULL if show else None,
+        stderr=None if sys.stderr.isatty() and not show else subprocess.PIPE,
         start_new_session=True,
         preexec_fn=lambda: libc.prctl(PR_SET_PDEATHSIG, signal.SIGTERM),
     )
     said, interrupted, code = "", False, None
+    decoder = codecs.getincrementaldecoder("utf-8")("replace")
     while code is None:
         try:
-            for line in process.stderr or ():
-                text = line.decode(errors="replace")
-                said = text if text.startswith("peclet: ") else said and said + text
+            if show:
+                show()
+            if process.stderr is None:
+                code = process.wait()
+            elif select.select([process.stderr], [], [], 1 if show else None)[0]:
+                new = os.read(process.stderr.fileno(), 1 << 16)
+                text = decoder.decode(new)
+                said += text
                 sys.stderr.write(text)
-            code = process.wait()
+                code = None if new else process.wait()
         except KeyboardInterrupt:
             interrupted = True
             process.send_signal(signal.SIGINT)
     if process.stderr:
         process.stderr.close()
-    return code, said.strip(), interrupted
+    if show:
+        show()
+    message = f"\n{said}".rfind("\npeclet: ")
+    return code, said[message:].strip() if message >= 0 else "", interrupted

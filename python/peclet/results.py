@@ -1,5 +1,6 @@
 """Reads the results of a campaign."""
 import csv
+import html
 import io
 import json
 import os
@@ -14,6 +15,9 @@ ESTIMATE = ("mean", "standard_error", "half_width")
 TEXTS = ("label", "hash", "verdict", "quantity", "symbol", "unit", "estimator")
 OF_POINTS = ("label", "verdict", "seeds", "lost", "count", *ESTIMATE, "provisional", "jammed")
 OF_SEEDS = ("label", "seed", "deciding", "ending", "cpu_seconds")
+OF_STATE = ("label", "verdict", "ended", "wanted", "running", "lost", "mean", "standard_error")
+OF_TESTS = ("tested_mean", "half_width", "reservations", "cpu_seconds")
+NAMES = {*OF_POINTS, *OF_SEEDS, *OF_STATE, *OF_TESTS, *TEXTS}
 
 
 def open_results(campaign, program=None):
@@ -40,9 +44,7 @@ def short_names(pointers):
     for pointer, own in words.items():
         others = [w for p, w in words.items() if p != pointer]
         count = 1
-        while count < len(own) and (
-            any(w[-count:] == own[-count:] for w in others) or "_".join(own[-count:]) in (*OF_POINTS, *OF_SEEDS, *TEXTS)
-        ):
+        while count < len(own) and (any(w[-count:] == own[-count:] for w in others) or "_".join(own[-count:]) in NAMES):
             count += 1
         names[pointer] = "_".join(own[-count:])
     return names
@@ -93,6 +95,28 @@ def pointer_of(name, pointers):
     return pointers[name]
 
 
+def read_status(path, program=None):
+    """Returns the output of `peclet status --json`, a dictionary. Raises PecletError."""
+    # Exit codes: 3 if some points have not converged, 4 if the campaign has not finished.
+    return json.loads(ask(program, "status", "--json", "--", path, allowed=(0, 3, 4)))
+
+
+def status_table(status):
+    """Returns the points in the output of `peclet status --json` as a Table, as Results.status() describes it."""
+    names = short_names(sorted({pointer for point in status["points"] for pointer in point["settings"]}))
+    rows = []
+    for point in status["points"]:
+        test, seeds = point["stop_test"] or {}, point["seeds"]
+        own = {names[pointer]: cell_value(value) for pointer, value in point["settings"].items()}
+        own |= {"label": point["label"], "verdict": point["verdict"] or ("cancelled" if point["cancelled"] else "")}
+        own |= {"ended": seeds["wanted_ended"], "wanted": seeds["wanted"], "running": seeds["running"]}
+        own |= {"lost": sum(point["losses"].values()), "cpu_seconds": point["cpu_seconds"]}
+        own |= {name: point["all_seeds"][name] for name in ("mean", "standard_error")}
+        own |= {"tested_mean": test.get("mean"), "half_width": test.get("half_width")}
+        rows.append(own | {"reservations": ", ".join(point["reservations"])})
+    return Table.of_rows([*names.values(), *OF_STATE, *OF_TESTS], rows)
+
+
 class Results:
     """The results of a campaign, as of the time of each call. Made by peclet.open().
 
@@ -125,16 +149,22 @@ class Results:
     @property
     def target(self):
         """The campaign's target, a dictionary: observable, tolerance, confidence."""
-        return self._status()["target"]
+        return read_status(self.path, self.program)["target"]
 
     @property
     def name(self):
         """The campaign's name."""
-        return self._status()["campaign"]
+        return read_status(self.path, self.program)["campaign"]
 
-    def _status(self):
-        # Exit codes of `status`: 3 if some points have not converged, 4 if the campaign has not finished.
-        return json.loads(ask(self.program, "status", "--json", "--", self.path, allowed=(0, 3, 4)))
+    def status(self):
+        """Returns a Table of the state of each point, as `peclet status` shows it, also while the campaign runs.
+
+        Columns: the swept parameters, label, verdict ("" while the point is open), seeds that have ended and that are
+        wanted by the next stop test, running and lost seeds; mean and standard_error of all seeds that have ended,
+        which is provisional; tested_mean and half_width of the last stop test; reservations against the estimate,
+        separated by commas; cpu_seconds.
+        """
+        return status_table(read_status(self.path, self.program))
 
     def quantities(self):
         """Returns a Table of the measured quantities: quantity, symbol, unit, estimator, axes.
@@ -391,3 +421,8 @@ class Results:
 
     def __repr__(self):
         return f"peclet.open({self.path!r})"
+
+    def _repr_html_(self):
+        status = read_status(self.path, self.program)
+        title = f"{status['campaign']}: {status['target']['observable']}"
+        return f"<p>{html.escape(title)}</p>{self.estimates()._repr_html_()}"
