@@ -1,5 +1,8 @@
 #!/usr/bin/python3
-"""notebook_test.py PECLET ENGINE [CLASS]: runs campaigns in Jupyter kernels."""
+"""notebook_test.py PECLET ENGINE [CLASS]: runs campaigns in Jupyter kernels, among them docs/notebook.ipynb.
+
+With --write in the place of CLASS it runs this notebook and keeps its first figure in the file.
+"""
 import copy
 import html.parser
 import json
@@ -37,7 +40,11 @@ class Notebook(nbclient.NotebookClient):
         self.shown = []
 
     def run(self):
-        self.execute(env={**os.environ, "PYTHONPATH": str(ROOT / "python"), "PECLET": PECLET})
+        try:
+            self.execute(env={**os.environ, "PYTHONPATH": str(ROOT / "python"), "PECLET": PECLET})
+        finally:
+            self.kc.stop_channels()
+            self.km.shutdown_kernel(now=True)
 
     def process_message(self, message, cell, index):
         if message["msg_type"] in ("display_data", "update_display_data"):
@@ -140,5 +147,54 @@ class OfACampaign(unittest.TestCase):
         self.assertLess(float(client.nb.cells[1].outputs[0].data["text/plain"]), 6000)
 
 
+class OfTheDocs(unittest.TestCase):
+    PAGE = ROOT / "docs" / "notebook.ipynb"
+
+    def test_runs_and_finds_what_its_text_says(self):
+        notebook = nbformat.read(self.PAGE, 4)
+        kept = [output for cell in notebook.cells for output in cell.get("outputs", [])]
+        self.assertEqual([list(output.data) for output in kept], [["image/png"]], "must keep its first figure only")
+        with tempfile.TemporaryDirectory() as folder:
+            client = Notebook(notebook, folder)
+            client.run()
+            export = subprocess.run([PECLET, "export", "notebook.json"], cwd=folder, check=True, capture_output=True)
+        figures = [output for cell in notebook.cells for output in cell.get("outputs", []) if is_figure(output)]
+        self.assertEqual(len(figures), 3)
+        points = {tuple(point["settings"].values()): point for point in json.loads(export.stdout)["points"]}
+        viscosity = {place: point["stop_test"]["mean"] for place, point in points.items()}
+        for fraction in (0.3, 0.4):
+            self.assertLess(viscosity[10, fraction], viscosity[1, fraction])
+            self.assertLess(viscosity[10, fraction], viscosity[1000, fraction])
+
+        def part(name, pe):
+            return points[pe, 0.4]["quantities"][name]["mean"][3]
+
+        self.assertLess(part("brownian_structural", 1000), 0.05 * part("brownian_structural", 1))
+        self.assertGreater(part("stress/lubrication", 1000), 2 * part("stress/lubrication", 1))
+
+
+def is_figure(output):
+    return "image/png" in output.get("data", {})
+
+
+def write_page():
+    """Runs the notebook of docs/ and keeps its first figure only."""
+    notebook = nbformat.read(OfTheDocs.PAGE, 4)
+    about = copy.deepcopy(notebook.metadata)
+    with tempfile.TemporaryDirectory() as folder:
+        Notebook(notebook, folder).run()
+    notebook.metadata = about
+    figures = [output for cell in notebook.cells for output in cell.get("outputs", []) if is_figure(output)]
+    picture = nbformat.v4.new_output("display_data", {"image/png": figures[0].data["image/png"]})
+    for cell in notebook.cells:
+        cell.metadata = {}
+        if cell.cell_type == "code":
+            cell.outputs, cell.execution_count = [picture] if figures[0] in cell.outputs else [], None
+    nbformat.write(notebook, OfTheDocs.PAGE)
+
+
 if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
+    if sys.argv[3:] == ["--write"]:
+        write_page()
+    else:
+        unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
