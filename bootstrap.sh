@@ -27,7 +27,7 @@ to_test=(
   python3-xgboost python3-sklearn                                         # maps between local quantities
   python3-pandas python3-xarray python3-pip python3-setuptools python3-wheel  # the Python package
   python3-nbclient python3-nbformat python3-ipykernel                     # notebooks
-  python3-gsd python3-pil                                                 # read trajectories and pictures
+  python3-gsd python3-pil ffmpeg                                          # read trajectories, pictures and films
   clang                                                                   # compiles the program of cards
   clang-format black flake8                                               # the format of the sources
 )

@@ -22,6 +22,7 @@
 #include "contract/usage_fault.h"
 #include "engine/forces/configuration.h"
 #include "engine/pictures/colouring.h"
+#include "engine/pictures/film.h"
 #include "engine/pictures/picture.h"
 #include "engine/realisation/crew.h"
 #include "engine/realisation/job.h"
@@ -326,12 +327,21 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   PictureOptions picture;
   picture.threads = std::min(omp_get_num_procs(), 8);
-  CLI::App* snapshot_command = app.add_subcommand("snapshot", "Draw a frame as a picture");
+  CLI::App* snapshot_command =
+      app.add_subcommand("snapshot", "Draw a frame as a picture, or frames as a film");
   snapshot_command->add_option("file", picture.file, "GSD, extended XYZ, or a file of LAMMPS or LF_DEM")
       ->required();
-  snapshot_command->add_option("--output", picture.output, "PNG file")->required();
-  snapshot_command->add_option("--frame", picture.frame, "Number of the frame; -1 is the last one")
-      ->capture_default_str();
+  snapshot_command
+      ->add_option("--output", picture.output,
+                   "PNG file; with --frames film.png stands for film-00000.png ... and film.mp4")
+      ->required();
+  CLI::Option* const one_frame =
+      snapshot_command->add_option("--frame", picture.frame, "Number of the frame; -1 is the last one")
+          ->capture_default_str();
+  snapshot_command
+      ->add_option("--frames", picture.frames,
+                   "Frames of a film, FIRST:LAST:STEP; : are all. ffmpeg makes the film of their pictures")
+      ->excludes(one_frame);
   snapshot_command->add_option("--colour", picture.colour, "Quantity that the colours of spheres show")
       ->capture_default_str()
       ->check(one_of(names_of_colourings()));
@@ -374,7 +384,7 @@ int main(int argc, char** argv) {
     if (*serve_command) return serve_on_device();
     if (*forces_command) return forces(configuration);
     if (*trajectory_command) return done_with(convert_trajectory(conversion));
-    if (*snapshot_command) return done_with(draw_picture(picture));
+    if (*snapshot_command) return done_with(picture.frames ? draw_film(picture) : draw_picture(picture));
     if (*sizes_command) {
       const SizesAnswer answer = choose_sizes(sizes);
       fmt::print(stderr, "{}", answer.remarks);

@@ -152,7 +152,8 @@ std::vector<double> ticks_of(const ColourScale& scale) {
   return ticks;
 }
 
-Colouring colouring_of(const Snapshot& snapshot, const std::string& name, const std::string& file) {
+Colouring colouring_of(const Snapshot& snapshot, const std::string& name, const std::string& file,
+                       const std::vector<ColourScale>& given) {
   if (name == "species") return by_species(snapshot);
   std::string title;
   std::vector<double> values;
@@ -174,7 +175,7 @@ Colouring colouring_of(const Snapshot& snapshot, const std::string& name, const 
   } else {
     throw std::logic_error("unknown colouring: " + name);
   }
-  return on_scale(scale_over(title, values), values);
+  return on_scale(given.empty() ? scale_over(title, values) : given.front(), values);
 }
 
 }  // namespace peclet::engine

@@ -184,11 +184,12 @@ View view_named(const std::string& name) {
       "must be corner, x, y, z, or AZIMUTH,ELEVATION in degrees, up to 360 and 90 on both sides");
 }
 
-Image picture_of(const Snapshot& given, const PictureOptions& options) {
+Image picture_of(const Snapshot& given, const PictureOptions& options, const FilmFraming* film) {
   const auto [width, height] = size_named(options.size);
   const View view = view_named(options.view);
   Snapshot snapshot = given;
-  Colouring colouring = colouring_of(snapshot, options.colour, options.file);
+  Colouring colouring = colouring_of(snapshot, options.colour, options.file,
+                                     film != nullptr ? film->scale : std::vector<ColourScale>{});
   const CellFrame cell = PeriodicCell::with_edges(snapshot.lattice, Matrix3{}).frame();
   for (Vector3& place : snapshot.position) place = into_cell(snapshot, cell, place);
   Stage stage;
@@ -210,7 +211,7 @@ Image picture_of(const Snapshot& given, const PictureOptions& options) {
   add_cell(snapshot, 0.0016 * norm(snapshot.lattice * Vector3{1, 1, 1}), stage);
   Canvas canvas(width, height);
   const Layout layout(width, height);
-  const Camera camera(stage, view, layout.spheres);
+  const Camera camera(film != nullptr ? film->bounds : stage, view, layout.spheres);
   render(canvas, stage, camera, options.threads);
   draw_legend(canvas, layout, colouring);
   draw_axes(canvas, layout, camera, snapshot.strain ? fmt::format("strain {:.2f}", *snapshot.strain) : "");

@@ -1,7 +1,9 @@
 // Draws a frame of a trajectory: the verb `peclet-engine snapshot`.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "engine/pictures/colouring.h"
 #include "engine/pictures/ink.h"
@@ -26,9 +28,17 @@ void draw_axes(Canvas& canvas, const Layout& layout, const Camera& camera, const
 struct PictureOptions {
   std::string file, output;
   std::int64_t frame = -1;
+  std::optional<std::string> frames;  // of a film, as in chosen_frames(); else a single picture
   std::string view = "corner", size = "1600x1200", colour = "species";
   bool chains = false;
   int threads = 1;
+};
+
+// The common part of all pictures of a film: bounds of the stages of all of them, and the scale of colours,
+// if they have one.
+struct FilmFraming {
+  Stage bounds;
+  std::vector<ColourScale> scale;
 };
 
 // Writes a PNG file. Returns a note for the user, or an empty text. Throws InputError or std::system_error.
@@ -37,7 +47,8 @@ std::string draw_picture(const PictureOptions& options);
 // Reads a line of sight: "corner", "x", "y", "z", or "AZIMUTH,ELEVATION" in degrees. Throws InputError.
 View view_named(const std::string& name);
 
-// Returns the image. Throws InputError, naming `options.file`, if the frame lacks numbers for the colours.
-Image picture_of(const Snapshot& snapshot, const PictureOptions& options);
+// Returns the image, which may be one of a film. Throws InputError, naming `options.file`, if the frame lacks
+// numbers for the colours.
+Image picture_of(const Snapshot& snapshot, const PictureOptions& options, const FilmFraming* film = nullptr);
 
 }  // namespace peclet::engine
