@@ -13,7 +13,8 @@ LONGEST = 190  # characters of an answer
 HEAD = """# Studies
 
 Each page begins with its question, its picture and its answer. [How studies are repeated and
-judged](../docs/studies.md); [the published statements](../docs/statements.md) one by one.
+judged](../docs/studies.md); [the published statements](../docs/statements.md) one by one. *Hours* are the processor
+hours that the numbers of the study took; – where a page has no such count.
 
 <!-- written by index.py -->
 """
@@ -42,6 +43,12 @@ def first_sentences(text):
     return re.sub(r"[:;]$", ".", answer)
 
 
+def hours_of(folder):
+    judged = folder / "study.json"
+    hours = json.loads(judged.read_text()).get("processor_hours") if judged.is_file() else None
+    return "–" if hours is None else f"{hours:.2g}"
+
+
 def row_of(folder):
     page, name = folder / "README.md", folder.name
     picture = found_in(page, r"!\[[^]]*\]\(([^)]*)\)", "picture")
@@ -50,7 +57,8 @@ def row_of(folder):
         for what in ("Question", "Answer")
     )
     image = f'<img src="{name}/{picture}" width="220" alt="">'
-    return f"| [{image}]({name}/README.md) | [{name}]({name}/README.md) | {question} | {first_sentences(answer)} |\n"
+    links = f"| [{image}]({name}/README.md) | [{name}]({name}/README.md)"
+    return f"{links} | {question} | {first_sentences(answer)} | {hours_of(folder)} |\n"
 
 
 def has_statements(folder):
@@ -62,7 +70,7 @@ def index():
     folders = sorted(page.parent for page in HERE.glob("*/README.md"))
     text = HEAD
     for title, of_print in (("What is in print", True), ("Our own methods", False)):
-        text += f"\n## {title}\n\n| | study | question | answer |\n|---|---|---|---|\n"
+        text += f"\n## {title}\n\n| | study | question | answer | hours |\n|---|---|---|---|---|\n"
         text += "".join(row_of(folder) for folder in folders if has_statements(folder) == of_print)
     return text
 
