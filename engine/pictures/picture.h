@@ -28,7 +28,7 @@ void draw_axes(Canvas& canvas, const Layout& layout, const Camera& camera, const
 struct PictureOptions {
   std::string file, output;
   std::int64_t frame = -1;
-  std::optional<std::string> frames;  // of a film, as in chosen_frames(); else a single picture
+  std::optional<std::string> frames{};  // of a film, as in chosen_frames(); else a single picture
   std::string view = "corner", size = "1600x1200", colour = "species";
   bool chains = false;
   int threads = 1;
