@@ -2,13 +2,14 @@
 #pragma once
 
 #include <charconv>
-#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "contract/decimal.h"
 
 namespace peclet {
 
@@ -41,15 +42,17 @@ bool is_blank(std::string_view text);
 
 // Returns the number that the whole word spells, or nothing if it is not a number or not finite.
 template <class Number>
-requires std::integral<Number> || std::floating_point<Number> std::optional<Number> number_in(
+requires std::integral<Number> || std::same_as<Number, double> std::optional<Number> number_in(
     std::string_view word) {
   if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
   Number value{};
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size()) return std::nullopt;
-  if constexpr (std::floating_point<Number>) {
-    if (!std::isfinite(value)) return std::nullopt;
+  std::from_chars_result read{};
+  if constexpr (std::integral<Number>) {
+    read = std::from_chars(word.data(), word.data() + word.size(), value);
+  } else {
+    read = read_double(word.data(), word.data() + word.size(), value);
   }
+  if (read.ec != std::errc() || read.ptr != word.data() + word.size()) return std::nullopt;
   return value;
 }
 

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 
 #include "contract/errors.h"
 #include "contract/named_files.h"
+#include "contract/text.h"
 #include "engine/state/periodic_cell.h"
 
 namespace peclet::engine {
@@ -57,11 +57,11 @@ template <class Number>
 bool read_pair(std::string_view text, char between, Number& first, Number& second) {
   const std::size_t at = text.find(between);
   if (at == std::string_view::npos) return false;
-  const auto read = [](std::string_view part, Number& value) {
-    const auto done = std::from_chars(part.data(), part.data() + part.size(), value);
-    return done.ec == std::errc() && done.ptr == part.data() + part.size();
-  };
-  return read(text.substr(0, at), first) && read(text.substr(at + 1), second);
+  const auto one = number_in<Number>(text.substr(0, at)), other = number_in<Number>(text.substr(at + 1));
+  if (!one || !other) return false;
+  first = *one;
+  second = *other;
+  return true;
 }
 
 std::pair<std::size_t, std::size_t> size_named(const std::string& name) {

@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <map>
 #include <sstream>
 #include <system_error>
 
+#include "contract/decimal.h"
 #include "contract/errors.h"
 
 namespace peclet::runner {
@@ -79,9 +78,9 @@ std::string checked(const std::string& name, const std::string& word, const Key&
   const bool in_percent = allowed.maximum <= 1 && word.ends_with('%');
   const std::size_t digits = in_percent ? word.find_last_not_of(' ', word.size() - 2) + 1 : word.size();
   const char* const end = word.data() + digits;
-  const auto [stop, error] = std::from_chars(word.data(), end, number);
+  const auto [stop, error] = read_double(word.data(), end, number);
   if (in_percent) number /= 100;
-  if (error != std::errc{} || stop != end || !std::isfinite(number)) {
+  if (error != std::errc{} || stop != end) {
     throw InputError("", name, word, allowed_values(allowed));
   }
   try {

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <limits>
 
+#include "contract/decimal.h"
 #include "contract/errors.h"
 #include "contract/frames.h"
 #include "runner/campaign/campaign.h"
@@ -35,7 +35,7 @@ bool read_numbers(std::string_view text, std::size_t most, std::vector<double>& 
     if (std::string_view(place, end).starts_with(null)) {
       place += null.size();
     } else {
-      const auto [after, error] = std::from_chars(place, end, number);
+      const auto [after, error] = read_double(place, end, number);
       if (error != std::errc()) return false;
       place = after;
     }
