@@ -7,6 +7,7 @@
 #include <chrono>
 #include <csignal>
 #include <fstream>
+#include <future>
 #include <thread>
 
 #include "contract/errors.h"
@@ -67,13 +68,13 @@ TEST_F(HandOver, WhoFollowsCarriesOutWhatIsAskedForWithoutWaitingForTheNextTurn)
   options.follow = true;
   options.interval = 1e6;
   std::atomic<int> code = -1;
-  std::jthread owner([&] { code = hand_over(); });
+  auto owner = std::async(std::launch::async, [&] { code = hand_over(); });
   ASSERT_TRUE(
       comes_true([&] { return current_owner(campaign_directory(options.campaign, {})).has_value(); }));
   cancel_points({options.campaign, {}, {"peclet=1", "peclet=2"}});
   states("");                                                            // the cancelled jobs leave
   if (!comes_true([&] { return code != -1; })) kill(getpid(), SIGTERM);  // its next turn is days away
-  owner.join();
+  owner.get();
   EXPECT_EQ(code, 3);
   EXPECT_EQ(seeds_out(), 0);
   EXPECT_EQ(count("SELECT total(blamed) FROM attempt"), 0);
@@ -85,7 +86,7 @@ TEST_F(HandOver, WhoFollowsWaitsForALockOfAnotherProgram) {
   options.follow = true;
   options.interval = 0.05;
   std::atomic<int> code = -1;
-  std::jthread owner([&] { code = hand_over(); });
+  auto owner = std::async(std::launch::async, [&] { code = hand_over(); });
   const CampaignDirectory directory = campaign_directory(options.campaign, {});
   ASSERT_TRUE(comes_true([&] { return current_owner(directory).has_value(); }));
   {
@@ -97,7 +98,7 @@ TEST_F(HandOver, WhoFollowsWaitsForALockOfAnotherProgram) {
   cancel_points({options.campaign, {}, {"peclet=1", "peclet=2"}});
   states("");
   if (!comes_true([&] { return code != -1; })) kill(getpid(), SIGTERM);
-  owner.join();
+  owner.get();
   EXPECT_EQ(code, 3);
   EXPECT_EQ(seeds_out(), 0);
 }

@@ -3,7 +3,7 @@
 
 #include <csignal>
 #include <functional>
-#include <thread>
+#include <future>
 
 #include "contract/durable_file.h"
 #include "contract/errors.h"
@@ -192,9 +192,9 @@ TEST(Set, OfACampaignThatWasNeverRunChangesItsFile) {
 TEST(Set, OfTwoAtOnceNeitherIsLost) {
   CampaignOnDisk campaign;
   ASSERT_EQ(campaign.run(), 0) << campaign.log();
-  std::jthread other([&] { set(campaign, [](SetOptions& options) { options.tolerance = 0.04; }); });
+  auto other = std::async(std::launch::async, [&] { set(campaign, [](SetOptions& options) { options.tolerance = 0.04; }); });
   set(campaign, [](SetOptions& options) { options.maximum = 500; });
-  other.join();
+  other.get();
   campaign.document["target"]["relative_tolerance"] = 0.04;
   campaign.document["realisations"]["maximum"] = 500;
   EXPECT_EQ(read_json(campaign.options.campaign), campaign.document);
@@ -298,11 +298,11 @@ TEST(Requests, AreCarriedOutByTheVerbWhenTheOwnerDiesWhileItWaits) {
   campaign.wait_for_results(2);
   campaign.signal(SIGSTOP);
   Reply reply;
-  std::jthread verb([&] { reply = cancel(campaign, {"peclet=2"}); });
+  auto verb = std::async(std::launch::async, [&] { reply = cancel(campaign, {"peclet=2"}); });
   campaign.wait_until("the request", [&] { return waiting_requests(campaign.directory()).size() == 1; });
   campaign.signal(SIGKILL);
   EXPECT_EQ(campaign.finish(), -SIGKILL);
-  verb.join();
+  verb.get();
   EXPECT_TRUE(reply.text.starts_with("cancel: no more seeds: peclet=2\ngo on with: peclet run"))
       << reply.text;
 }

@@ -29,7 +29,7 @@ TEST(ResultText, DoesNotDependOnWhatWasDeflatedBefore) {
         deflated(before, noise(1000));
         const std::string bytes = deflated(text, dictionary);
         std::string fresh;
-        std::jthread([&] { fresh = deflated(text, dictionary); }).join();
+        std::thread([&] { fresh = deflated(text, dictionary); }).join();
         EXPECT_EQ(bytes, fresh) << before.size() << ' ' << text.size() << ' ' << dictionary.size();
       }
     }
