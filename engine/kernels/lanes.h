@@ -1,7 +1,8 @@
 // Several doubles side by side, one for each pair: the number that vectorised kernels compute with.
 //
 // `Set` is an instruction set. It gives the width, and its type keeps code compiled for one set apart from
-// code for another. Arithmetic is the compiler's vector extension.
+// code for another. Arithmetic is the compiler's vector extension. Only files with kernels for a newer x86-64
+// include this header.
 #pragma once
 
 #include <immintrin.h>
@@ -9,7 +10,6 @@
 #include <cstdint>
 
 #include "engine/state/real.h"
-#include "engine/state/vector3.h"
 
 namespace peclet::engine {
 namespace {
@@ -156,21 +156,5 @@ PECLET_ALWAYS_INLINE Lanes<Set> exponential(const Lanes<Set>& x) {
   return Lanes<Set>(_ZGVdN4v_exp(x.v));
 #endif
 }
-
-}  // namespace peclet::engine
-
-namespace peclet::engine {
-
-// The number of pairs that a Real holds.
-template <class Real>
-constexpr int width_of = Real::width;
-template <>
-constexpr int width_of<double> = 1;
-
-// A row for each lane.
-template <class Real>
-struct RowsOf {
-  Row row[width_of<Real>];
-};
 
 }  // namespace peclet::engine

@@ -1,8 +1,8 @@
 // Assembles the links of listed pairs, computed like their forces: several pairs of one kind side by side.
 #pragma once
 
-#include "engine/kernels/lane_access.h"
 #include "engine/kernels/link_kernels.h"
+#include "engine/kernels/one_lane.h"
 #include "engine/kernels/pair_kernel.h"
 #include "engine/kernels/pair_terms.h"
 

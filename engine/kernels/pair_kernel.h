@@ -6,8 +6,7 @@
 
 #include <utility>
 
-#include "engine/kernels/lane_access.h"
-#include "engine/kernels/lanes.h"
+#include "engine/kernels/one_lane.h"
 #include "engine/kernels/pair_kernels.h"
 #include "engine/kernels/pair_terms.h"
 #include "engine/terms/pair.h"

@@ -1,7 +1,7 @@
 // A double that counts its operations. The kernel's code, instantiated with it, gives those of a pair.
 #pragma once
 
-#include "engine/kernels/lane_access.h"
+#include "engine/kernels/one_lane.h"
 #include "tests/bench/engine/operation_counts.h"
 
 namespace peclet::engine {

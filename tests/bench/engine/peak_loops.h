@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "engine/kernels/lane_access.h"
+#include "engine/kernels/one_lane.h"
 
 namespace peclet::engine {
 
