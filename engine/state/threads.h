@@ -32,7 +32,7 @@ inline void acquire_work() {
 
 // Calls body(part, parts) on each of `threads` threads, or on fewer if OpenMP provides fewer.
 template <class Body>
-[[gnu::no_sanitize("thread")]] void in_parallel(int threads, Body&& body) {
+__attribute__((no_sanitize("thread"))) void in_parallel(int threads, Body&& body) {
   release_work();
 #pragma omp parallel num_threads(threads)
   {
@@ -47,7 +47,7 @@ template <class Body>
 // a parallel region of a single thread still takes and frees a team, which costs more than a step of two
 // spheres.
 template <class Body>
-[[gnu::no_sanitize("thread")]] void for_each_range(std::size_t count, int threads, Body&& body) {
+__attribute__((no_sanitize("thread"))) void for_each_range(std::size_t count, int threads, Body&& body) {
   if (threads <= 1) {
     body(std::size_t{0}, count);
     return;
