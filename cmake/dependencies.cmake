@@ -41,7 +41,14 @@ if(NOT RANDOM123_INCLUDE)
   list(APPEND missing "Random123 (librandom123-dev)")
 endif()
 if(BUILD_TESTING)
-  package(GTest libgtest-dev)
+  if(PECLET_FROM_SOURCE)
+    find_path(GOOGLETEST_SOURCE googletest/src/gtest-all.cc PATHS /usr/src/googletest NO_CMAKE_FIND_ROOT_PATH)
+    if(NOT GOOGLETEST_SOURCE)
+      list(APPEND missing "source of GTest (googletest)")
+    endif()
+  else()
+    package(GTest libgtest-dev)
+  endif()
   package(Python3 python3 COMPONENTS Interpreter)
 endif()
 
@@ -58,9 +65,12 @@ endif()
 target_compile_definitions(Eigen3::Eigen INTERFACE EIGEN_DONT_PARALLELIZE EIGEN_MPL2_ONLY
   $<$<CONFIG:Release>:EIGEN_NO_DEBUG>)
 
-# Debian has fmt and spdlog as shared libraries only. Their archives are compiled here from their headers, which have
-# the sources. All other code is compiled as for the shared libraries.
-if(PECLET_ARCHIVES)
+# Asio of Boost 1.74 takes std::result_of otherwise, which C++20 does not have.
+target_compile_definitions(Boost::headers INTERFACE BOOST_ASIO_HAS_STD_INVOKE_RESULT)
+
+# Debian has fmt and spdlog as shared libraries only, for the C++ library of g++. Their archives are compiled here from
+# their headers, which have the sources. All other code is compiled as for the shared libraries.
+if(PECLET_ARCHIVES OR PECLET_FROM_SOURCE)
   foreach(library fmt spdlog)
     add_library(${library}_archive STATIC cmake/archives/${library}.cpp)
     foreach(property COMPILE_DEFINITIONS INCLUDE_DIRECTORIES)
@@ -75,4 +85,10 @@ if(PECLET_ARCHIVES)
 else()
   add_library(peclet_fmt ALIAS fmt::fmt)
   add_library(peclet_spdlog ALIAS spdlog::spdlog)
+endif()
+
+if(BUILD_TESTING AND PECLET_FROM_SOURCE)
+  set(BUILD_GMOCK OFF)
+  set(INSTALL_GTEST OFF)
+  add_subdirectory(${GOOGLETEST_SOURCE} googletest EXCLUDE_FROM_ALL)
 endif()

@@ -192,7 +192,8 @@ TEST(Set, OfACampaignThatWasNeverRunChangesItsFile) {
 TEST(Set, OfTwoAtOnceNeitherIsLost) {
   CampaignOnDisk campaign;
   ASSERT_EQ(campaign.run(), 0) << campaign.log();
-  auto other = std::async(std::launch::async, [&] { set(campaign, [](SetOptions& options) { options.tolerance = 0.04; }); });
+  auto other = std::async(std::launch::async,
+                          [&] { set(campaign, [](SetOptions& options) { options.tolerance = 0.04; }); });
   set(campaign, [](SetOptions& options) { options.maximum = 500; });
   other.get();
   campaign.document["target"]["relative_tolerance"] = 0.04;
