@@ -59,7 +59,9 @@ ${ends}peclet_card_ptx_count:
   .quad ${count}
   .section .note.GNU-stack, \"\", %progbits
 " @ONLY)
-  set_source_files_properties(${assembly} PROPERTIES OBJECT_DEPENDS "${packed}")
+  # Clang warns about options of C++ for assembly; g++ does not.
+  set_source_files_properties(${assembly} PROPERTIES OBJECT_DEPENDS "${packed}"
+    COMPILE_OPTIONS -Wno-unused-command-line-argument)
   target_sources(${library} PRIVATE ${assembly})
   target_compile_definitions(${library} PUBLIC PECLET_CARD_VARIANTS=${variants})
 endfunction()

@@ -13,7 +13,7 @@ namespace peclet::engine {
 template <class Real>
 constexpr int width_of = Real::width;
 template <>
-constexpr int width_of<double> = 1;
+inline constexpr int width_of<double> = 1;
 
 // A row for each lane.
 template <class Real>

@@ -86,7 +86,7 @@ TEST(Catalogue, TakesImplicitStepsOnlyWhereTheirNameSaysSo) {
     }
   }
   const auto processors = static_cast<unsigned>(omp_get_num_procs());
-  EXPECT_EQ(implicit, 9u + std::bit_width(processors));  // on 1, 2, 4 ... threads
+  EXPECT_EQ(implicit, 9u + static_cast<unsigned>(std::bit_width(processors)));  // on 1, 2, 4 ... threads
 }
 
 // These cases used most time before they were optimised.
