@@ -76,6 +76,7 @@ void add_all(VerbSet& verbs) {
   app.formatter(std::make_shared<HelpFormatter>());
   add_running_verbs(verbs);
   add_viewing_verbs(verbs);
+  add_curve_verbs(verbs);
   add_changing_verbs(verbs);
   add_completion(verbs);
 }

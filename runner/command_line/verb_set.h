@@ -76,6 +76,7 @@ class VerbSet {
 // Add the verbs of a group, in the order in which help lists them.
 void add_running_verbs(VerbSet& verbs);
 void add_viewing_verbs(VerbSet& verbs);
+void add_curve_verbs(VerbSet& verbs);
 void add_changing_verbs(VerbSet& verbs);
 
 void add_file(CLI::App* verb, std::filesystem::path& path, const char* shown = "campaign FILE.json",
