@@ -10,7 +10,6 @@
 #include "contract/durable_file.h"
 #include "contract/errors.h"
 #include "contract/named_files.h"
-#include "contract/sha256.h"
 #include "runner/campaign/campaign_file.h"
 #include "runner/engines/engine_process.h"
 #include "runner/engines/scene_check.h"
@@ -238,7 +237,7 @@ Reply take_over(const SetOptions& options) {
                           text != before ? "changed" : "valid and unchanged",
                           words_for(options.campaign, options.directory))};
     }
-    request = write_request(directory, TakeOver{fs::absolute(options.campaign), sha256(text)});
+    request = write_request(directory, TakeOver{fs::absolute(options.campaign), hash_of(campaign)});
   }
   try {
     return await_reply(directory, request, words_for(options.campaign, options.directory), options.patience);

@@ -13,6 +13,7 @@
 
 #include "contract/durable_file.h"
 #include "contract/guarded_file.h"
+#include "contract/sha256.h"
 
 namespace peclet::runner {
 
@@ -57,7 +58,8 @@ const KindTables& request_keys() {
 
 -- take-over | The campaign is taken over from its file.
 /file | string
-/sha256 | string | Hash of the text whose scenes the engine has checked.
+/sha256 | string | Hash of the campaign, with the content of its scene's file, whose scenes the
+    engine has checked.
 
 -- prioritise | Points come earlier or later.
 /points | array | Labels, or digits of the hash.
@@ -81,6 +83,8 @@ const KindTables& request_keys() {
 fs::path request_file(const CampaignDirectory& directory, const std::string& name) {
   return directory.requests() / (name + ".json");
 }
+
+std::string hash_of(const Campaign& campaign) { return sha256(canonical_json(campaign.document)); }
 
 Request write_request(const CampaignDirectory& directory, const Wish& wish) {
   Request request{new_name(), wish};

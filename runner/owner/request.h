@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "contract/key_table.h"
+#include "runner/campaign/campaign.h"
 #include "runner/campaign/paths.h"
 #include "runner/store/campaign_directory.h"
 
@@ -17,8 +18,11 @@ namespace peclet::runner {
 // Takes the campaign over from its file.
 struct TakeOver {
   fs::path file;
-  std::string sha256;  // hash of the text whose scenes the engine has checked
+  std::string sha256;  // hash_of() the campaign whose scenes the engine has checked
 };
+// Returns the hash of a campaign with the content of its scene's file.
+std::string hash_of(const Campaign& campaign);
+
 // In the following, points are named by label or by digits of the hash.
 struct Prioritise {
   std::vector<std::string> points;

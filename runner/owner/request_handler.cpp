@@ -11,7 +11,6 @@
 #include "contract/errors.h"
 #include "contract/guarded_file.h"
 #include "contract/named_files.h"
-#include "contract/sha256.h"
 #include "runner/campaign/number_text.h"
 #include "runner/campaign/quoting.h"
 #include "runner/store/point_store.h"
@@ -271,15 +270,15 @@ RequestHandler::Done RequestHandler::apply(const TakeOver& wish) {
   } catch (const std::system_error& error) {
     throw InputError(wish.file.string(), "", "", error.what());
   }
-  // The file changed after the check; its author will send another request.
-  if (sha256(text) != wish.sha256) {
+  const Campaign written = parse_campaign(parse_json_input(text, wish.file.string()), wish.file.string());
+  // The campaign or its scene's file changed after the check; its author will send another request.
+  if (hash_of(written) != wish.sha256) {
     return {"set",
             fmt::format(
                 "not taken over: {} changed after it was checked; `peclet set` or `peclet run` takes it over",
                 wish.file.string())};
   }
-  const Campaign campaign = PointStore(database_).with_chosen_values(
-      parse_campaign(parse_json_input(text, wish.file.string()), wish.file.string()));
+  const Campaign campaign = PointStore(database_).with_chosen_values(written);
   if (state_.has_engine() && campaign.engine != state_.campaign().engine) {
     throw InputError(wish.file.string(), "/engine", Json(campaign.engine).dump(),
                      "cannot be changed while the campaign runs: stop it, and start it again");

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "contract/durable_file.h"
-#include "contract/sha256.h"
 #include "runner/owner/request_handler.h"
 #include "runner/store/point_store.h"
 #include "runner/store/result_store.h"
@@ -38,7 +37,7 @@ class CarryingOut : public testing::Test {
     state_.emplace(database_, read_campaign(file()), directory_, listener_, 2);
     requests_.emplace(database_, *state_, directory_, listener_);
   }
-  TakeOver file_as_it_is() const { return {file(), sha256(read_file(file()))}; }
+  TakeOver file_as_it_is() const { return {file(), hash_of(read_campaign(file()))}; }
 
   // Returns the answer: "cancel: no more seeds: peclet=1".
   std::string ask(const Wish& wish) {

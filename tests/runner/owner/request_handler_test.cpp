@@ -50,6 +50,20 @@ TEST_F(CarryingOut, AFileThatWasChangedSinceItWasCheckedIsNotTakenOver) {
   EXPECT_EQ(database_.campaign().target.maximum, 40);
 }
 
+TEST_F(CarryingOut, ASceneFileThatWasChangedSinceItWasCheckedIsNotTakenOver) {
+  const fs::path scene = file().parent_path() / "scene.json";
+  Json content = document_["scene"];
+  write_durably(scene, content.dump());
+  document_["scene"] = "scene.json";
+  document_["realisations"]["maximum"] = 90;
+  write();
+  const TakeOver checked = file_as_it_is();
+  content["volume_fraction"] = 0.31;
+  write_durably(scene, content.dump());
+  EXPECT_TRUE(ask(checked).starts_with("set: not taken over: "));
+  EXPECT_EQ(database_.campaign().target.maximum, 40);
+}
+
 TEST_F(CarryingOut, OfTwoChangesOneAfterTheOtherTheSecondTakesBothOver) {
   document_["realisations"]["maximum"] = 90;
   write();
