@@ -216,6 +216,27 @@ void write_canonical(const Json& value, std::string& out) {
   }
 }
 
+// Replaces comments by blanks. Returns where one begins that is never closed, or npos.
+std::size_t blank_comments(std::string& text) {
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    if (text[at] == '"') {
+      for (++at; at < text.size() && text[at] != '"'; ++at) {
+        if (text[at] == '\\') ++at;
+      }
+      continue;
+    }
+    const bool is_block = text.compare(at, 2, "/*") == 0;
+    if (!is_block && text.compare(at, 2, "//") != 0) continue;
+    const std::size_t mark = is_block ? text.find("*/", at + 2) : text.find_first_of("\r\n", at);
+    if (is_block && mark == std::string::npos) return at;
+    const std::size_t end = is_block ? mark + 2 : std::min(mark, text.size());
+    std::fill(text.begin() + static_cast<std::ptrdiff_t>(at), text.begin() + static_cast<std::ptrdiff_t>(end),
+              ' ');
+    at = end - 1;
+  }
+  return std::string::npos;
+}
+
 Json parsed(std::string_view text, const std::string& file, std::size_t most_values, bool has_comments) {
   const char* furthest = text.data();
   const auto fault = [&](std::size_t offset, const std::string& message) {
@@ -239,10 +260,10 @@ Json parsed(std::string_view text, const std::string& file, std::size_t most_val
   } catch (const Json::parse_error& error) {
     const std::size_t offset = std::min(text.size(), error.byte == 0 ? 0 : error.byte - 1);
     const std::string why = reason(error.what());
-    const bool is_open_comment = why.find("missing closing '*/'") != std::string::npos;
-    const std::string usual = is_open_comment ? "; the comment is not closed"
-                              : has_comments  ? usual_fault(without_comments(std::string(text)), offset)
-                                              : usual_fault(text, offset);
+    std::string plain(text);
+    const std::size_t open = has_comments ? blank_comments(plain) : std::string::npos;
+    if (open != std::string::npos) throw fault(open, "must be JSON: the comment is not closed");
+    const std::string usual = usual_fault(plain, offset);
     // The explanation of a usual fault replaces what the parser read last and expected.
     throw fault(offset, usual.empty() ? why : why.substr(0, why.find("; ")) + usual);
   } catch (const Builder::Fault& refused) {
@@ -253,22 +274,7 @@ Json parsed(std::string_view text, const std::string& file, std::size_t most_val
 }  // namespace
 
 std::string without_comments(std::string text) {
-  for (std::size_t at = 0; at < text.size(); ++at) {
-    if (text[at] == '"') {
-      for (++at; at < text.size() && text[at] != '"'; ++at) {
-        if (text[at] == '\\') ++at;
-      }
-      continue;
-    }
-    const bool is_block = text.compare(at, 2, "/*") == 0;
-    if (!is_block && text.compare(at, 2, "//") != 0) continue;
-    const std::size_t mark = is_block ? text.find("*/", at + 2) : text.find_first_of("\r\n", at);
-    if (is_block && mark == std::string::npos) break;  // never closed: a fault that the parser reports
-    const std::size_t end = is_block ? mark + 2 : std::min(mark, text.size());
-    std::fill(text.begin() + static_cast<std::ptrdiff_t>(at), text.begin() + static_cast<std::ptrdiff_t>(end),
-              ' ');
-    at = end - 1;
-  }
+  blank_comments(text);
   return text;
 }
 

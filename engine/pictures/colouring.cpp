@@ -40,15 +40,16 @@ Colouring on_scale(const ColourScale& scale, const std::vector<double>& values) 
 }
 
 // Colours more species than there are colours: by radius on a scale, or by index if all radii are equal.
-Colouring by_radius(const Snapshot& snapshot) {
+Colouring by_radius(const Snapshot& snapshot, const std::vector<ColourScale>& given) {
   const auto [low, high] = std::minmax_element(snapshot.radius.begin(), snapshot.radius.end());
+  if (!given.empty()) return on_scale(given.front(), snapshot.radius);
   if (*low < *high) return on_scale({"radius", *low, *high}, snapshot.radius);
   return on_scale({"species", 0, static_cast<double>(snapshot.species_names.size() - 1)},
                   {snapshot.species.begin(), snapshot.species.end()});
 }
 
-Colouring by_species(const Snapshot& snapshot) {
-  if (snapshot.species_names.size() > count_of_species_colours) return by_radius(snapshot);
+Colouring by_species(const Snapshot& snapshot, const std::vector<ColourScale>& given) {
+  if (snapshot.species_names.size() > count_of_species_colours) return by_radius(snapshot, given);
   Colouring all;
   std::vector<double> radius(snapshot.species_names.size(), 0);
   std::vector<bool> is_one_size(radius.size(), true);
@@ -154,7 +155,7 @@ std::vector<double> ticks_of(const ColourScale& scale) {
 
 Colouring colouring_of(const Snapshot& snapshot, const std::string& name, const std::string& file,
                        const std::vector<ColourScale>& given) {
-  if (name == "species") return by_species(snapshot);
+  if (name == "species") return by_species(snapshot, given);
   std::string title;
   std::vector<double> values;
   if (name == "speed") {

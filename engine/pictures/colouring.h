@@ -74,7 +74,7 @@ struct Colouring {
 //   contacts  number of contacts
 //   stress    sigma_xy: the sphere's part of V sigma over its own volume
 // L is the velocity gradient of the file, or that of simple shear at the rate strain / time, or 0. A scale
-// that is `given` replaces that of the frame's speeds, contacts or stresses. Throws InputError, naming the
+// that is `given` replaces that of the frame. Throws InputError, naming the
 // file, if the frame lacks the numbers.
 Colouring colouring_of(const Snapshot& snapshot, const std::string& name, const std::string& file,
                        const std::vector<ColourScale>& given = {});

@@ -44,7 +44,7 @@ std::string quoted(const std::string& word) {
   return text + "'";
 }
 
-// Runs a program that PATH has, and waits for its end. Returns false if there is no such program. Throws
+// Runs a program that PATH has, and waits for its end. Returns false if no such program may be run. Throws
 // std::runtime_error if it fails.
 bool run_program(std::vector<std::string> words) {
   std::vector<char*> arguments;
@@ -52,7 +52,7 @@ bool run_program(std::vector<std::string> words) {
   arguments.push_back(nullptr);
   pid_t process = 0;
   const int fault = posix_spawnp(&process, arguments.front(), nullptr, nullptr, arguments.data(), environ);
-  if (fault == ENOENT) return false;
+  if (fault == ENOENT || fault == EACCES) return false;
   if (fault != 0) throw std::system_error(fault, std::generic_category(), words.front());
   int status = 0;
   while (waitpid(process, &status, 0) < 0) {

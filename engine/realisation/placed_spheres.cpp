@@ -171,10 +171,18 @@ class Placing {
       for (std::size_t k = 0; k < order.size(); ++k) order[wanted[k]] = found[k];
       arrange(snapshot, order);
     }
-    const auto other = std::ranges::find_if(all, differs);
-    if (other != all.end()) {
-      refuse("/particles/species", fmt::format("radius {}", radius[*other]),
-             "must be that of a sphere of the start, whose nearest has {:.8g}", snapshot.radius[*other]);
+    if (std::ranges::any_of(all, differs)) {
+      std::vector<double> wanted = radius, found = snapshot.radius;
+      std::ranges::sort(wanted);
+      std::ranges::sort(found);
+      std::size_t k = 0;  // the first place where they differ
+      while (is_near(found[k], wanted[k], wanted[k])) ++k;
+      const double a = std::min(wanted[k], found[k]);
+      const auto count = [a](const std::vector<double>& radii) {
+        return std::ranges::count_if(radii, [a](double one) { return is_near(one, a, a); });
+      };
+      refuse("/particles/species", fmt::format("{} spheres of radius {:.8g}", count(wanted), a),
+             "must be as in the start, which has {}", count(found));
     }
     return radius;
   }

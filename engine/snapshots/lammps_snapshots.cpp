@@ -1,9 +1,12 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <map>
 #include <optional>
+#include <tuple>
+#include <utility>
 
 #include "contract/errors.h"
 #include "contract/text.h"
@@ -22,13 +25,34 @@ std::vector<std::string_view> words_of(std::string_view line) {
   return words;
 }
 
+std::vector<std::string_view> words_before_comment(std::string_view line) {
+  return words_of(line.substr(0, line.find('#')));
+}
+
+// Returns N of the line "N atoms" of a data file.
+std::optional<std::size_t> count_of_atoms(const std::vector<std::string_view>& words) {
+  if (words.size() != 2 || words[1] != "atoms") return std::nullopt;
+  return number_in<std::size_t>(words[0]);
+}
+
 Matrix3 tilted_cell(const Vector3& lengths, double xy, double xz, double yz) {
   return {Vector3{lengths.x, 0, 0}, Vector3{xy, lengths.y, 0}, Vector3{xz, yz, lengths.z}};
 }
 
-class DumpReading : SphereText {
+class LammpsText : protected SphereText {
+ protected:
+  using SphereText::SphereText;
+
+  // Throws InputError unless every edge has a length.
+  void require_order(const std::string& name, const Vector3& low, const Vector3& high) const {
+    if (low.x < high.x && low.y < high.y && low.z < high.z) return;
+    refuse(name, "must be there, with the lower end of each edge first");
+  }
+};
+
+class DumpReading : LammpsText {
  public:
-  DumpReading(std::string_view frame, const std::string& file) : SphereText(file), rest_(frame) {}
+  DumpReading(std::string_view frame, const std::string& file) : LammpsText(file), rest_(frame) {}
 
   Snapshot read() {
     std::size_t count = 0;
@@ -53,6 +77,7 @@ class DumpReading : SphereText {
                "ATOMS, BOX BOUNDS or ATOMS");
       }
     }
+    if (!has_box_) refuse("ITEM: BOX BOUNDS", "must be there");
     for (std::size_t row = 0; row < count; ++row) read_sphere(words_of(take_line(rest_)), row);
     finish(snapshot_, id_);
     return std::move(snapshot_);
@@ -67,11 +92,10 @@ class DumpReading : SphereText {
   // Reads the bounds; those of a tilted box surround the tilted cell.
   void read_box(const std::vector<std::string_view>& title) {
     const bool is_tilted = title.size() > 5 && title[3] == "xy" && title[4] == "xz" && title[5] == "yz";
-    const auto boundary = std::find_if(title.begin() + (is_tilted ? 6 : 3), title.end(),
-                                       [](std::string_view word) { return word != "pp"; });
-    if (boundary != title.end()) {
-      refuse(std::string(*boundary),
-             "must be a box with BOX BOUNDS pp pp pp, or xy xz yz pp pp pp: other boundaries are not read");
+    const std::vector<std::string_view> boundaries(title.begin() + (is_tilted ? 6 : 3), title.end());
+    if (boundaries != std::vector<std::string_view>(3, "pp")) {
+      refuse(fmt::format("ITEM: BOX BOUNDS {}", fmt::join(title.begin() + 3, title.end(), " ")),
+             "must be followed by pp pp pp, or xy xz yz pp pp pp: other boxes are not read");
     }
     Vector3 low, high;
     std::array<double, 3> tilt{};  // xy, xz, yz
@@ -88,6 +112,8 @@ class DumpReading : SphereText {
     high.x -= std::max({0.0, xy, xz, xy + xz});
     low.y -= std::min(0.0, yz);
     high.y -= std::max(0.0, yz);
+    require_order("BOX BOUNDS", low, high);
+    has_box_ = true;
     snapshot_.corner = low;
     snapshot_.lattice = tilted_cell(high - low, xy, xz, yz);
   }
@@ -97,9 +123,12 @@ class DumpReading : SphereText {
       if (!column_.emplace(names[k], k).second)
         refuse(fmt::format("ITEM: ATOMS: {}", names[k]), "must be there once");
     }
-    for (const char* const ending : {"", "u", "s", "su"}) {
-      names_of_position_ = {std::string("x") + ending, std::string("y") + ending, std::string("z") + ending};
-      is_scaled_ = *ending == 's';
+    for (const std::string_view ending : {"", "u", "s", "su"}) {
+      names_of_position_.clear();
+      for (const char axis : {'x', 'y', 'z'}) names_of_position_.push_back(fmt::format("{}{}", axis, ending));
+      is_scaled_ = ending.starts_with('s');
+      // Unwrapped positions have the images in them.
+      has_images_ = !ending.ends_with('u') && has({"ix", "iy", "iz"});
       if (has(names_of_position_)) break;
     }
     if (!has(names_of_position_) || !(column_.contains("radius") || column_.contains("diameter"))) {
@@ -129,7 +158,7 @@ class DumpReading : SphereText {
     if (has({"vx", "vy", "vz"})) snapshot_.velocity.push_back(vector_of({"vx", "vy", "vz"}));
     if (has({"omegax", "omegay", "omegaz"}))
       snapshot_.spin.push_back(vector_of({"omegax", "omegay", "omegaz"}));
-    if (has({"ix", "iy", "iz"})) {
+    if (has_images_) {
       const auto whole = [&](const char* name) { return number<std::int32_t>(word(name), where); };
       snapshot_.image.push_back({whole("ix"), whole("iy"), whole("iz")});
     }
@@ -146,35 +175,35 @@ class DumpReading : SphereText {
   std::map<std::string_view, std::size_t> column_;  // place of each column in a line
   std::vector<std::string> names_of_position_;
   bool is_scaled_ = false;  // positions are fractions of the cell
+  bool has_images_ = false;
+  bool has_box_ = false;
   std::vector<std::int64_t> id_;
 };
 
-class DataReading : SphereText {
+class DataReading : LammpsText {
  public:
-  DataReading(std::string_view text, const std::string& file) : SphereText(file), rest_(text) {}
+  DataReading(std::string_view text, const std::string& file) : LammpsText(file), rest_(text) {}
 
   Snapshot read() {
     take_line(rest_);  // a title
-    bool has_atoms = false;
     while (!is_blank(rest_)) {
-      std::string_view line = take_line(rest_);
-      const std::string_view about = line.substr(std::min(line.find('#'), line.size()));
-      const std::vector<std::string_view> words = words_of(line.substr(0, line.find('#')));
-      if (words.size() == 2 && words[1] == "atoms") count_ = number<std::size_t>(words[0], "atoms");
-      if (words.size() == 4) read_edge(words);
-      if (words.size() == 6 && words[3] == "xy")
-        tilt_ = Vector3{real(words[0]), real(words[1]), real(words[2])};
-      if (words.size() != 1) continue;
-      if (words[0] == "Atoms") {
-        if (words_of(about).size() != 2 || words_of(about)[1] != "sphere")
+      const std::string_view line = take_line(rest_);
+      const std::vector<std::string_view> words = words_before_comment(line);
+      if (words == std::vector<std::string_view>{"Atoms"}) {
+        const std::string_view style = line.substr(std::min(line.find('#'), line.size() - 1) + 1);
+        if (words_of(style) != std::vector<std::string_view>{"sphere"})
           refuse("Atoms", "must be \"Atoms # sphere\", of the atom style sphere, with its diameters");
-        has_atoms = true;
+        if (!id_.empty()) refuse("Atoms", "must be there once");
         read_atoms();
-      } else if (words[0] == "Velocities") {
+      } else if (words == std::vector<std::string_view>{"Velocities"}) {
+        if (!motion_.empty()) refuse("Velocities", "must be there once");
         read_velocities();
+      } else if (id_.empty() && motion_.empty()) {
+        read_header(words, line);
       }
     }
-    if (!has_atoms) refuse("Atoms", "must be a section of the file");
+    if (id_.empty()) refuse("Atoms", "must be a section of the file");
+    require_order("xlo xhi, ylo yhi and zlo zhi", low_, high_);
     snapshot_.corner = low_;
     snapshot_.lattice = tilted_cell(high_ - low_, tilt_.x, tilt_.y, tilt_.z);
     sort_motion();
@@ -183,15 +212,27 @@ class DataReading : SphereText {
   }
 
  private:
-  double real(std::string_view word) const { return number<double>(word, "header"); }
-
-  void read_edge(const std::vector<std::string_view>& words) {
+  // Reads a line of the header: count, edges and tilts; others are ignored.
+  void read_header(const std::vector<std::string_view>& words, std::string_view line) {
+    const auto real = [&](std::size_t k) { return number<double>(words[k], "header"); };
+    const auto has = [&](std::string_view word) { return std::ranges::find(words, word) != words.end(); };
+    const auto require_form = [&](std::size_t size, std::size_t place, std::string_view word) {
+      if (words.size() != size || words[place] != word)
+        refuse(printable(line, 60), "must be numbers before {}", word);
+    };
+    if (const auto count = count_of_atoms(words)) count_ = *count;
+    if (has("avec") || has("bvec") || has("cvec") || has("abc"))
+      refuse(printable(line, 60), "must not be there: general triclinic cells are not read");
     for (const auto& [name, low, high] :
          {std::tuple{"xlo", &low_.x, &high_.x}, {"ylo", &low_.y, &high_.y}, {"zlo", &low_.z, &high_.z}}) {
-      if (words[2] != name) continue;
-      *low = real(words[0]);
-      *high = real(words[1]);
+      if (!has(name)) continue;
+      require_form(4, 2, name);
+      *low = real(0);
+      *high = real(1);
     }
+    if (!has("xy")) return;
+    require_form(6, 3, "xy");
+    tilt_ = Vector3{real(0), real(1), real(2)};
   }
 
   // Calls read(words, where) with each line of a section: as many as there are atoms, after a blank one.
@@ -200,8 +241,10 @@ class DataReading : SphereText {
     if (!is_blank(take_line(rest_))) refuse(name, "must be followed by an empty line");
     for (std::size_t row = 0; row < count_; ++row) {
       const std::string_view line = take_line(rest_);
-      read(words_of(line.substr(0, line.find('#'))), fmt::format("{}, line {}", name, row + 1));
+      read(words_before_comment(line), fmt::format("{}, line {}", name, row + 1));
     }
+    if (!rest_.empty() && !is_blank(take_line(rest_)))
+      refuse(name, "must have {} lines, one for each of the atoms", count_);
   }
 
   void read_atoms() {
@@ -256,9 +299,10 @@ class DataReading : SphereText {
 std::vector<std::string_view> lammps_dump_frames(std::string_view text, const std::string& file) {
   std::vector<std::string_view> frames;
   while (!is_blank(text)) {
-    std::string_view rest = text;
     std::optional<std::size_t> count;
     bool has_atoms = false;
+    while (text.starts_with('\n') || text.starts_with("\r\n")) take_line(text);
+    std::string_view rest = text;
     while (!rest.empty() && !has_atoms) {
       const std::string_view line = take_line(rest);
       if (line.starts_with(count_item)) {
@@ -291,8 +335,7 @@ Snapshot read_lammps_dump_frame(std::string_view frame, const std::string& file)
 bool begins_as_lammps_data(std::string_view text) {
   take_line(text);  // a title
   for (int line = 0; line < 20 && !text.empty(); ++line) {
-    const std::vector<std::string_view> words = words_of(take_line(text));
-    if (words.size() >= 2 && words[1] == "atoms" && number_in<std::size_t>(words[0])) return true;
+    if (count_of_atoms(words_before_comment(take_line(text)))) return true;
   }
   return false;
 }

@@ -32,6 +32,7 @@ class LfDemReading : SphereText {
       const Vector3 place = vector(line, where);
       snapshot.position.push_back({place.x, place.z, place.y});
       snapshot.radius.push_back(number<double>(take_word(line), where));
+      if (!is_blank(line)) refuse(where, "must be x, y, z and radius, and no more");
     }
     const double count = value_of("np1") + value_of("np2");
     if (count != static_cast<double>(snapshot.count()))
@@ -46,8 +47,11 @@ class LfDemReading : SphereText {
     if (take_word(names) != "#" || take_word(values) != "#")
       refuse("the first two lines", "must be # with names, and # with their values, as LF_DEM writes");
     for (std::string_view name = take_word(names); !name.empty(); name = take_word(names)) {
-      if (name != "format") header_[name] = number<double>(take_word(values), std::string(name));
+      const auto value = number<double>(take_word(values), std::string(name));
+      if (!header_.emplace(name, value).second) refuse(std::string(name), "must be there once");
     }
+    if (!is_blank(values))
+      refuse("the second line", "must have a value for each name of the first, and no more");
   }
 
   double value_of(std::string_view name) const {

@@ -189,9 +189,12 @@ SnapshotFile::Text::Text(const std::filesystem::path& path) : text(read_input(pa
   if (plain.starts_with("ITEM:")) {
     frames = lammps_dump_frames(plain, path.string());
     read = read_lammps_dump_frame;
-  } else if (plain.starts_with('#') || begins_as_lammps_data(plain)) {
+  } else if (begins_as_lammps_data(plain)) {
     frames = {plain};
-    read = plain.starts_with('#') ? read_lf_dem : read_lammps_data;
+    read = read_lammps_data;
+  } else if (plain.starts_with('#')) {
+    frames = {plain};
+    read = read_lf_dem;
   } else {
     frames = xyz_frames(plain, path.string());
     read = read_xyz_frame;

@@ -93,12 +93,13 @@ Snapshot read_xyz_frame(std::string_view frame, const std::string& file);
 
 // Returns the texts of the frames of a dump of LAMMPS, and reads one of them: a periodic box with or without
 // tilt; x y z, xu yu zu, xs ys zs or xsu ysu zsu; radius or diameter; and, where they are, id, by which
-// spheres are sorted, type, ix iy iz, vx vy vz, omegax omegay omegaz, and what lammps_frame() writes. Ignores
-// other columns. Throw InputError as those of extended XYZ.
+// spheres are sorted, type, ix iy iz (not beside xu or xsu), vx vy vz, omegax omegay omegaz, and what
+// lammps_frame() writes. Ignores other columns. Throw InputError as those of extended XYZ.
 std::vector<std::string_view> lammps_dump_frames(std::string_view text, const std::string& file);
 Snapshot read_lammps_dump_frame(std::string_view frame, const std::string& file);
 
-// Returns true if one of the first lines of a text is "N atoms", as in a data file of LAMMPS.
+// Returns true if one of the first lines of a text, but not the very first, is "N atoms", as in a data file
+// of LAMMPS.
 bool begins_as_lammps_data(std::string_view text);
 // Reads a data file of LAMMPS with "Atoms # sphere", and its velocities. Throws InputError as above.
 Snapshot read_lammps_data(std::string_view text, const std::string& file);

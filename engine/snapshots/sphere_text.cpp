@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <numeric>
+#include <utility>
 
 namespace peclet::engine {
 namespace {
@@ -16,6 +17,25 @@ void name_by_radius(Snapshot& snapshot) {
     snapshot.species.push_back(
         static_cast<std::uint32_t>(std::ranges::lower_bound(sizes, a) - sizes.begin()));
   }
+}
+
+// Puts species into the order of their names, of numbers by value, so that they are alike in all frames.
+void sort_species(Snapshot& snapshot) {
+  std::vector<std::string>& names = snapshot.species_names;
+  std::vector<std::uint32_t> order(names.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) {
+    const auto first = number_in<std::int64_t>(names[a]), second = number_in<std::int64_t>(names[b]);
+    return first && second ? *first < *second : names[a] < names[b];
+  });
+  std::vector<std::uint32_t> place(order.size());
+  std::vector<std::string> sorted;
+  for (const std::uint32_t old : order) {
+    place[old] = static_cast<std::uint32_t>(sorted.size());
+    sorted.push_back(names[old]);
+  }
+  names = std::move(sorted);
+  for (std::uint32_t& species : snapshot.species) species = place[species];
 }
 
 }  // namespace
@@ -37,7 +57,9 @@ std::uint32_t SphereText::species(std::string_view name, const std::string& wher
 }
 
 void SphereText::finish(Snapshot& snapshot, const std::vector<std::int64_t>& id) const {
-  if (snapshot.species.empty()) name_by_radius(snapshot);
+  if (snapshot.count() < 1 || snapshot.count() > most_spheres)
+    refuse(fmt::format("{} spheres", snapshot.count()), "must be 1 to {}", most_spheres);
+  snapshot.species.empty() ? name_by_radius(snapshot) : sort_species(snapshot);
   if (!id.empty()) {
     std::vector<std::size_t> order(id.size());
     std::iota(order.begin(), order.end(), std::size_t{0});

@@ -41,8 +41,9 @@ class SphereText {
   // Returns the index of the species of this name, which is added if it is new.
   std::uint32_t species(std::string_view name, const std::string& where, Snapshot& snapshot) const;
 
-  // Sorts spheres by id, if there are ids, and makes each radius a species, if the file has none. Throws
-  // InputError for an id that occurs twice, and what check_snapshot() refuses.
+  // Sorts spheres by id, if there are ids, and species by name; makes each radius a species, if the file has
+  // none. Throws InputError for no spheres, for an id that occurs twice, and for what check_snapshot()
+  // refuses.
   void finish(Snapshot& snapshot, const std::vector<std::int64_t>& id) const;
 
  private:

@@ -242,6 +242,11 @@ def follows(other, axis):
     return len(pairs) == len(axis["values"])
 
 
+def tells_apart(other, axis):
+    """Returns True if the parameter `other` must be in the names of curves over `axis`; the campaign always is."""
+    return other["pointer"] == "campaign" or not follows(other, axis)
+
+
 def kind_of(point):
     """Returns the kind of a point's mark: decided, undecided, provisional or jammed."""
     kinds = {"converged": "decided"}
@@ -325,7 +330,7 @@ def over_sweep(data):
     """
     points, columns = data["points"], columns_of(data)
     axis = next(one for one in columns if one["pointer"] == data["over"])
-    others = [one for one in columns if one is not axis and len(one["values"]) > 1 and not follows(one, axis)]
+    others = [one for one in columns if one is not axis and len(one["values"]) > 1 and tells_apart(one, axis)]
     if data.get("by"):
         others = [one for one in columns if one["pointer"] == data["by"]]
     about, of_quantities = about_quantities(data["quantities"])
@@ -377,8 +382,8 @@ def distinguishing(columns):
     """Returns the parameters that vary, without those that follow from one of the others."""
     found = []
     for one in columns:
-        if len(one["values"]) > 1 and not any(follows(one, other) for other in found):
-            found = [other for other in found if not follows(other, one)] + [one]
+        if len(one["values"]) > 1 and all(tells_apart(one, other) for other in found):
+            found = [other for other in found if tells_apart(other, one)] + [one]
     return found
 
 

@@ -1,12 +1,14 @@
 """Finds and calls the program peclet."""
 import codecs
 import ctypes
+import math
 import os
 import select
 import shutil
 import signal
 import subprocess
 import sys
+import time
 import sysconfig
 
 PR_SET_PDEATHSIG = 1
@@ -66,7 +68,7 @@ def ask(program, *arguments, allowed=(0,)):
 def run_shown(program, *arguments, show=None):
     """Calls `peclet ARGUMENTS` and shows its output.
 
-    show    function that is called every second or more often, and at the end, in the place of standard output
+    show    function that is called about every second, and at the end, in the place of standard output
 
     Returns the exit code, the last message on standard error, and True if the call was interrupted. Passes an interrupt
     on to the program and waits for its end.
@@ -83,23 +85,30 @@ def run_shown(program, *arguments, show=None):
     )
     said, interrupted, code = "", False, None
     decoder = codecs.getincrementaldecoder("utf-8")("replace")
-    while code is None:
-        try:
-            if show:
-                show()
-            if process.stderr is None:
-                code = process.wait()
-            elif select.select([process.stderr], [], [], 1 if show else None)[0]:
-                new = os.read(process.stderr.fileno(), 1 << 16)
-                text = decoder.decode(new)
-                said += text
-                sys.stderr.write(text)
-                code = None if new else process.wait()
-        except KeyboardInterrupt:
-            interrupted = True
+    shown = -math.inf
+    try:
+        while code is None:
+            try:
+                if show and time.monotonic() >= shown + 1:
+                    show()
+                    shown = time.monotonic()
+                if process.stderr is None:
+                    code = process.wait()
+                elif select.select([process.stderr], [], [], 1 if show else None)[0]:
+                    new = os.read(process.stderr.fileno(), 1 << 16)
+                    text = decoder.decode(new)
+                    said += text
+                    sys.stderr.write(text)
+                    code = None if new else process.wait()
+            except KeyboardInterrupt:
+                interrupted = True
+                process.send_signal(signal.SIGINT)
+    finally:
+        if process.poll() is None:  # show() has failed
             process.send_signal(signal.SIGINT)
-    if process.stderr:
-        process.stderr.close()
+            process.communicate()
+        if process.stderr:
+            process.stderr.close()
     if show:
         show()
     message = f"\n{said}".rfind("\npeclet: ")

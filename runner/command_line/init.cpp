@@ -50,7 +50,7 @@ std::vector<CompanionFile> companions_of(const std::string& text, const std::fil
     for (const auto& [known, content] : example_texts()) {
       const bool is_it =
           known.ends_with("-" + name.stem().string()) && !known.starts_with(folder_of_examples);
-      if (is_it) companions.push_back({campaign.parent_path() / name, content});
+      if (is_it) companions.push_back({(campaign.parent_path() / name).lexically_normal(), content});
     }
   }
   return companions;
@@ -89,7 +89,11 @@ std::string init_campaign(const InitOptions& options) {
   require_absent(file);
   const std::string& text = example_text(options.example);
   const std::vector<CompanionFile> companions = companions_of(text, file);
-  for (const CompanionFile& companion : companions) require_absent(companion.path);
+  for (const CompanionFile& companion : companions) {
+    // The file may be there already for another campaign.
+    if (kind_of(companion.path).empty() || read_input(companion.path) != companion.text)
+      require_absent(companion.path);
+  }
   check_output(file);
   for (const CompanionFile& companion : companions) {
     write_durably(companion.path, companion.text);

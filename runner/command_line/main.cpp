@@ -40,7 +40,7 @@ constexpr std::array<std::string_view, 3> engine_verbs = {"sizes", "snapshot", "
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   ::execv(engine.c_str(), arguments.data());
-  throw std::system_error(errno, std::generic_category(), engine);
+  throw std::system_error(errno, std::generic_category(), engine + ", which belongs beside peclet");
 }
 
 struct CompletionOptions {

@@ -114,7 +114,8 @@ stresses such as brownian_time, shear_time, thermal_stress, critical_stress, rep
 time is multiplied by a time.
 
 --with adds the points of another campaign. Curves then have the campaign's name; a parameter that one of the
-campaigns does not sweep has the value of its scene.
+campaigns does not sweep has the value of its scene, or – if that has none. --where names parameters that all
+of them sweep.
 
 The ending of --output chooses the form. Pictures are drawn with matplotlib, by the python3 in PATH. Beside
 the picture a script of the same name and the ending .py is written, which holds the numbers and draws the

@@ -37,9 +37,10 @@ struct FigureSource {
 };
 
 // Returns one such document of the points of several campaigns. Their names are a parameter, "campaign". A
-// parameter that one of them does not sweep has the value of its scene there. Throws as figure_data(), and
-// InputError for campaigns that do not have the same quantities, confidence and axis.
-Json figure_data_of_several(const std::vector<FigureSource>& sources, const FigureChoice& choice);
+// parameter that one of them does not sweep has the value of its scene there, or null if the scene has none.
+// Throws as figure_data(), and InputError for campaigns without the same quantities, confidence and axis, or
+// without values on the axis.
+Json figure_data_of_several(const std::vector<FigureSource>& sources, FigureChoice choice);
 
 // Returns drawing.py with these data in it, one line for each member and each point. The last line has the
 // SHA-256 of all before it. The same data give the same bytes.

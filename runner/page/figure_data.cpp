@@ -224,6 +224,12 @@ class Figure {
 
   const Json& parameters() const { return sweep_.parameters; }
 
+  // Returns the pointer of the parameter that is to be on the axis.
+  std::string pointer_of_axis() const {
+    if (!chosen_.curves.empty()) return choice_.over;
+    return chosen_axis(swept_columns(sweep_.parameters, sweep_.page.points), choice_.over).pointer;
+  }
+
   // Adds a parameter whose value at each point is that of its scene, null if the scene has none.
   void add_parameter(const Json& parameter) {
     const std::string pointer = parameter.at("pointer");
@@ -417,20 +423,37 @@ bool has_parameter(const Json& list, const Json& parameter) {
                      [&](const Json& one) { return one.at("pointer") == parameter.at("pointer"); });
 }
 
+// Calls make(), and names the campaign in its InputError.
+template <class Make>
+auto of_campaign(const FigureSource& source, const Make& make) {
+  try {
+    return make();
+  } catch (const InputError& fault) {
+    throw fault.within("campaign " + source.name, "");
+  }
+}
+
+// Throws InputError if a point has no value of the parameter on the axis.
+void require_axis_values(const Json& points, const std::string& over, const std::string& name) {
+  for (const Json& point : points) {
+    if (!point.at("settings").at(over).is_null()) continue;
+    throw InputError("", "--with", name,
+                     fmt::format("must have a value of {}, the axis of the figure, in the scene of {}", over,
+                                 point.at("label").get<std::string>()));
+  }
+}
+
 }  // namespace
 
-Json figure_data_of_several(const std::vector<FigureSource>& sources, const FigureChoice& choice) {
+Json figure_data_of_several(const std::vector<FigureSource>& sources, FigureChoice choice) {
   std::vector<std::unique_ptr<Figure>> figures;
   Json all = Json::array();  // parameters that are swept in any of the campaigns
   for (const FigureSource& source : sources) {
-    try {
-      figures.push_back(std::make_unique<Figure>(source.database, choice));
-    } catch (const InputError& fault) {
-      throw fault.within("campaign " + source.name, "");
-    }
+    figures.push_back(of_campaign(source, [&] { return std::make_unique<Figure>(source.database, choice); }));
     for (const Json& parameter : figures.back()->parameters()) {
       if (!has_parameter(all, parameter)) all.push_back(parameter);
     }
+    if (figures.size() == 1 && !choice.over.empty()) choice.over = figures.front()->pointer_of_axis();
   }
   for (std::size_t k = 0; k < sources.size(); ++k) {
     for (const Json& parameter : all) {
@@ -438,21 +461,16 @@ Json figure_data_of_several(const std::vector<FigureSource>& sources, const Figu
     }
     figures[k]->add_name(sources[k].name);
   }
-  Json joined = figures.front()->data();
+  Json joined = of_campaign(sources.front(), [&] { return figures.front()->data(); });
   const std::string over = joined.value("over", "");
+  if (!over.empty()) require_axis_values(joined.at("points"), over, sources.front().name);
   for (std::size_t k = 1; k < sources.size(); ++k) {
-    Json data = figures[k]->data(over);
+    Json data = of_campaign(sources[k], [&] { return figures[k]->data(over); });
     require_same(joined, data, "quantities", "the quantities", sources[k].name);
     require_same(joined, data, "confidence", "the confidence", sources[k].name);
     require_same(joined, data, "axis", "the axis", sources[k].name);
-    for (Json& point : data["points"]) {
-      if (!over.empty() && point.at("settings").at(over).is_null()) {
-        throw InputError("", "--with", sources[k].name,
-                         fmt::format("has no value of {}, the axis of the figure, at {}", over,
-                                     point.at("label").get<std::string>()));
-      }
-      joined["points"].push_back(std::move(point));
-    }
+    if (!over.empty()) require_axis_values(data.at("points"), over, sources[k].name);
+    for (Json& point : data["points"]) joined["points"].push_back(std::move(point));
     joined["absent"] = joined["absent"].get<std::size_t>() + data["absent"].get<std::size_t>();
   }
   return joined;

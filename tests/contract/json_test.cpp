@@ -77,8 +77,9 @@ TEST(Json, InputsMayHaveCommentsAndFaultsBehindThemHaveTheirPlace) {
   for (const auto& [text, message] : std::initializer_list<std::pair<const char*, const char*>>{
            {"[1, /* äö */ x]", "f: line 1, column 14: "},
            {"[1, // two\n ]", "f: line 2, column 2: must be JSON: unexpected ']'; the comma before it"},
-           {"[1 /* never closed",
-            "f: line 1, column 19: must be JSON: invalid comment; the comment is not closed"},
+           {"[1 /* never closed", "f: line 1, column 4: must be JSON: the comment is not closed"},
+           {"{\"a\": /* ä\n */ 1,\n /* open\n}",
+            "f: line 3, column 2: must be JSON: the comment is not closed"},
            {"[1] # one", "comments begin with //"},
        }) {
     EXPECT_TRUE(contains(refusal_by([&] { parse_json_input(text, "f"); }), message))

@@ -130,6 +130,19 @@ START = {
 }
 
 
+class TwoCampaigns(PageTest):
+    def test_are_in_one_figure_with_their_names_and_numbers(self):
+        own = {name: json.loads(peclet("plot", name + ".json", "--json").stdout) for name in ("curve", "young")}
+        drawn = peclet("plot", "curve.json", "--with", "young.json", "--output", "two.svg")
+        self.assertEqual(drawn.returncode, 0, drawn.stderr)
+        both = figure_of("two.py")
+        for name, figure in own.items():
+            ours = [point for point in both["points"] if point["settings"].pop("campaign") == name]
+            self.assertEqual(ours, figure["points"])
+            both["points"] = [point for point in both["points"] if point not in ours]
+        self.assertEqual(both["points"], [])
+
+
 class Curves(PageTest):
     @classmethod
     def setUpClass(cls):
@@ -327,6 +340,10 @@ class Faults(PageTest):
         self.assertIn("/peclet, /volume_fraction", self.refusal(2, "curve.json", "--over", "friction"))
         self.assertIn("--log", self.refusal(2, "curve.json", "--log", "z"))
         self.assertIn("no such file", self.refusal(2, "absent.json"))
+        self.assertIn("must be a campaign of another name", self.refusal(2, "curve.json", "--with", "curve.peclet"))
+        self.assertIn(
+            "campaign curve: --where", self.refusal(2, "curve.json", "--with", "young.json", "--where", "x=1")
+        )
 
     def test_of_the_machine_name_the_cure(self):
         debian, without, pip, conda = (Stage.folder.file(name) for name in ("debian", "without", "pip", "conda"))

@@ -141,6 +141,19 @@ class OverASweep(unittest.TestCase):
         figure = drawing.over_sweep(data(points, ("peclet", "phi", "form")))
         self.assertEqual([text_of(one["name"]) for one in figure["legend"]], ["form = a", "form = b"])
 
+    def test_campaigns_are_told_apart_even_where_the_axis_does(self):
+        parameters = [{"pointer": "campaign", "words": "campaign", "symbol": "", "unit": "", "meaning": ""}]
+        values = (("rough", 1), ("rough", 10), ("smooth", 30), ("smooth", 100))
+        points = [point({"campaign": name, "/peclet": pe}, 5) for name, pe in values]
+        figure = drawing.figure_of(data(points, parameters=parameters + [KEYS["peclet"]]))
+        self.assertEqual([text_of(one["name"]) for one in figure["legend"]], ["rough", "smooth"])
+        lines = [[place[0] for place in line["places"]] for line in figure["panels"][0]["lines"]]
+        self.assertEqual(lines, [[1, 10], [30, 100]])
+        curves = [curve({"campaign": name, "/peclet": pe}, [1, 2, 3]) for name, pe in values[:3]]
+        figure = drawing.figure_of(along(curves, parameters=parameters + [KEYS["peclet"]]))
+        names = [text_of(one["name"]) for one in figure["legend"]]
+        self.assertEqual(names, ["rough, Pe = 1", "rough, Pe = 10", "smooth, Pe = 30"])
+
     def test_words_stand_side_by_side(self):
         points = [point({"/form": form}, mean) for form, mean in (("b", 1), ("a", 2), ("b" * 30, 3), (None, 4))]
         figure = drawing.over_sweep(data(points, ("form",), "/form"))

@@ -9,6 +9,7 @@ import socket
 import struct
 import time
 
+KEYS = "temperature", "stiffness", "timestep", "steps"
 ENGINE = {"version": "1", "instruction_set": "python"}
 ENGINE["binary_sha256"] = hashlib.sha256(open(__file__, "rb").read()).hexdigest()
 runner = socket.socket(fileno=os.dup(0))  # standard input is a socket, for both directions
@@ -16,9 +17,10 @@ runner = socket.socket(fileno=os.dup(0))  # standard input is a socket, for both
 
 def simulate(scene, key):
     noise, x, total = random.Random(key), 0.0, 0.0
-    amplitude = math.sqrt(2 * scene["temperature"] * scene["timestep"])
-    for _ in range(scene["steps"]):
-        x += -scene["stiffness"] * x * scene["timestep"] + amplitude * noise.gauss(0, 1)
+    decay = math.exp(-scene["stiffness"] * scene["timestep"])  # with friction 1; the step is exact
+    amplitude = math.sqrt(scene["temperature"] / scene["stiffness"] * (1 - decay**2))
+    for _ in range(int(scene["steps"])):
+        x = decay * x + amplitude * noise.gauss(0, 1)
         total += x * x
     return {"square": total / scene["steps"]}
 
@@ -36,13 +38,15 @@ def receive():
 send({"type": "hello", "protocol": 1, "program": "trap", "engine": ENGINE})
 while (message := receive())["type"] not in ("drain", "stop"):
     scene = message["scene"]
-    if message["type"] == "validate" and not scene["steps"] > 0:
-        wrong = {"request": message["request"], "pointer": "/steps", "value": str(scene["steps"])}
-        send({"type": "refused", **wrong, "allowed": "must be > 0"})
-        continue
     if message["type"] == "validate":
-        about = {"request": message["request"], "timestep": scene["timestep"], "steps": scene["steps"]}
-        send({"type": "validated", **about, "particles": 0, "derived": {}, "warnings": [], "observables": ["square"]})
+        about = {"request": message["request"]}
+        faults = [key for key in KEYS if not isinstance(scene.get(key), (int, float)) or not scene[key] > 0]
+        if faults:
+            about |= {"pointer": f"/{faults[0]}", "value": str(scene.get(faults[0], "missing"))}
+            send({"type": "refused", **about, "allowed": "must be a number > 0"})
+            continue
+        about |= {"timestep": scene["timestep"], "steps": scene["steps"], "particles": 0}
+        send({"type": "validated", **about, "derived": {}, "warnings": [], "observables": ["square"]})
         continue
     began, cpu = time.time(), time.process_time()
     mean = simulate(scene, f"{message['point']} {message['seed']}")  # no random number is shared by two points

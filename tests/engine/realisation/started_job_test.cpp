@@ -222,8 +222,7 @@ TEST_F(StartedJob, OfSpheresInAnotherOrderHasThemSpeciesBySpecies) {
   }
   EXPECT_EQ(found, places);
   radius[7] = 1.2;
-  EXPECT_TRUE(
-      contains(refusal_of_spheres(edge, radius), "must be that of a sphere of the start, whose nearest"));
+  EXPECT_TRUE(contains(refusal_of_spheres(edge, radius), "must be as in the start, which has"));
 }
 
 TEST_F(StartedJob, OfAGsdFileWithoutDiametersSaysSo) {

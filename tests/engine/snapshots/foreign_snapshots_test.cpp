@@ -1,9 +1,11 @@
 // Texts of LAMMPS and LF_DEM. Expected numbers follow from the manuals of the formats, by hand.
 #include <gtest/gtest.h>
 
+#include "contract/durable_file.h"
 #include "engine/snapshots/conversion.h"
 #include "engine/snapshots/snapshot.h"
 #include "tests/contract/refusal.h"
+#include "tests/engine/temporary_folder.h"
 
 namespace peclet::engine {
 namespace {
@@ -50,7 +52,31 @@ TEST(LammpsDump, HasItsSpheresByIdAndItsTiltedCell) {
   EXPECT_TRUE(second.lattice == tilted && second.corner == (Vector3{1, 0, 0}));
   EXPECT_EQ(second.time, 1.5);
   EXPECT_TRUE(second.velocity[0] == (Vector3{4, 5, 6}) && second.spin[0] == (Vector3{7, 8, 9}));
-  EXPECT_EQ(second.image[0].y, -1);
+  EXPECT_TRUE(second.image.empty()) << "unwrapped positions have the images in them";
+}
+
+// The vectors of the cell are (10, 0, 0), (-3, 20, 0), (2, -1, 30); bounds are those of its corners.
+TEST(LammpsDump, HasScaledPositionsAndNegativeTilts) {
+  const Snapshot read = read_lammps_dump_frame(
+      "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS xy xz yz pp pp pp\n"
+      "-3 12 -3\n-1 20 2\n0 30 -1\nITEM: ATOMS xs ys zs radius ix iy iz\n0.5 0.5 0.5 1 0 -1 2\n",
+      "t");
+  const Matrix3 cell = {Vector3{10, 0, 0}, Vector3{-3, 20, 0}, Vector3{2, -1, 30}};
+  EXPECT_TRUE(read.lattice == cell && read.corner == (Vector3{0, 0, 0}));
+  EXPECT_TRUE(read.position[0] == (Vector3{4.5, 9.5, 15}));
+  EXPECT_EQ(read.image[0].y, -1);
+}
+
+TEST(LammpsDump, HasTheSameSpeciesInAnyOrderOfItsAtoms) {
+  const std::string head =
+      "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp pp\n0 9\n0 9\n0 9\n"
+      "ITEM: ATOMS id type x y z radius\n";
+  const Snapshot one = read_lammps_dump_frame(head + "1 10 1 1 1 1\n2 2 5 5 5 1\n", "t");
+  const Snapshot other = read_lammps_dump_frame(head + "2 2 5 5 5 1\n1 10 1 1 1 1\n", "t");
+  EXPECT_EQ(one.species_names, (std::vector<std::string>{"2", "10"}));
+  EXPECT_EQ(other.species_names, one.species_names);
+  EXPECT_EQ(one.species, (std::vector<std::uint32_t>{1, 0}));
+  EXPECT_EQ(other.species, one.species);
 }
 
 TEST(LammpsDump, OfThisProgramIsReadBack) {
@@ -68,8 +94,10 @@ TEST(LammpsDump, OfThisProgramIsReadBack) {
 
 TEST(LammpsDump, ThatCannotBeReadIsRefusedWithItsFault) {
   for (const auto& [from, to, reason] : std::initializer_list<std::array<const char*, 3>>{
-           {"pp pp pp", "pp pp ff", "ff: must be a box with BOX BOUNDS pp pp pp"},
-           {"xy xz yz pp", "abc origin pp", "abc: must be a box"},
+           {"pp pp pp", "pp pp ff", "ITEM: BOX BOUNDS pp pp ff: must be followed by pp pp pp"},
+           {"pp pp pp", "", "ITEM: BOX BOUNDS : must be followed"},
+           {"-5 5", "5 -5", "BOX BOUNDS: must be there, with the lower end of each edge first"},
+           {"xy xz yz pp", "abc origin pp", "ITEM: BOX BOUNDS abc origin"},
            {" diameter", " mass", "must have x y z (or xu, xs, xsu ...) and radius or diameter"},
            {" zs ", " z ", "must have x y z"},
            {"0.5 0.5 0.1 2.8 x", "0.5 0.5 0.1 2.8", "sphere 1: must have the columns"},
@@ -108,7 +136,11 @@ TEST(LammpsData, ThatCannotBeReadIsRefusedWithItsFault) {
            {"2 -1 -2 -3 -4 -5 -6", "3 -1 -2 -3 -4 -5 -6", "Velocities: id 2: must be there"},
            {"1 1 2 3 4 5 6", "1 1 2 3", "Velocities, line 1: must be id, velocity and angular velocity"},
            {"0 10 xlo", "a 10 xlo", "header: \"a\": must be a number"},
-           {"0 10 xlo xhi\n", "", "cell (0, 0, 0)"},
+           {"0 10 xlo xhi\n", "", "xlo xhi, ylo yhi and zlo zhi: must be there, with the lower end"},
+           {"2.5 0 0 xy", "2.5 0 xy", "must be numbers before xy"},
+           {"2.5 0 0 xy xz yz", "1 0 0 avec", "1 0 0 avec: must not be there: general triclinic cells"},
+           {"2 atoms", "1 atoms", "Atoms: must have 1 lines, one for each of the atoms"},
+           {"Velocities\n\n1 1", "Atoms # sphere\n\n1 1", "Atoms: must be there once"},
            {"2 atoms", "3 atoms", "Atoms, line 3: must be id"},
        }) {
     const std::string text = replaced(data, from, to);
@@ -127,6 +159,26 @@ TEST(LfDem, HasTheGradientAlongY) {
   EXPECT_EQ(read.radius, (std::vector<double>{1, 1.4}));
 }
 
+TEST(LfDem, OfNoSpheresIsRefused) {
+  EXPECT_TRUE(contains(refusal_by([] { read_lf_dem("# np1 np2 lx ly lz\n# 0 0 9 9 9\n", "t"); }),
+                       "0 spheres: must be 1 to"));
+}
+
+// Titles of data files are free; other programs begin them with #.
+TEST(SnapshotFile, IsKnownByItsBeginning) {
+  const TemporaryFolder folder;
+  const auto count = [&](const std::string& text) {
+    write_durably(folder / "t", text);
+    return SnapshotFile(folder / "t").read(0).count();
+  };
+  EXPECT_EQ(count(data), 2U);
+  EXPECT_EQ(count("# " + data), 2U);
+  EXPECT_EQ(count(dump), 2U);
+  EXPECT_EQ(count("\n" + dump), 2U);
+  EXPECT_EQ(count(lf_dem), 2U);
+  EXPECT_EQ(count("1\n1 atoms Lattice=\"9 0 0 0 9 0 0 0 9\" Properties=pos:R:3:radius:R:1\n1 2 3 1\n"), 1U);
+}
+
 TEST(LfDem, ThatCannotBeReadIsRefusedWithItsFault) {
   for (const auto& [from, to, reason] : std::initializer_list<std::array<const char*, 3>>{
            {"lx ly", "lx lq", "ly: must be a name in the first line"},
@@ -135,6 +187,9 @@ TEST(LfDem, ThatCannotBeReadIsRefusedWithItsFault) {
            {"# 1 1", "# 1 2", "2 spheres: must be np1 + np2 = 3"},
            {"# 1 1", "1 1", "the first two lines: must be # with names"},
            {"4 5 6 1.4", "4 5 6", "sphere 2: \"\": must be a number"},
+           {"4 5 6 1.4", "4 5 6 1.4 7", "sphere 2: must be x, y, z and radius, and no more"},
+           {"vf1 vf2", "lx vf2", "lx: must be there once"},
+           {"0 2.5", "0 2.5 6", "the second line: must have a value for each name"},
        }) {
     const std::string text = replaced(lf_dem, from, to);
     const std::string refusal = refusal_by([&] { read_lf_dem(text, "t"); });
