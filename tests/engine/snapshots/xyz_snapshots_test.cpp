@@ -87,7 +87,7 @@ TEST(XyzSnapshot, IsWrittenWithTypesThatAreWords) {
   const std::string written = xyz_frame(snapshot);
   EXPECT_TRUE(contains(written, "Properties=id:I:1:type:S:1:pos:R:3"));
   EXPECT_EQ(written.find("species"), std::string::npos) << written;
-  EXPECT_EQ(read_xyz_frame(written, "t.xyz").species_names, (std::vector<std::string>{"2", "1"}));
+  EXPECT_EQ(read_xyz_frame(written, "t.xyz").species_names, (std::vector<std::string>{"1", "2"}));
 }
 
 TEST(XyzSnapshot, HasAsManyFramesAsTheText) {
