@@ -259,7 +259,7 @@ TEST_F(Measure, IsRefusedBeforeItRuns) {
             "quantities[\"x\"]: axis 0 must have values"},
            {"import os\nos._exit(3)\n", "mine.py: ended its process with exit code 3"},
            {"raise SystemExit('no')\n", "mine.py, line 1: SystemExit: no"}}) {
-    const std::string found = refusal_by([&] { scene_from(measuring(script(text))); });
+    const std::string found = refusal_by([&text = text] { scene_from(measuring(script(text))); });
     EXPECT_TRUE(fault.empty() ? found.empty() : found.find(fault) != std::string::npos) << found;
   }
   Json impatient = script("while True: pass\n");

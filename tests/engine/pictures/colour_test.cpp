@@ -54,7 +54,7 @@ Snapshot of_sizes(std::size_t sizes) {
 // Up to eight sizes get separate colours. More sizes lie on a scale of radii from the smallest to the
 // largest, all with distinct colours.
 TEST(PictureColour, OfSpeciesIsNoOtherOnesColour) {
-  for (const std::size_t sizes : {1, 8, 9, 14}) {
+  for (const std::size_t sizes : {1U, 8U, 9U, 14U}) {
     const Colouring all = colouring_of(of_sizes(sizes), "species", "x.gsd");
     std::set<std::array<int, 3>> colours;
     for (const Colour& colour : all.of_spheres) colours.insert(shown(colour));

@@ -20,7 +20,6 @@ namespace {
 // The whole result but its cost, and the state in which a realisation ends.
 struct End {
   std::string result, state;
-  friend bool operator==(const End&, const End&) = default;
 };
 
 End end_of(const Simulation& simulation, const Scene& scene, std::uint64_t seed, const Ending& ending) {

@@ -66,7 +66,7 @@ Differences differences(const Simulation& before, const Simulation& on_processor
             b.list.moment_of_candidates().displacement_gradient);
   EXPECT_EQ(a.list.listed().displacement_gradient, b.list.listed().displacement_gradient);
   EXPECT_TRUE(a.particles.image == b.particles.image);
-  Ratio velocity, spin, position, springs;
+  Ratio velocity, spin, springs;
   const Matrix3& gradient = a.box.velocity_gradient();
   const Vector3 flow_spin{0, 0, -0.5 * gradient.column[1].x};
   for (std::size_t i = 0; i < a.particles.count(); ++i) {

@@ -145,7 +145,7 @@ TEST(MeasuredSizes, ThatAreNotPlainAreRefused) {
            {"1 10\n1.0 20\n", "size 1: must be there once"},
            {"1 0\n2 40\n3 100\n", "as those of a cumulative curve"},
            {"1 1\n2 0.4\n3 0\n", "as those of a cumulative curve"}}) {
-    EXPECT_TRUE(contains(refusal_by([&] { measured_sizes(text, "s.txt"); }), reason)) << text;
+    EXPECT_TRUE(contains(refusal_by([&text = text] { measured_sizes(text, "s.txt"); }), reason)) << text;
   }
 }
 
