@@ -24,7 +24,7 @@ Scheduler decided(const Campaign& campaign, std::span<const double> means = unev
   std::vector<std::vector<std::optional<Outcome>>> outcomes(campaign.points.size());
   for (std::size_t point = 0; point < outcomes.size(); ++point) {
     for (int seed = 0; seed < 8; ++seed) {
-      Outcome outcome{means[point] * (seed % 2 == 0 ? 0.99 : 1.01)};
+      Outcome outcome{{means[point] * (seed % 2 == 0 ? 0.99 : 1.01)}};
       outcome.steps = 1000;
       if (static_cast<int>(point) >= open_points) outcomes[point].emplace_back(outcome);
     }
