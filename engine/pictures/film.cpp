@@ -48,6 +48,7 @@ std::string quoted(const std::string& word) {
 // std::runtime_error if it fails.
 bool run_program(std::vector<std::string> words) {
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   pid_t process = 0;

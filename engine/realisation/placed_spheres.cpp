@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <map>
 #include <numeric>
-#include <ranges>
 #include <system_error>
 #include <vector>
 
@@ -163,15 +162,16 @@ class Placing {
              "GSD.write_diameter is True");
     }
     // Spheres of the scene are ordered by species. Those of a file that are not are brought into that order.
-    const auto differs = [&](std::size_t i) { return !is_near(snapshot.radius[i], radius[i], radius[i]); };
-    const auto all = std::views::iota(std::size_t{0}, radius.size());
-    if (std::ranges::any_of(all, differs)) {
+    const auto are_alike = [](const std::vector<double>& found, const std::vector<double>& wanted) {
+      return std::ranges::equal(found, wanted, [](double a, double b) { return is_near(a, b, b); });
+    };
+    if (!are_alike(snapshot.radius, radius)) {
       const std::vector<std::size_t> wanted = order_of(radius), found = order_of(snapshot.radius);
       std::vector<std::size_t> order(radius.size());
       for (std::size_t k = 0; k < order.size(); ++k) order[wanted[k]] = found[k];
       arrange(snapshot, order);
     }
-    if (std::ranges::any_of(all, differs)) {
+    if (!are_alike(snapshot.radius, radius)) {
       std::vector<double> wanted = radius, found = snapshot.radius;
       std::ranges::sort(wanted);
       std::ranges::sort(found);

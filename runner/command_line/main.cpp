@@ -37,6 +37,7 @@ constexpr std::array<std::string_view, 3> engine_verbs = {"sizes", "snapshot", "
   const std::string engine = (own_folder() / "peclet-engine").string();
   words.insert(words.begin(), engine);
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   ::execv(engine.c_str(), arguments.data());

@@ -49,8 +49,11 @@ TEST(Init, WritesTheFilesOfTheEngineBesideTheCampaign) {
   EXPECT_NE(mode & std::filesystem::perms::owner_exec, std::filesystem::perms::none);
   init_campaign({folder.path() / "lammps.json", "lammps"});
   EXPECT_TRUE(exists(folder.path() / "dumbbells.in") && exists(folder.path() / "dumbbell.mol"));
+  init_campaign({folder.path() / "again.json", "own-engine"});  // with the same engine
+  std::ofstream(folder.path() / "trap.py") << "mine";
   EXPECT_THROW(init_campaign({folder.path() / "other.json", "own-engine"}), InputError);
   EXPECT_FALSE(exists(folder.path() / "other.json"));
+  EXPECT_EQ(read_file(folder.path() / "trap.py"), "mine");
 }
 
 TEST(Init, NamesTheExamplesIfThereIsNoneOfTheName) {
