@@ -7,6 +7,8 @@
 #   ./bootstrap.sh sanitize run the tests of contract/ and runner/, and the reader of sphere files, with sanitizers
 #   ./bootstrap.sh tidy     run clang-tidy on the whole source; with --programs leave out the tests
 #   ./bootstrap.sh lint     check the format of C++ and Python, then run clang-tidy
+#   ./bootstrap.sh clang    build with clang and libc++, run the unit tests
+#   ./bootstrap.sh arm64    build for 64-bit ARM, run the unit tests of contract/ and engine/ by an emulator
 #   ./bootstrap.sh deps     install the packages only
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
@@ -32,6 +34,11 @@ to_test=(
   clang-format black flake8                                               # the format of the sources
 )
 to_lint=(clang-tidy)
+to_clang=(clang-16 libc++-16-dev libc++abi-16-dev libomp-16-dev googletest python3)
+to_arm64=(
+  g++-aarch64-linux-gnu qemu-user python3
+  lib{fmt,spdlog,sqlite3,sodium,gtest}-dev:arm64 zlib1g-dev:arm64 libgomp1:arm64
+)
 
 say() { printf '\n== %s\n' "$*"; }
 
@@ -54,6 +61,7 @@ deps() {
     root=(sudo -n)
   fi
   say "Installing Debian packages: ${missing[*]}"
+  [[ "${missing[*]}" != *:arm64* ]] || "${root[@]}" dpkg --add-architecture arm64
   "${root[@]}" apt-get update -qq
   "${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" \
     </dev/null >/dev/null
@@ -105,6 +113,26 @@ sanitize() {
   printf '%s\n' build/asan-ubsan/bin/runner_*_tests | xargs -P 2 -I TESTS env TESTS --gtest_brief=1
 }
 
+with_clang() {
+  say "Building with clang and libc++ into build/clang"
+  cmake --preset clang -DBUILD_TESTING=ON >/dev/null
+  cmake --build --preset clang --target \
+    contract_tests runner_tests engine_tests engine_bench_tests physics_tests fuzz_spheres fuzz_checkpoint
+  say "Running the unit tests"
+  ctest --preset clang --parallel 2 -L unit
+}
+
+# Whole simulations are left out, because the emulator is slow, and the tests of runner/, because
+# it starts no other programs.
+for_arm64() {
+  say "Building for 64-bit ARM into build/arm64"
+  cmake --preset arm64 -DBUILD_TESTING=ON >/dev/null
+  cmake --build --preset arm64 --target contract_tests \
+    engine_{state,snapshots,pictures,flow,terms,scene,kernels,integrators,forces}_tests
+  say "Running the unit tests by qemu"
+  ctest --preset arm64 --parallel 2 -L unit
+}
+
 tidy() {
   say "clang-tidy"
   # In its own folder, so that it may run beside a build. Generates sources first.
@@ -127,9 +155,11 @@ case "${1:-}" in
   sanitize) deps "${to_build[@]}" "${to_test[@]}" && sanitize ;;
   tidy) deps "${to_build[@]}" "${to_test[@]}" "${to_lint[@]}" && tidy "${@:2}" ;;
   lint) deps "${to_build[@]}" "${to_test[@]}" "${to_lint[@]}" && lint ;;
+  clang) deps "${to_build[@]}" "${to_clang[@]}" && with_clang ;;
+  arm64) deps "${to_build[@]}" "${to_arm64[@]}" && for_arm64 ;;
   deps) deps "${to_build[@]}" "${to_package[@]}" "${to_test[@]}" "${to_lint[@]}" ;;
   *)
-    sed -n '2,10s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2
+    sed -n '2,12s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2
     exit 2
     ;;
 esac
