@@ -166,6 +166,8 @@ class Law:
     columns    list of measured (logarithms (n,), errors (n,)); redraws have rows (rows, n) of each
     """
 
+    never_given = ()  # names of parameters that are always fitted
+
     def __init__(self, arrays, parameters, fixed, free):
         self.arrays, self.options = arrays, {"fixed": fixed, "free": free}
         known = {one.name: one for one in parameters}
@@ -309,8 +311,12 @@ def dependent(law, unbounded, end, parameters):
     """Returns parameters, each with its obstacle, that move with one whose search has ended at `end`.
 
     They differ by more than their error between the fits with the end and with a value well within the search: a tenth
-    of the end or ten times it for logarithmic searches, otherwise a tenth of the range away.
+    of the end or ten times it for logarithmic searches, otherwise a tenth of the range away. If the law cannot be given
+    that one, all others move with it.
     """
+    text = f"it depends on {unbounded.name}, which is not determined"
+    if unbounded.name in law.never_given:
+        return {one.name: Number(None, None, None, text) for one in law.free if one is not unbounded}
     away = 1 if end == unbounded.low else -1
     near = end * 10.0**away if unbounded.logarithmic else end + away * (unbounded.high - unbounded.low) / 10
     at = [law.with_given(unbounded.name, value) for value in (end, near)]
@@ -318,7 +324,7 @@ def dependent(law, unbounded, end, parameters):
     found = {}
     for name, number in parameters.items():
         if number.interval and abs(at[0][name] - at[1][name])[0, 0] > number.standard_error:
-            found[name] = Number(None, None, None, f"it depends on {unbounded.name}, which is not determined")
+            found[name] = Number(None, None, None, text)
     return found
 
 
@@ -379,6 +385,7 @@ class Divergence(OneCurve):
 
     name, over = "divergence", "fraction"
     equation = "η_r = prefactor (1 − φ/phi_m)^−exponent"
+    never_given = ("phi_m",)
 
     def __init__(self, fraction, viscosity, error, seeds, fixed=None, free=None):
         largest = float(np.max(checked("fraction", fraction)))

@@ -138,6 +138,14 @@ class NoisyPoints(Case):
         self.assertNotEqual(fits[0].parameters, fits[2].parameters)
         self.assertEqual(fits[0].parameters["time"].value, fits[2].parameters["time"].value)
 
+    def test_that_do_not_show_where_they_diverge_leave_all_parameters_open(self):
+        # These contacts are too soft: no divergence describes the points.
+        points = ((0.45, 8.612, 0.21), (0.5, 14.152, 0.268), (0.53, 17.922, 0.317), (0.56, 27.761, 0.962))
+        fit = laws.divergence(*np.transpose([*points, (0.58, 42.275, 1.483)]), 8)
+        self.assertIn("its interval reaches 1", fit.parameters["phi_m"].obstacle)
+        for name in ("exponent", "prefactor"):
+            self.assertIn("it depends on phi_m", fit.parameters[name].obstacle)
+
     def test_that_another_law_made_are_named(self):
         y = cross(RATES) * np.where(np.arange(12) % 2, 1.2, 1 / 1.2)
         fit = laws.cross(RATES, y, 0.01 * y, 8)
