@@ -7,15 +7,14 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <filesystem>
 #include <stdexcept>
-#include <string_view>
 #include <system_error>
 
 #include "contract/errors.h"
 #include "contract/named_files.h"
+#include "contract/shell_word.h"
 
 namespace peclet::engine {
 namespace {
@@ -30,18 +29,6 @@ std::string stem_of(const std::string& output) {
 
 std::string name_of_picture(const std::string& output, std::size_t number) {
   return fmt::format("{}-{:05}.png", stem_of(output), number);
-}
-
-// Returns a word as a shell reads it.
-std::string quoted(const std::string& word) {
-  const auto is_plain = [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
-           std::string_view("-_./:%=,+").find(c) != std::string_view::npos;
-  };
-  if (std::ranges::all_of(word, is_plain)) return word;
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
 }
 
 // Runs a program that PATH has, and waits for its end. Returns false if no such program may be run. Throws
@@ -128,7 +115,7 @@ std::string draw_film(const PictureOptions& options) {
   const std::vector<std::string> command = film_command(options.output, frames.size());
   if (!run_program(command)) {
     std::string text = "there is no ffmpeg in PATH; with it this command makes the film:\n ";
-    for (const std::string& word : command) text += " " + quoted(word);
+    for (const std::string& word : command) text += " " + shell_word(word);
     notes.push_back(text);
   }
   return fmt::format("{}", fmt::join(notes, "\n"));

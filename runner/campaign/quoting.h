@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "contract/json.h"
+#include "contract/shell_word.h"
 #include "contract/text.h"
 
 namespace peclet::runner {
@@ -25,16 +26,6 @@ inline std::string plain_name(const std::filesystem::path& path) {
   constexpr std::size_t longest = 80;
   return plain(path.filename().string(), longest);
 }
-
-// Returns true if shells and batch systems take all characters of the text as they are; false for "".
-bool is_plain(const std::string& text);
-
-// Returns true if the text has a character below space, or DEL. A path on a line of text must not have one.
-bool has_control_characters(const std::string& text);
-
-// Returns the text as one word of a shell; plain text stays as it is. A text with control characters becomes
-// $'...', which bash, zsh and ksh know.
-std::string shell_word(const std::string& text);
 
 // Returns the value of an option on a line `#SBATCH ...`, or a part of it. A % is doubled, because it begins
 // one of Slurm's patterns (%a). Double quotes keep a blank for sbatch; a backslash does not. Requires a text
