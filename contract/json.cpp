@@ -262,7 +262,8 @@ Json parsed(std::string_view text, const std::string& file, std::size_t most_val
     const std::string why = reason(error.what());
     std::string plain(text);
     const std::size_t open = has_comments ? blank_comments(plain) : std::string::npos;
-    if (open != std::string::npos) throw fault(open, "must be JSON: the comment is not closed");
+    const bool is_open = why.find("missing closing '*/'") != std::string::npos;
+    if (is_open && open != std::string::npos) throw fault(open, "must be JSON: the comment is not closed");
     const std::string usual = usual_fault(plain, offset);
     // The explanation of a usual fault replaces what the parser read last and expected.
     throw fault(offset, usual.empty() ? why : why.substr(0, why.find("; ")) + usual);

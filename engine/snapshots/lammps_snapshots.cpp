@@ -134,6 +134,9 @@ class DumpReading : LammpsText {
     if (!has(names_of_position_) || !(column_.contains("radius") || column_.contains("diameter"))) {
       refuse("ITEM: ATOMS", "must have x y z (or xu, xs, xsu ...) and radius or diameter");
     }
+    has_velocity_ = has({"vx", "vy", "vz"});
+    has_spin_ = has({"omegax", "omegay", "omegaz"});
+    has_stress_ = has({"stress_xx", "stress_yy", "stress_zz", "stress_xy", "stress_xz", "stress_yz"});
   }
 
   bool has(const std::vector<std::string>& names) const {
@@ -145,24 +148,21 @@ class DumpReading : LammpsText {
     if (words.size() != column_.size()) refuse(where, "must have the columns of ITEM: ATOMS, and no more");
     const auto word = [&](std::string_view name) { return words[column_.find(name)->second]; };
     const auto real = [&](std::string_view name) { return number<double>(word(name), where); };
-    const auto vector_of = [&](const std::vector<std::string>& names) {
-      return Vector3{real(names[0]), real(names[1]), real(names[2])};
-    };
-    const Vector3 place = vector_of(names_of_position_);
+    const std::vector<std::string>& axes = names_of_position_;
+    const Vector3 place = {real(axes[0]), real(axes[1]), real(axes[2])};
     const auto& [a, b, c] = snapshot_.lattice.column;
     snapshot_.position.push_back(is_scaled_ ? snapshot_.corner + place.x * a + place.y * b + place.z * c
                                             : place);
     snapshot_.radius.push_back(column_.contains("radius") ? real("radius") : 0.5 * real("diameter"));
     if (column_.contains("id")) id_.push_back(number<std::int64_t>(word("id"), where));
     if (column_.contains("type")) snapshot_.species.push_back(species(word("type"), where, snapshot_));
-    if (has({"vx", "vy", "vz"})) snapshot_.velocity.push_back(vector_of({"vx", "vy", "vz"}));
-    if (has({"omegax", "omegay", "omegaz"}))
-      snapshot_.spin.push_back(vector_of({"omegax", "omegay", "omegaz"}));
+    if (has_velocity_) snapshot_.velocity.push_back({real("vx"), real("vy"), real("vz")});
+    if (has_spin_) snapshot_.spin.push_back({real("omegax"), real("omegay"), real("omegaz")});
     if (has_images_) {
       const auto whole = [&](const char* name) { return number<std::int32_t>(word(name), where); };
       snapshot_.image.push_back({whole("ix"), whole("iy"), whole("iz")});
     }
-    if (has({"stress_xx", "stress_yy", "stress_zz", "stress_xy", "stress_xz", "stress_yz"})) {
+    if (has_stress_) {
       snapshot_.stress.push_back({real("stress_xx"), real("stress_yy"), real("stress_zz"), real("stress_xy"),
                                   real("stress_xz"), real("stress_yz")});
     }
@@ -175,8 +175,7 @@ class DumpReading : LammpsText {
   std::map<std::string_view, std::size_t> column_;  // place of each column in a line
   std::vector<std::string> names_of_position_;
   bool is_scaled_ = false;  // positions are fractions of the cell
-  bool has_images_ = false;
-  bool has_box_ = false;
+  bool has_velocity_ = false, has_spin_ = false, has_images_ = false, has_stress_ = false, has_box_ = false;
   std::vector<std::int64_t> id_;
 };
 

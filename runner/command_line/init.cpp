@@ -39,7 +39,7 @@ const std::string& example_text(const std::string& name) {
 
 struct CompanionFile {
   std::filesystem::path path;
-  const std::string& text;
+  std::string text;
 };
 
 // Returns the files beside the campaign that its engine's words name, as far as they are compiled in.
@@ -88,12 +88,12 @@ std::string init_campaign(const InitOptions& options) {
   check_campaign_name(name, file.string());
   require_absent(file);
   const std::string& text = example_text(options.example);
-  const std::vector<CompanionFile> companions = companions_of(text, file);
-  for (const CompanionFile& companion : companions) {
-    // The file may be there already for another campaign.
-    if (kind_of(companion.path).empty() || read_input(companion.path) != companion.text)
-      require_absent(companion.path);
-  }
+  std::vector<CompanionFile> companions = companions_of(text, file);
+  // A file may be there already for another campaign.
+  std::erase_if(companions, [](const CompanionFile& one) {
+    return !kind_of(one.path).empty() && read_input(one.path) == one.text;
+  });
+  for (const CompanionFile& companion : companions) require_absent(companion.path);
   check_output(file);
   for (const CompanionFile& companion : companions) {
     write_durably(companion.path, companion.text);

@@ -80,6 +80,7 @@ TEST(Json, InputsMayHaveCommentsAndFaultsBehindThemHaveTheirPlace) {
            {"[1 /* never closed", "f: line 1, column 4: must be JSON: the comment is not closed"},
            {"{\"a\": /* ä\n */ 1,\n /* open\n}",
             "f: line 3, column 2: must be JSON: the comment is not closed"},
+           {"[x, /* open", "f: line 1, column 2: must be JSON: invalid literal"},
            {"[1] # one", "comments begin with //"},
        }) {
     const std::string said = refusal_by([given = text] { parse_json_input(given, "f"); });
