@@ -366,6 +366,20 @@ void warn_of_soft_contacts_with_noise(const Scene& scene, std::vector<Warning>& 
        overlap, gaps);
 }
 
+// Warns if the radius of reference is the first one of a distribution, far from the mean: few want its Pe.
+void warn_of_first_radius(const Scene& scene, std::vector<Warning>& warnings) {
+  constexpr double largest_difference = 0.1;
+  const Particles& particles = scene.particles;
+  const double a = particles.reference_radius;
+  const std::optional<double> mean = derived_groups(scene).mean_radius;
+  const bool is_first = a == particles.species.front().radius;
+  if (!mean || !is_first || std::abs(a / *mean - 1) <= largest_difference) return;
+  warn(warnings, "radius",
+       "the radius a of Pe, St and all groups is {:.4g}, the first one of the distribution, and the mean is "
+       "{:.4g}: /particles/reference_radius chooses another one",
+       a, *mean);
+}
+
 }  // namespace
 
 std::vector<Warning> warnings_before_run(const Scene& scene) {
@@ -374,6 +388,7 @@ std::vector<Warning> warnings_before_run(const Scene& scene) {
   constexpr double stiff = 1e4;
   const Physics& physics = scene.physics;
   std::vector<Warning> warnings;
+  warn_of_first_radius(scene, warnings);
   if (const double densest = densest_random_packing(scene.particles);
       !scene.start && scene.volume_fraction > densest) {
     warn(warnings, "packing",

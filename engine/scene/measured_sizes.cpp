@@ -223,10 +223,22 @@ struct Written {
                                {"radii", radii},
                                {"shares", shares}};
     const Json species = Json::array({{{"distribution", distribution}}});
-    return "\"species\": " + species.dump() + '\n';
+    return fmt::format("\"reference_radius\": {},\n\"species\": {}\n", Json(mean_radius()).dump(),
+                       species.dump());
   }
 
  private:
+  // Returns the mean by number, with four digits.
+  double mean_radius() const {
+    double number = 0, sum = 0;
+    for (std::size_t i = 0; i < radii.size(); ++i) {
+      const double own = shares[i] / (by_volume_ ? cube(radii[i]) : 1);
+      number += own;
+      sum += own * radii[i];
+    }
+    return std::stod(fmt::format("{:.4g}", sum / number));
+  }
+
   bool by_volume_;
 };
 

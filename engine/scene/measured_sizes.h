@@ -41,7 +41,8 @@ struct SizesAnswer {
 // the volume of both. Requires at least two sizes, ascending.
 std::vector<SizeClass> with_one_size_less(std::vector<SizeClass> classes);
 
-// Reads the file, merges sizes until each has one of `count` spheres, and writes the species of a scene.
+// Reads the file, merges sizes until each has one of `count` spheres, and writes the species of a scene, with
+// their mean radius by number as radius of reference.
 // Throws InputError.
 SizesAnswer choose_sizes(const SizesOptions& options);
 

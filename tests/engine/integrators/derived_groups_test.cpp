@@ -199,6 +199,20 @@ TEST(WarningsBeforeRun, RoughContactsThatAreSoftForTheNoiseAreSaid) {
   EXPECT_EQ(codes(88, 0), Codes{});
 }
 
+// Radii 1 and 2 in equal numbers have the mean 1.5.
+TEST(WarningsBeforeRun, AFirstRadiusFarFromTheMeanIsSaid) {
+  const auto codes = [](const Json& radii, const Json& reference) {
+    Json scene = small_scene({{"particles", {{"reference_radius", reference}}}});
+    const Json distribution = {{"form", "histogram"}, {"by", "number"}, {"radii", radii}, {"shares", {1, 1}}};
+    scene["particles"]["species"] = {{{"distribution", distribution}}};
+    scene["integrator"] = {{"method", "implicit"}};  // any sizes
+    return codes_of(warnings_before_run(read_scene(scene, "scene.json")));
+  };
+  EXPECT_EQ(codes({1, 2}, nullptr), Codes{"radius"});
+  EXPECT_EQ(codes({1, 2}, 1.5), Codes{});
+  EXPECT_EQ(codes({1, 1.15}, nullptr), Codes{});
+}
+
 TEST(SceneWarnings, MessagesGiveTheNumbers) {
   EXPECT_TRUE(contains(scene_warnings(scene_of(0.25, 0)).at(0).message,
                        "tau_I / tau_S = 0.25 (tau_I = 1, tau_S = 4)"));

@@ -95,6 +95,11 @@ TEST_F(SizeChoice, KnowsDiameters) {
       Json::parse(R"({"form": "histogram", "by": "volume", "radii": [1.0, 1.4], "shares": [30.0, 70.0]})"));
 }
 
+// By volume 1 : 8 at radii 1 and 2 are equal numbers, of the mean 1.5.
+TEST_F(SizeChoice, GivesTheMeanRadiusByNumberAsReference) {
+  EXPECT_EQ(Json::parse("{" + answer(0, "1 1\n2 8\n").block + "}").at("reference_radius"), 1.5);
+}
+
 TEST(SizeClasses, OfTheThinnestAreMergedWithTheThinnerNeighbour) {
   const std::vector<SizeClass> merged = with_one_size_less({{1, 0.6}, {2, 0.1}, {3, 0.3}});
   ASSERT_EQ(merged.size(), 2U);
