@@ -10,6 +10,7 @@ version=$("$peclet" --version | cut -d ' ' -f 2)
 # page NAME SUMMARY [VERB]: writes a page; adds a heading to text behind the options, and a prompt to examples.
 page() {
   "$peclet" ${3:+"$3"} --help | awk '
+    /^Pages: / { next }  # of this machine
     /^Options:/ { behind = 1 }
     behind == 1 && /^[^ ].*[^:]$/ { print "*Notes*\n"; behind = 2 }
     /^Exit codes:/ { print "*Exit status*\n"; behind = 2; next }

@@ -355,8 +355,9 @@ Json target_hints(const Scene& scene) {
       hints[name] = fmt::format("is called {}, which {}", meant, hints[meant].get<std::string>());
   }
   if (scene.physics.flow.deformation().at_stress() != nullptr) {
-    for (const char* const name : {"relative_viscosity", "eta_r", "eta", "viscosity"})
-      hints[name] = "follows from the mean rate at a given stress: aim at shear_rate";
+    for (const char* const name : {"apparent_viscosity", "relative_viscosity", "eta_r", "eta", "viscosity"})
+      hints[name] =
+          "follows from the mean rate at a given stress: aim at shear_rate, the same relative_tolerance";
   }
   return hints;
 }

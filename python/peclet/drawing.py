@@ -8,7 +8,7 @@ a script only if it has not been changed.
 A figure is a dictionary with panels, or the output of `peclet plot --json`, which figure_of() turns into panels:
 x, y     {about: {words, symbol, unit}, log, categories: words at 0, 1 ... instead of numbers}
 panels   [{title, marks, lines, bands, columns, levels}]
-         marks {series, x, y, half, kind, small}; kind: decided, undecided, provisional, jammed (y may be null)
+         marks {series, x, y, half, x_half, kind, small}; kind: decided, undecided, provisional, jammed (y may be null)
          lines {series, style, places: [x, y]}; style: guide, line, dashed, provisional
          bands {series, places: [x, low, high]}; columns, which are boxes {series, from, to, low, high}
          levels {series, value, across}
@@ -326,11 +326,13 @@ def over_sweep(data):
     """Returns the figure of numbers: every point of `data` over the parameter `over`.
 
     There is a curve for each value of the parameter `by`, or, without it, for each combination of all other parameters
-    that vary independently of `over`, of each quantity.
+    that vary independently of `over`, of each quantity. Curves over a measured number follow the parameter `along`.
     """
     points, columns = data["points"], columns_of(data)
     axis = next(one for one in columns if one["pointer"] == data["over"])
-    others = [one for one in columns if one is not axis and len(one["values"]) > 1 and tells_apart(one, axis)]
+    along = next((one for one in columns if one["pointer"] == data.get("along")), axis)
+    free = [one for one in columns if one is not axis and one is not along]
+    others = [one for one in free if len(one["values"]) > 1 and tells_apart(one, along)]
     if data.get("by"):
         others = [one for one in columns if one["pointer"] == data["by"]]
     about, of_quantities = about_quantities(data["quantities"])
@@ -343,8 +345,11 @@ def over_sweep(data):
         place = series.setdefault(json.dumps(named[k]), {"series": len(series), "name": named[k]})["series"]
         x = axis["cells"][k] if axis["numeric"] else axis["values"].index(axis["cells"][k])
         mark = {"series": place, "x": x, "y": point["mean"], "half": point["half_width"], "kind": kind_of(point)}
-        marks.append({**mark, "good_enough": point["good_enough"], "curve": point.get("curve")})
-    marks.sort(key=lambda mark: mark["x"])
+        mark |= {"x_half": point.get("x_half_width"), "good_enough": point["good_enough"], "curve": point.get("curve")}
+        marks.append(
+            mark | {"place": along["cells"][k] if along["numeric"] else along["values"].index(along["cells"][k])}
+        )
+    marks.sort(key=lambda mark: mark["place"])
     log = data["log"]
     logs = {
         "x": axis["numeric"] and (is_logarithmic([mark["x"] for mark in marks]) if log is None else "x" in log),
@@ -568,9 +573,13 @@ def draw_marks(axes, marks):
     """Draws marks of one series and kind with their bars: open if not converged, dashed if provisional."""
     kind, colour = marks[0]["kind"], colour_of(marks[0])
     marker, face = MARKERS[marks[0]["series"] % len(MARKERS)], colour if kind == "decided" else "white"
-    barred = [(mark["x"], mark["y"], mark["half"]) for mark in marks if is_number(mark.get("half"))]
-    if barred:
-        bars = axes.errorbar(*zip(*barred), fmt="none", ecolor=colour, elinewidth=1, capsize=2.5, zorder=2)
+    for half, error in (("half", "yerr"), ("x_half", "xerr")):
+        barred = [mark for mark in marks if is_number(mark.get(half))]
+        if not barred:
+            continue
+        x, y, halves = zip(*((mark["x"], mark["y"], mark[half]) for mark in barred))
+        look = {"fmt": "none", "ecolor": colour, "elinewidth": 1, "capsize": 2.5, "zorder": 2}
+        bars = axes.errorbar(x, y, **{error: halves}, **look)
         if kind == "provisional":
             bars[2][0].set_linestyle(DASHES)
     size, x, y = 3.5 if marks[0].get("small") else 5, [mark["x"] for mark in marks], [mark["y"] for mark in marks]
@@ -605,7 +614,9 @@ def span(figure, name):
     log, panels = figure[name]["log"], figure["panels"]
     numbers = reached(panels, log) if name == "y" else []
     for panel in panels if name == "x" else []:
-        numbers += [mark["x"] for mark in panel["marks"]]
+        for mark in panel["marks"]:
+            x, half = mark["x"], mark.get("x_half") or 0
+            numbers += [x, max(x - half, x / 3) if log else x - half, x + half]
         numbers += [place[0] for kind in ("lines", "bands") for one in panel.get(kind, []) for place in one["places"]]
         numbers += [end for box in panel.get("columns", []) for end in (box["from"], box["to"])]
         numbers += [level["value"] for level in panel.get("levels", []) if not level["across"]]

@@ -229,7 +229,8 @@ class Results:
         chosen = [row for row in everything if row["quantity"] == quantity] or elements(everything, quantity)
         if not chosen:
             there = sorted({row["quantity"] for row in everything})
-            raise PecletError(f"{quantity}: not measured; there are {', '.join(there) or 'no results yet'}")
+            none = "no estimates before the first stop test of a point, except of the target"
+            raise PecletError(f"{quantity}: not measured; there are {', '.join(there) or none}")
         rows, axes = self._named(chosen)
         names = [chosen[0][f"axis_{k}"] for k in (1, 2, 3) if chosen[0].get(f"axis_{k}")]
         names = [apart(name, axes, "axis_") for name in names]
@@ -362,8 +363,9 @@ class Results:
         quantity  name of a number, drawn over a swept parameter, or of a quantity with an axis, such as
                   transient/shear_stress, drawn along it with a curve for each point; by default the campaign's target.
                   A list draws quantities of one unit together
-        x         name of the swept parameter on the axis, or of a derived number such as "peclet"; by default the
-                  parameter with most values. Values that are words, such as "auto", are placed side by side
+        x         name of the swept parameter on the axis, of a derived number such as "peclet", or of a measured one
+                  such as "shear_rate"; by default the parameter with most values. Values that are words, such as
+                  "auto", are placed side by side
         by        name of another swept parameter, with a curve for each value; by default all others that vary
         axes      matplotlib's Axes to draw in; by default new ones
         label     name of the curve in the legend, if there is a single one

@@ -7,8 +7,10 @@
 #include <array>
 #include <cerrno>
 #include <exception>
+#include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -20,6 +22,7 @@
 #include "contract/usage_fault.h"
 #include "runner/command_line/print.h"
 #include "runner/command_line/verb_set.h"
+#include "runner/store/campaign_directory.h"
 
 namespace peclet::runner {
 namespace {
@@ -66,6 +69,12 @@ Put the line of the example into ~/.bashrc. `cmake --install` puts the script wh
   add_quiet(verb, options->quiet);
 }
 
+// Returns a line that says where the pages of this program are; "" if they are not there.
+std::string place_of_pages() {
+  const std::optional<std::filesystem::path> pages = own_file("docs/README.md");
+  return pages ? fmt::format("\nPages: {}", pages->string()) : "";
+}
+
 void add_all(VerbSet& verbs) {
   CLI::App& app = verbs.app();
   app.require_subcommand(1);
@@ -73,7 +82,8 @@ void add_all(VerbSet& verbs) {
   app.set_version_flag("--version", std::function<std::string()>(version_text));
   app.footer(exit_code_lines({}) +
              "`peclet help VERB` says more about a verb.\n"
-             "`peclet sizes`, `peclet snapshot` and `peclet trajectory` are those of peclet-engine.");
+             "`peclet sizes`, `peclet snapshot` and `peclet trajectory` are those of peclet-engine." +
+             place_of_pages());
   app.formatter(std::make_shared<HelpFormatter>());
   add_running_verbs(verbs);
   add_viewing_verbs(verbs);

@@ -133,6 +133,8 @@ script that was changed is never replaced. Axes are logarithmic if the numbers t
   # both moduli in units of k_B T / a^3 over the frequency in Brownian times
   peclet plot moduli.json --quantity linear_response/storage --quantity linear_response/loss \
     --scale-x brownian_time --scale-y thermal_stress --output moduli.pdf
+  # viscosity over the rate that was measured at each stress
+  peclet plot thickening.json --quantity apparent_viscosity --over shear_rate --output rate.pdf
   # two campaigns in one figure
   peclet plot rough.json --with smooth.json --over volume_fraction --output both.pdf
   # the script alone, which needs no matplotlib yet
@@ -147,7 +149,7 @@ script that was changed is never replaced. Axes are logarithmic if the numbers t
       ->allow_extra_args(false);
   add_option(verb, "--over PARAMETER", options->choice.over,
              "Swept parameter on the axis: its pointer or the last word of it; or a derived number, such as "
-             "peclet; the parameter with most values unless given");
+             "peclet, or a measured one, such as shear_rate; the parameter with most values unless given");
   add_option(verb, "--where NAME=VALUE", options->choice.where,
              "Draw only points with this value of a swept parameter; may be repeated")
       ->allow_extra_args(false);

@@ -76,7 +76,8 @@ std::vector<double> DerivedNumbers::values(const std::string& option, const std:
     if (!value.is_number() || value == 0) {
       throw InputError(
           "", option, name,
-          fmt::format("is not defined at {}: its scene lacks what this number follows from", labels_[i]));
+          fmt::format("is not defined at {}: its scene lacks what this number follows from{}", labels_[i],
+                      option.starts_with("--scale") ? "; a number > 0 scales all points alike" : ""));
     }
     values.push_back(value.get<double>());
   }
@@ -117,7 +118,9 @@ AxisScale DerivedNumbers::scale(const std::string& option, const std::string& wa
     if (name != named_by(unit) && power_of(name, given_in) != 0) fitting.push_back(name);
   }
   const std::string allowed = fitting.empty() ? "" : fmt::format(", or {}", fmt::join(fitting, ", "));
-  if (parameter(wanted).is_null()) {
+  const bool is_known =
+      std::ranges::any_of(descriptions_, [&](const Json& one) { return one["name"] == wanted; });
+  if (!is_known && parameter(wanted).is_null()) {
     throw InputError("", option, wanted,
                      fmt::format("must be a number > 0{}{}", allowed, suggestion(wanted, names())));
   }

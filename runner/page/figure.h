@@ -17,7 +17,8 @@ namespace peclet::runner {
 struct FigureChoice {
   // The target, or quantities of one unit: "pressure", "stress/total/xy", "transient/shear_stress".
   std::vector<std::string> quantities{};
-  // A swept parameter or a derived number: "/volume_fraction", "volume_fraction", "peclet"; chosen if empty.
+  // A swept parameter, a derived number or a measured one: "/volume_fraction", "volume_fraction", "peclet",
+  // "shear_rate"; chosen if empty.
   std::string over{};
   std::vector<std::string> where{};  // as in read_sweep()
   std::string scale_x{}, scale_y{};  // as in DerivedNumbers::scale(); "": not scaled

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <tuple>
 #include <utility>
@@ -67,6 +68,13 @@ void require_one_unit(const Chosen& chosen) {
   }
 }
 
+// Returns the place of the measured number with this name; nothing if there is none.
+std::optional<std::size_t> column_called(const std::vector<Drawable>& drawables, const std::string& name) {
+  const auto found = std::ranges::find_if(
+      drawables, [&](const Drawable& one) { return one.path == name || name_of(one) == name; });
+  return found == drawables.end() ? std::nullopt : std::optional<std::size_t>(found - drawables.begin());
+}
+
 Chosen chosen_quantities(Database& database, const MeasuredSweep& sweep,
                          const std::vector<std::string>& wanted) {
   Chosen chosen;
@@ -74,11 +82,8 @@ Chosen chosen_quantities(Database& database, const MeasuredSweep& sweep,
   for (const std::string& given : wanted) {
     const std::string name = bare(given);
     std::vector<std::string> names;
-    const bool is_number = std::any_of(drawables.begin(), drawables.end(), [&](const Drawable& one) {
-      return one.path == name || name_of(one) == name;
-    });
     const std::optional<QuantityCurve> curve =
-        is_number ? std::nullopt : curve_called(database, sweep, name, names);
+        column_called(drawables, name) ? std::nullopt : curve_called(database, sweep, name, names);
     if (curve) {
       chosen.curves.push_back(*curve);
       chosen.about.push_back(curve->about);
@@ -197,12 +202,15 @@ class Visible {
   bool has_number_ = false, has_jammed_ = false, is_shown_ = false;
 };
 
-// Removes the points without a result, which have no derived numbers; returns how many.
-std::size_t leave_out_those_without_result(MeasuredSweep& sweep) {
+// Removes the points for which `is_kept` does not hold; returns how many.
+std::size_t leave_out(MeasuredSweep& sweep, const std::function<bool(const Json& point)>& is_kept) {
   const std::size_t all = sweep.page.points.size();
-  keep_points(sweep, [](const Json& point) { return point.at("groups").is_object(); });
+  keep_points(sweep, is_kept);
   return all - sweep.page.points.size();
 }
+
+// True if the point has a result, and so derived numbers.
+bool has_result(const Json& point) { return point.at("groups").is_object(); }
 
 // One figure, made of the points of a sweep.
 class Figure {
@@ -214,12 +222,15 @@ class Figure {
         target_(sweep_.status.campaign.target),
         words_(kept_vocabulary(database)),
         chosen_(chosen_quantities(database, sweep_, wanted())) {
-    const bool is_by_group = !choice.over.empty() && chosen_.curves.empty() && !is_swept(choice.over);
-    if (is_by_group || !choice.scale_x.empty() || !choice.scale_y.empty()) {
-      absent_ = leave_out_those_without_result(sweep_);
+    const bool is_by_other = !choice.over.empty() && chosen_.curves.empty() && !is_swept(choice.over);
+    const std::optional<std::size_t> measured =
+        is_by_other ? column_called(sweep_.page.drawables, bare(choice.over)) : std::nullopt;
+    if (is_by_other || !choice.scale_x.empty() || !choice.scale_y.empty()) {
+      absent_ = leave_out(sweep_, has_result);
     }
+    if (measured) add_measured_parameter(*measured);
     derived_.emplace(words_, sweep_.page.points);
-    if (is_by_group) add_derived_parameter();
+    if (is_by_other && !measured) add_derived_parameter();
   }
 
   const Json& parameters() const { return sweep_.parameters; }
@@ -284,7 +295,35 @@ class Figure {
     for (std::size_t i = 0; i < values.size(); ++i) {
       sweep_.page.points[i]["settings"][choice_.over] = values[i];
     }
+    const auto [least, largest] = std::ranges::minmax(values);
+    if (values.size() > 1 && least == largest) {
+      throw InputError("", "--over", choice_.over,
+                       fmt::format("is {:.4g} at every point; --scale-x divides an axis by it", least));
+    }
     sweep_.parameters.push_back(parameter);
+  }
+
+  // Adds a measured number to the parameters: its mean at each point, with an interval. Points without a mean
+  // are left out. Curves follow the parameter that would otherwise be on the axis.
+  void add_measured_parameter(std::size_t column) {
+    const Drawable& about = sweep_.page.drawables[column];
+    along_ = chosen_axis(sweep_.swept, "").pointer;
+    choice_.over = about.path;
+    const auto estimate_of = [&](const Json& point) {
+      return mark_json(point, point.at("estimates")[column], "", 1);
+    };
+    absent_ +=
+        leave_out(sweep_, [&](const Json& point) { return estimate_of(point).at("mean").is_number(); });
+    for (Json& point : sweep_.page.points) {
+      const Json estimate = estimate_of(point);
+      point["settings"][about.path] = estimate.at("mean");
+      point["x_half_width"] = estimate.at("half_width");
+    }
+    sweep_.parameters.push_back({{"pointer", about.path},
+                                 {"words", about.element.empty() ? "" : name_of(about)},
+                                 {"symbol", about.element.empty() ? about.symbol : ""},
+                                 {"unit", about.unit},
+                                 {"meaning", ""}});
   }
 
   AxisScale scale(const char* option, const std::string& name, const std::string& unit) const {
@@ -304,12 +343,15 @@ class Figure {
       for (std::size_t q = 0; q < chosen_.columns.size(); ++q) {
         points.push_back(mark_json(point, point.at("estimates")[chosen_.columns[q]], chosen_.about[q].path,
                                    of_y.factors[i]));
+        if (point.contains("x_half_width")) points.back()["x_half_width"] = point["x_half_width"];
         visible.add(points.back(), axis.numeric ? std::optional(axis.numbers[i]) : std::nullopt,
                     points.back().at("mean"));
       }
     }
     visible.require(chosen_.about.front().path);
-    return {{"over", axis.pointer}, {"parameters", sweep_.parameters}, {"points", std::move(points)}};
+    Json data = {{"over", axis.pointer}, {"parameters", sweep_.parameters}, {"points", std::move(points)}};
+    if (!along_.empty()) data["along"] = along_;
+    return data;
   }
 
   // Scales the values of the parameter at every point.
@@ -323,7 +365,10 @@ class Figure {
       const AxisScale of_x = scale("--scale-x", choice_.scale_x, parameter.at("unit"));
       for (std::size_t i = 0; i < axis.numbers.size(); ++i) {
         axis.numbers[i] *= of_x.factors[i];
-        sweep_.page.points[i]["settings"][axis.pointer] = axis.numbers[i];
+        Json& point = sweep_.page.points[i];
+        point["settings"][axis.pointer] = axis.numbers[i];
+        if (point.contains("x_half_width"))
+          point["x_half_width"] = scaled(point["x_half_width"], of_x.factors[i]);
       }
       parameter.update({{"scale", of_x.text}, {"unit", of_x.unit}});
     }
@@ -400,6 +445,7 @@ class Figure {
   Chosen chosen_;
   std::size_t absent_ = 0;  // points without a result that were left out
   std::optional<DerivedNumbers> derived_;
+  std::string along_;  // parameter that curves over a measured number follow; "" over other ones
 };
 
 }  // namespace

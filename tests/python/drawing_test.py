@@ -154,6 +154,28 @@ class OverASweep(unittest.TestCase):
         names = [text_of(one["name"]) for one in figure["legend"]]
         self.assertEqual(names, ["rough, Pe = 1", "rough, Pe = 10", "smooth, Pe = 30"])
 
+    def test_curves_over_a_measured_number_follow_the_parameter_that_was_swept(self):
+        rate = {"pointer": "shear_rate", "words": "", "symbol": "γ̇", "unit": "1 / time", "meaning": ""}
+        measured = ((1, 0.3, 5), (10, 1.0, 9), (100, 0.4, 40))  # the rate falls as the stress grows
+        points = [
+            point({"/peclet": pe, "/phi": phi, "shear_rate": rate * phi}, mean) | {"x_half_width": 0.1}
+            for phi in (0.4, 0.5)
+            for pe, rate, mean in measured
+        ]
+        figure = drawing.figure_of(
+            data(points, over="shear_rate", parameters=[KEYS["peclet"], KEYS["phi"], rate], along="/peclet")
+        )
+        self.assertEqual([text_of(one["name"]) for one in figure["legend"]], ["φ = 0.4", "φ = 0.5"])
+        lines = [[place[1] for place in line["places"]] for line in figure["panels"][0]["lines"]]
+        self.assertEqual(lines, [[5, 9, 40], [5, 9, 40]])
+        _, (axes,) = drawing.draw(figure)
+        bars = [segment for bars in axes.containers for segment in bars.lines[2][0].get_segments()]
+        wide = [(low[0], high[0]) for low, high in bars if low[1] == high[1]]
+        self.assertEqual(len(wide), 6)
+        for low, high in wide:
+            self.assertAlmostEqual(high - low, 0.2)
+        plt.close("all")
+
     def test_words_stand_side_by_side(self):
         points = [point({"/form": form}, mean) for form, mean in (("b", 1), ("a", 2), ("b" * 30, 3), (None, 4))]
         figure = drawing.over_sweep(data(points, ("form",), "/form"))

@@ -155,8 +155,10 @@ TEST(TargetHints, SayWhatPeopleMayMean) {
             "is called storage_modulus, which needs \"observables\": [\"oscillation\"] in the scene");
   const Json rest = {{"flow", {{"shear_rate", nullptr}, {"stress", 0.1}}},
                      {"integrator", {{"method", "implicit"}, {"timestep", nullptr}}}};
-  EXPECT_EQ(target_hints(scene_from(rest))["relative_viscosity"],
-            "follows from the mean rate at a given stress: aim at shear_rate");
+  for (const char* const name : {"relative_viscosity", "apparent_viscosity"}) {
+    EXPECT_EQ(target_hints(scene_from(rest))[name],
+              "follows from the mean rate at a given stress: aim at shear_rate, the same relative_tolerance");
+  }
 }
 
 TEST(NamesOfTargets, AreThoseOfTheNumbersThatTheResultHas) {

@@ -200,11 +200,18 @@ TEST_F(CurveFigure, StandsOverANumberThatFollowsFromTheScene) {
   EXPECT_EQ(scaled["parameters"][0]["scale"], " / 4");
 }
 
+TEST_F(CurveFigure, StandsOverNoNumberThatIsTheSameAtAllPoints) {
+  for (int point = 0; point < 3; ++point) complete(point, 10.0 * (point + 1));
+  EXPECT_EQ(refusal({.quantities = {"pressure"}, .over = "brownian_time"}),
+            "--over: brownian_time: is 5 at every point; --scale-x divides an axis by it");
+}
+
 TEST_F(CurveFigure, RefusesAScaleThatTheSceneLacks) {
   complete(0, 10);
   EXPECT_EQ(
       refusal({.quantities = {"moduli/loss"}, .scale_y = "critical_stress"}),
-      "--scale-y: critical_stress: is not defined at point=0: its scene lacks what this number follows from");
+      "--scale-y: critical_stress: is not defined at point=0: its scene lacks what this number follows from; "
+      "a number > 0 scales all points alike");
   EXPECT_EQ(refusal({.quantities = {"moduli/loss"}, .scale_y = "brownian_time"}),
             "--scale-y: brownian_time: has the unit time, and these numbers stress; must be a number > 0, or "
             "viscous_stress, thermal_stress");

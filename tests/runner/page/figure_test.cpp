@@ -69,6 +69,27 @@ TEST_F(CampaignFigure, HasAnyQuantityThatIsMeasured) {
   EXPECT_TRUE(drawn["points"][1]["mean"].is_null());
 }
 
+// The point without a result has no place on the axis.
+TEST_F(CampaignFigure, OverAMeasuredNumberHasItsMeanAndInterval) {
+  complete_widely(0);
+  for (int seed = 0; seed < 4; ++seed) campaign_.complete(1, seed, 20 + 0.01 * seed);
+  const Json pressures = figure({.quantities = {"pressure"}})["points"];
+  const Json drawn = figure({.over = "pressure"}), halved = figure({.over = "/pressure", .scale_x = "2"});
+  EXPECT_EQ(drawn["over"], "pressure");
+  EXPECT_EQ(drawn["along"], "/point");
+  EXPECT_EQ(drawn["absent"], 1);
+  ASSERT_EQ(drawn["points"].size(), 2U);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Json &point = drawn["points"][k], &half = halved["points"][k];
+    EXPECT_EQ(point["quantity"], "relative_viscosity");
+    EXPECT_EQ(point["settings"]["pressure"], pressures[k]["mean"]);
+    EXPECT_EQ(point["x_half_width"], pressures[k]["half_width"]);
+    EXPECT_EQ(half["settings"]["pressure"].get<double>(), pressures[k]["mean"].get<double>() / 2);
+    EXPECT_EQ(half["x_half_width"].get<double>(), pressures[k]["half_width"].get<double>() / 2);
+  }
+  EXPECT_FALSE(figure({.quantities = {"pressure"}}).contains("along"));
+}
+
 TEST_F(CampaignFigure, OfTwoCampaignsHasThePointsOfBothWithTheirNames) {
   StoredCampaign other(2, 4, 4);
   complete_widely(0);
