@@ -28,6 +28,7 @@
 #include "engine/realisation/job.h"
 #include "engine/realisation/result.h"
 #include "engine/realisation/serve.h"
+#include "engine/realisation/start_block.h"
 #include "engine/scene/composition.h"
 #include "engine/scene/measured_sizes.h"
 #include "engine/snapshots/conversion.h"
@@ -369,6 +370,15 @@ int main(int argc, char** argv) {
       ->add_option("--count", sizes.count,
                    "Number of spheres of the scene: rare sizes are merged until each has one sphere")
       ->check(whole_number(1, most_particles));
+  StartOptions start;
+  CLI::App* start_command = app.add_subcommand(
+      "start",
+      "Write the keys of a scene that begins with the spheres of a file, or of a file for each seed");
+  start_command->add_option("file", start.files, "GSD, extended XYZ, or a file of LAMMPS or LF_DEM")
+      ->required();
+  start_command->add_option("--list", start.list, "List to write, from which seed k begins at the k-th file");
+  start_command->add_option("--frame", start.frame, "Number of the frame; -1 is the last one")
+      ->capture_default_str();
   std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
   if (words == std::vector<std::string>{"version"}) words.front() = "--version";
   try {
@@ -387,6 +397,12 @@ int main(int argc, char** argv) {
     if (*snapshot_command) return done_with(picture.frames ? draw_film(picture) : draw_picture(picture));
     if (*sizes_command) {
       const SizesAnswer answer = choose_sizes(sizes);
+      fmt::print(stderr, "{}", answer.remarks);
+      fmt::print("{}", answer.block);
+      return ExitCode::done;
+    }
+    if (*start_command) {
+      const StartAnswer answer = start_block(start);
       fmt::print(stderr, "{}", answer.remarks);
       fmt::print("{}", answer.block);
       return ExitCode::done;

@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <numbers>
+#include <numeric>
 #include <utility>
+#include <vector>
 
 #include "engine/integrators/midpoint.h"
 #include "engine/integrators/stability.h"
+#include "engine/state/cell_grid.h"
 #include "engine/state/eigen_arrays.h"
 #include "engine/state/neighbour_list.h"
 #include "engine/terms/keyed_random.h"
@@ -183,6 +186,24 @@ std::vector<double> species_radii(const Particles& particles) {
 
 std::vector<double> species_densities(const Particles& particles) {
   return of_each_sphere(particles, [&](const Species& species) { return density_of(particles, species); });
+}
+
+double largest_overlap(const ParticleState& particles, const PeriodicCell& box) {
+  const LatticePlaces places = lattice_places(particles.position, box);
+  std::vector<std::uint32_t> all(particles.count());
+  std::iota(all.begin(), all.end(), 0U);
+  const std::vector<double>& radius = particles.radius;
+  const double largest = *std::ranges::max_element(radius);
+  const CellGrid grid(places, all, box, 2 * largest);
+  double overlap = 0;
+  for (const std::uint32_t i : all) {
+    const double range = radius[i] + largest;
+    grid.visit_near(places.fractional[i], range, [&](std::uint32_t j, const LatticeShift&, const Vector3& r) {
+      if (j <= i) return;
+      overlap = std::max(overlap, (radius[i] + radius[j] - norm(r)) / std::min(radius[i], radius[j]));
+    });
+  }
+  return overlap;
 }
 
 double cube_edge(const std::vector<double>& radius, double volume_fraction) {

@@ -30,6 +30,9 @@ double cube_edge(const std::vector<double>& radius, double volume_fraction);
 // Returns the same edge, equal to the last bit, without a list of all radii.
 double cube_edge(const Particles& particles, double volume_fraction);
 
+// Returns the largest overlap of two spheres over the smaller radius; 0 if none overlap.
+double largest_overlap(const ParticleState& particles, const PeriodicCell& box);
+
 // Places the spheres at random (keyed by seed) in the box at rest, then removes overlaps by minimising
 //
 //   sum over pairs with r < sigma_ij of 1/2 (sigma_ij - r)^2,    sigma_ij = 1.001 (a_i + a_j)

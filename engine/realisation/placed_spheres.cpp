@@ -21,10 +21,7 @@
 namespace peclet::engine {
 namespace {
 
-// Relative tolerance of lengths in files with six digits: half of the sixth digit of 1.00000.
-constexpr double rounding = 5e-6;
-
-bool is_near(double a, double b, double scale) { return std::abs(a - b) <= rounding * scale; }
+bool is_near(double a, double b, double scale) { return std::abs(a - b) <= rounding_of_files * scale; }
 
 // Returns the indices of radii in increasing order; those of equal radii stay in order.
 std::vector<std::size_t> order_of(const std::vector<double>& radius) {
@@ -113,7 +110,7 @@ class Placing {
   std::string listed(std::uint64_t seed) const {
     const std::vector<std::string> lines = lines_of_list();
     if (seed >= lines.size()) {
-      refuse("/start/list", start_.path, "must have a line for seed {}, the {}th", seed, seed + 1);
+      refuse("/start/list", start_.path, "must have a line for seed {}, line {}", seed, seed + 1);
     }
     const std::string& line = lines[seed];
     const bool is_good = line.size() > 67 && is_hash(line.substr(0, 64)) && line[64] == ' ' &&
@@ -144,7 +141,7 @@ class Placing {
              "makes a box of {:.9g} by {:.9g} by {:.9g}, and the cell of the start is {:.9g} by "
              "{:.9g} by {:.9g}: must be as long within {:g} of each; in that cell the volume "
              "fraction is {:.8g}",
-             box.x, box.y, box.z, a.x, b.y, c.z, rounding, solid / (a.x * b.y * c.z));
+             box.x, box.y, box.z, a.x, b.y, c.z, rounding_of_files, solid / (a.x * b.y * c.z));
     }
     return PeriodicCell(box, scene_.physics.flow.deformation().velocity_gradient(0), b.x);
   }
@@ -157,9 +154,7 @@ class Placing {
              "must be {}, the number of spheres of the start", snapshot.count());
     }
     if (!snapshot.has_sizes) {
-      refuse(start_.pointer(), start_.path,
-             "must have particles/diameter, which is absent: HOOMD-blue 4 writes diameters if its "
-             "GSD.write_diameter is True");
+      refuse(start_.pointer(), start_.path, no_sizes);
     }
     // Spheres of the scene are ordered by species. Those of a file that are not are brought into that order.
     const auto are_alike = [](const std::vector<double>& found, const std::vector<double>& wanted) {
@@ -206,7 +201,17 @@ void check_start_of_campaign(const Scene& scene, const std::string& file, std::i
   }
   const Placing placing(scene, file);
   placing.require_lines(seeds);
-  placing.place(0);
+  const System first = placing.place(0).system;
+  if (scene.physics.contact) {
+    const double overlap = largest_overlap(first.particles, first.box), most = scene.guard.largest_overlap;
+    if (overlap > most) {
+      throw InputError(
+          file, scene.start->pointer(), scene.start->path,
+          fmt::format("must have spheres that overlap by at most {} radii, the largest_overlap of /guard; "
+                      "in that of seed 0 two overlap by {:.3g}",
+                      most, overlap));
+    }
+  }
   if (scene.start->is_list && !(scene.physics.thermal_energy > 0)) placing.require_different_files();
 }
 

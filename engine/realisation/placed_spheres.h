@@ -1,6 +1,7 @@
 // Reads the initial spheres of a realisation from a file.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 
@@ -8,6 +9,17 @@
 #include "engine/state/system.h"
 
 namespace peclet::engine {
+
+// Relative tolerance of lengths in files with six digits: half of the sixth digit of 1.00000.
+inline constexpr double rounding_of_files = 5e-6;
+
+// True if lengths are equal within that tolerance of the second one.
+inline bool is_same_length(double a, double b) { return std::abs(a - b) <= rounding_of_files * b; }
+
+// The fault of a file without sizes of spheres.
+inline constexpr const char* no_sizes =
+    "must have particles/diameter, which is absent: HOOMD-blue 4 writes diameters if its GSD.write_diameter "
+    "is True";
 
 struct PlacedSpheres {
   System system;           // particles, box, step 0 and time 0; no list and no springs
@@ -23,7 +35,8 @@ PlacedSpheres placed_spheres(const Scene& scene, std::uint64_t seed, const std::
 
 // Checks the start of a campaign of at most `seeds` seeds, and the spheres of its first seed, before it runs.
 // A list must have a line for each seed. Without noise two seeds that begin at one file would be one
-// realisation, so one file for all seeds, or a hash twice in a list, is refused. Throws InputError.
+// realisation, so one file for all seeds, or a hash twice in a list, is refused. So are contacts that overlap
+// by more than the guard allows. Throws InputError.
 void check_start_of_campaign(const Scene& scene, const std::string& file, std::int64_t seeds = 1);
 
 }  // namespace peclet::engine

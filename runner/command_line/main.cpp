@@ -34,7 +34,7 @@ std::string version_text() {
 }
 
 // Verbs of the engine for files of users: `peclet sizes` is `peclet-engine sizes`.
-constexpr std::array<std::string_view, 3> engine_verbs = {"sizes", "snapshot", "trajectory"};
+constexpr std::array<std::string_view, 4> engine_verbs = {"sizes", "start", "snapshot", "trajectory"};
 
 [[noreturn]] void become_engine(std::vector<std::string> words) {
   const std::string engine = (own_folder() / "peclet-engine").string();
@@ -80,10 +80,11 @@ void add_all(VerbSet& verbs) {
   app.require_subcommand(1);
   // A function, called on demand, because it reads the program file.
   app.set_version_flag("--version", std::function<std::string()>(version_text));
-  app.footer(exit_code_lines({}) +
-             "`peclet help VERB` says more about a verb.\n"
-             "`peclet sizes`, `peclet snapshot` and `peclet trajectory` are those of peclet-engine." +
-             place_of_pages());
+  app.footer(
+      exit_code_lines({}) +
+      "`peclet help VERB` says more about a verb.\n"
+      "`peclet sizes`, `start`, `snapshot` and `trajectory` are those of peclet-engine; each has --help." +
+      place_of_pages());
   app.formatter(std::make_shared<HelpFormatter>());
   add_running_verbs(verbs);
   add_viewing_verbs(verbs);

@@ -9,6 +9,7 @@
 #include "contract/sha256.h"
 #include "engine/realisation/packing.h"
 #include "engine/realisation/placed_spheres.h"
+#include "engine/realisation/start_block.h"
 #include "engine/snapshots/gsd_file.h"
 #include "tests/engine/realisation/small_result.h"
 #include "tests/engine/temporary_folder.h"
@@ -61,6 +62,53 @@ class StartedJob : public testing::Test {
 
   TemporaryFolder folder_;
 };
+
+// Two spheres of radius 1 whose centres are 1.7 apart, across the boundary of a cell of edge 10.
+TEST_F(StartedJob, WithSpheresThatOverlapTooMuchIsNoCampaign) {
+  ParticleState two = make_particles({1, 1}, 1);
+  two.position.set(0, {0.8, 5, 5});
+  two.position.set(1, {9.1, 5, 5});
+  EXPECT_NEAR(largest_overlap(two, PeriodicCell({10, 10, 10}, {})), 0.3, 1e-12);
+  two.position.set(1, {8.7, 5, 5});
+  EXPECT_EQ(largest_overlap(two, PeriodicCell({10, 10, 10}, {})), 0);
+
+  // Sphere 1 is moved to where sphere 0 is.
+  std::string text = read_file(path("a.final.xyz"));
+  const auto line = [&](std::size_t k) {
+    std::size_t begin = 0;
+    for (std::size_t i = 0; i < k; ++i) begin = text.find('\n', begin) + 1;
+    return std::pair(begin, text.find('\n', begin) - begin);
+  };
+  const auto [first, length] = line(2);
+  const auto [second, length_of_second] = line(3);
+  const std::string of_first = text.substr(first, length), of_second = text.substr(second, length_of_second);
+  const std::string id = of_second.substr(0, of_second.find(' '));
+  text.replace(second, length_of_second, id + of_first.substr(of_first.find(' ')));
+  write_durably(path("doubled.xyz"), text);
+  EXPECT_TRUE(contains(refusal_of_campaign(scene(start("doubled.xyz"))),
+                       "must have spheres that overlap by at most 0.2 radii"));
+}
+
+// The keys that are written for a file make a scene that begins with it.
+TEST_F(StartedJob, HasAScenesKeysFromTheVerbStart) {
+  const auto scene_of_block = [&](const StartAnswer& answer) {
+    const Json block = Json::parse("{" + answer.block + "}");
+    Json all = small_scene();
+    all.update(block);
+    all["particles"]["density"] = small_scene()["particles"]["density"];
+    return all;
+  };
+  for (const char* const name : {"a.final.xyz", "a.trajectory.gsd"}) {
+    const StartAnswer answer = start_block({.files = {path(name)}, .list = "", .frame = 0});
+    EXPECT_EQ(refusal(scene_of_block(answer)), "") << answer.block;
+    EXPECT_TRUE(contains(answer.remarks, "60 spheres of 2 radii")) << answer.remarks;
+  }
+  const std::vector<std::string> files = {path("a.final.xyz"), path("a.trajectory.gsd")};
+  EXPECT_TRUE(contains(refusal_by([&] { start_block({.files = files, .list = ""}); }), "--list: is missing"));
+  const StartAnswer several = start_block({.files = files, .list = path("starts")});
+  EXPECT_EQ(read_file(path("starts")), line("a.final.xyz") + line("a.trajectory.gsd"));
+  EXPECT_EQ(refusal(scene_of_block(several), 1), "") << several.block;
+}
 
 // Compares the end of a realisation, by its own time loop, with the start of the next.
 TEST_F(StartedJob, BeginsWhereTheOtherOneHasEnded) {
@@ -130,7 +178,7 @@ TEST_F(StartedJob, OfAListTakesTheLineOfItsSeed) {
     EXPECT_TRUE(contains(refusal(scene(start_), of_seed), "/start/list"));
     EXPECT_TRUE(contains(refusal(scene(start_), of_seed), "must be lines of sha256sum"));
   }
-  EXPECT_TRUE(contains(refusal(scene(start_), 4), "must have a line for seed 4, the 5th"));
+  EXPECT_TRUE(contains(refusal(scene(start_), 4), "must have a line for seed 4, line 5"));
   write_durably(path("a.final.xyz"), read_file(path("a.final.xyz")) + "\n");
   EXPECT_TRUE(contains(refusal(scene(start_), 0), "must be that of " + path("a.final.xyz")));
   write_durably(path("starts.sha256"), line);
