@@ -81,7 +81,7 @@ std::pair<std::string, std::vector<double>> speeds(const Snapshot& snapshot) {
   for (std::size_t i = 0; i < snapshot.count(); ++i) {
     values.push_back(norm(snapshot.velocity[i] - flow * snapshot.position[i]));
   }
-  return {flow == Matrix3{} ? "speed" : "speed beyond the flow", values};
+  return {flow == Matrix3{} ? "speed" : "non-affine speed", values};
 }
 
 }  // namespace

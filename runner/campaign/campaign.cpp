@@ -64,8 +64,9 @@ Target aimed_at(const Json& document, const std::string& file) {
                      "must be an object, unless /realisations is the number of seeds of every point");
   }
   if (document.contains("show")) {
-    throw InputError(file, "/show", shortened(document["show"]),
-                     "must not be given beside a target, whose observables are shown");
+    throw InputError(
+        file, "/show", shortened(document["show"]),
+        "must not be given beside a target, whose observables are shown; /target/also adds others");
   }
   const Json& target = document["target"];
   return target_of(target["observable"].get<std::string>(), target, target["confidence"].get<double>(), file);

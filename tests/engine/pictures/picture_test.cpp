@@ -51,7 +51,7 @@ TEST(Picture, ColoursSpeedsBeyondTheFlow) {
   snapshot.time = 1.5;
   snapshot.strain = 3;
   const Colouring colouring = colouring_of(snapshot, "speed", "");
-  EXPECT_EQ(colouring.scale.front().title, "speed beyond the flow");
+  EXPECT_EQ(colouring.scale.front().title, "non-affine speed");
   EXPECT_EQ(colouring.of_spheres[0].red, viridis(0).red);
   EXPECT_EQ(colouring.scale.front().at(0.25).red, colouring.of_spheres[1].red);
 }
@@ -64,7 +64,7 @@ TEST(Picture, ColoursSpeedsBeyondTheFlowThatTheFileHas) {
   snapshot.time = 1;
   snapshot.strain = 3;
   const Colouring colouring = colouring_of(snapshot, "speed", "");
-  EXPECT_EQ(colouring.scale.front().title, "speed beyond the flow");
+  EXPECT_EQ(colouring.scale.front().title, "non-affine speed");
   EXPECT_EQ(colouring.scale.front().at(0.5).red, colouring.of_spheres[1].red);
 }
 
