@@ -34,15 +34,9 @@ struct PlotOptions : CurveOptions {
 Json figure_of(const PlotOptions& options) {
   OpenCampaign open = open_for_viewing(options.campaign, options.directory);
   if (options.others.empty()) return figure_data(open.database, options.choice);
-  std::vector<OpenCampaign> others;
-  for (const std::filesystem::path& other : options.others) others.push_back(open_for_viewing(other, ""));
+  std::vector<OpenCampaign> others = open_beside(open, options.others);
   std::vector<FigureSource> sources{{open.database, open.database.campaign().name}};
-  for (OpenCampaign& other : others) {
-    const std::string name = other.database.campaign().name;
-    if (std::ranges::any_of(sources, [&](const FigureSource& one) { return one.name == name; }))
-      throw InputError("", "--with", name, "must be a campaign of another name: names tell the curves apart");
-    sources.push_back({other.database, name});
-  }
+  for (OpenCampaign& other : others) sources.push_back({other.database, other.database.campaign().name});
   return figure_data_of_several(sources, options.choice);
 }
 

@@ -8,6 +8,7 @@
 #include "runner/command_line/print.h"
 #include "runner/command_line/verb_set.h"
 #include "runner/command_line/watch.h"
+#include "runner/page/joined_page.h"
 #include "runner/page/page_html.h"
 #include "runner/page/supplement.h"
 #include "runner/reports/explain.h"
@@ -238,13 +239,24 @@ the machine which of them have ended. May be used while the campaign runs.
   add_option(verb, "--seed SEED", options->seed, "Print this seed only")->check(CLI::NonNegativeNumber);
 }
 
-void write_report(const ViewOptions& options) {
+struct ReportOptions : ViewOptions {
+  std::vector<std::filesystem::path> others;  // campaigns on the same page
+};
+
+void write_report(const ReportOptions& options) {
   OpenCampaign open = open_for_viewing(options.campaign, options.directory);
-  deliver(report_html(open.database, current_owner(open.directory)), options.output, options.quiet);
+  if (options.others.empty()) {
+    deliver(report_html(open.database, current_owner(open.directory)), options.output, options.quiet);
+    return;
+  }
+  std::vector<OpenCampaign> others = open_beside(open, options.others);
+  std::vector<PageSource> sources{{open.database, open.database.campaign().name}};
+  for (OpenCampaign& other : others) sources.push_back({other.database, other.database.campaign().name});
+  deliver(page_html(joined_page(sources)), options.output, options.quiet);
 }
 
 void add_report(VerbSet& verbs) {
-  const auto [verb, options] = verbs.add<ViewOptions>(
+  const auto [verb, options] = verbs.add<ReportOptions>(
       write_report, "report", "Make one HTML page of a campaign, for a colleague or a notebook", {0, 1, 2, 6},
       R"(
 The page shows every measured quantity over any swept parameter with its intervals, the convergence of the
@@ -253,9 +265,16 @@ numbers, and the commands that reproduce them. Every chart can be saved as CSV, 
 script. The page is one file, which needs no network but a browser with JavaScript, and can be printed from
 there. A database that does not change gives the same bytes at any time.
 
+--with adds the points of another campaign with the same target, whose names then tell their curves apart.
+
   peclet report flow-curve.json --output flow-curve.html
+  # two campaigns on one page
+  peclet report rough.json --with smooth.json --output both.html
 )");
   add_campaign(verb, *options);
+  add_option(verb, "--with CAMPAIGN", options->others,
+             "Another campaign on the same page, its file or its .peclet folder; may be repeated")
+      ->allow_extra_args(false);
   add_output(verb, options->output);
   add_quiet(verb, options->quiet);
 }

@@ -4,7 +4,10 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <set>
+#include <string>
 #include <system_error>
+#include <vector>
 
 #include "contract/errors.h"
 #include "contract/named_files.h"
@@ -51,6 +54,18 @@ OpenCampaign open_for_viewing(const std::filesystem::path& given, const std::fil
     say(fmt::format(
         "note: {} may not be written by you: it is read without locks, as if no process ran the campaign\n",
         open.directory.root().string()));
+  }
+  return open;
+}
+
+std::vector<OpenCampaign> open_beside(OpenCampaign& first, const std::vector<std::filesystem::path>& others) {
+  std::vector<OpenCampaign> open;
+  std::set<std::string> names{first.database.campaign().name};
+  for (const std::filesystem::path& other : others) {
+    open.push_back(open_for_viewing(other, ""));
+    const std::string name = open.back().database.campaign().name;
+    if (!names.insert(name).second)
+      throw InputError("", "--with", name, "must be a campaign of another name: names tell the points apart");
   }
   return open;
 }

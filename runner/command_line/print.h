@@ -4,6 +4,7 @@
 #include <exception>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "runner/owner/open_campaign.h"
 
@@ -30,5 +31,9 @@ std::string message_of(const std::exception& error);
 // Opens a campaign as open_campaign(), for a verb that only reads it. Says on standard error if the database
 // is read without the locks and the log of a running campaign, because this user may not write it.
 OpenCampaign open_for_viewing(const std::filesystem::path& given, const std::filesystem::path& chosen);
+
+// Opens further campaigns that are shown with the first one. Throws InputError at --with if two have one
+// name, which tells their points apart.
+std::vector<OpenCampaign> open_beside(OpenCampaign& first, const std::vector<std::filesystem::path>& others);
 
 }  // namespace peclet::runner

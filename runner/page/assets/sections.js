@@ -4,7 +4,7 @@ const doubtsShown = (data) => [data.points.map((point) => [point.label, point.lo
   resultsShown = (data) => [data.target, data.parameters, data.quantities, data.points.map(resultShown)],
   resultShown = ({ label, state, marks, seeds, losses, endings, cpu_seconds }) =>
     [label, state, marks, seeds.wanted, seeds.wanted_ended, seeds.tested, losses, endings, cpu_seconds],
-  originShown = (data) => [data.scene, data.parameters, data.provenance, data.commands, data.document, data.points.map((point) => point.groups)];
+  originShown = (data) => [data.scene, data.parameters, data.provenance, data.commands, data.document || data.documents, data.points.map((point) => point.groups)];
 
 function resultsTable(data, sweep, host, onPick) {
   const { target } = data,
@@ -280,7 +280,7 @@ function writeOrigin(data, sweep, host) {
     shared = inOneRow(data.scene).map((key) => ({ ...key, about: Format.parameter(key) }));
   scene.append(Page.list(sceneSummary(data, sweep)));
   if (shared.length) {
-    scene.append(Page.paragraph('All points share:', 'faint'));
+    scene.append(Page.paragraph(data.documents ? 'All points of a campaign share:' : 'All points share:', 'faint'));
     new SortedTable(
       scene,
       [
@@ -310,9 +310,13 @@ function writeOrigin(data, sweep, host) {
       'faint',
     ),
   );
-  const campaign = Page.details('The campaign, as it was last run'),
-    text = JSON.stringify(data.document, null, 2),
-    file = Saving.link('JSON', `${data.campaign}.json`, 'application/json', text);
-  campaign.append(Page.element('pre', {}, text), Saving.links(file));
-  host.append(scene, provenance, again, campaign);
+  const files = data.documents || [{ name: data.campaign, document: data.document }],
+    campaigns = files.map((one) => {
+      const campaign = Page.details(`The campaign${data.documents ? ` ${one.name}` : ''}, as it was last run`),
+        text = JSON.stringify(one.document, null, 2),
+        file = Saving.link('JSON', `${one.name}.json`, 'application/json', text);
+      campaign.append(Page.element('pre', {}, text), Saving.links(file));
+      return campaign;
+    });
+  host.append(scene, provenance, again, ...campaigns);
 }

@@ -46,8 +46,9 @@ class Sweep {
     return { pointer, meaning, about: Format.parameter(parameter), numeric, cells, values };
   }
 
-  // True if the value of `other` follows from that of `axis`.
+  // True if the value of `other` follows from that of `axis`. The name of a campaign always tells curves apart.
   isInStep(other, axis) {
+    if (other.pointer === 'campaign') return false;
     const partner = new Map();
     return this.points.every((_, i) => {
       const known = partner.get(axis.cells[i]);

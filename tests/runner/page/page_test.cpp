@@ -7,10 +7,12 @@
 #include "contract/sha256.h"
 #include "runner/campaign/number_text.h"
 #include "runner/campaign/quoting.h"
+#include "runner/page/joined_page.h"
 #include "runner/page/page_data.h"
 #include "runner/page/page_html.h"
 #include "runner/reports/export.h"
 #include "runner/store/point_store.h"
+#include "tests/contract/refusal.h"
 #include "tests/runner/stored_campaign.h"
 
 namespace peclet::runner {
@@ -189,6 +191,35 @@ TEST_F(CampaignPage, ShowsEveryCriterionOfATarget) {
   const Json page = page_data(several.database(), std::nullopt);
   EXPECT_EQ(page["points"][0]["good_enough"]["pressure"], 0.5);
   EXPECT_NEAR(estimate(page, 0, "pressure")[0], 20.03, 1e-12);
+}
+
+TEST_F(CampaignPage, OfTwoCampaignsHasThePointsOfBoth) {
+  complete_widely(0);
+  StoredCampaign other(1, 4, 4, {{"pressure", Tolerance::absolute(0.5)}});
+  for (int seed = 0; seed < 4; ++seed) other.complete(0, seed, 20 + 0.01 * seed);
+  const auto both = [&] {
+    return joined_page({{campaign_.database(), "rough"}, {other.database(), "smooth"}});
+  };
+  const Json page = both(), own = data(), of_other = page_data(other.database(), std::nullopt);
+  ASSERT_EQ(page["points"].size(), 3U);
+  EXPECT_EQ(page["parameters"][0]["pointer"], "campaign");
+  EXPECT_EQ(page["points"][1]["label"], "rough: point=1");
+  EXPECT_EQ(page["points"][2]["label"], "smooth: point=0");
+  EXPECT_EQ(page["points"][2]["settings"], (Json{{"/point", 0}, {"campaign", "smooth"}}));
+  for (const char* const path : {"relative_viscosity", "pressure", "stress/total/3"}) {
+    EXPECT_EQ(estimate(page, 0, path), estimate(own, 0, path)) << path;
+    EXPECT_EQ(estimate(page, 2, path), estimate(of_other, 0, path)) << path;
+  }
+  EXPECT_EQ(page["progress"]["points"], 3);
+  EXPECT_EQ(page["progress"]["decided"], 2);
+  EXPECT_EQ(page["progress"]["states"], (Json{{"capped", 1}, {"converged", 1}, {"open", 1}}));
+  EXPECT_EQ(page["progress"]["cpu_seconds"], 16);
+  EXPECT_TRUE(says(page["target"]["text"], "smooth: ")) << page["target"];
+  EXPECT_EQ(page["documents"][1]["document"], other.database().campaign().document);
+  other.set_target({"pressure", Tolerance::absolute(0.5), 0.95});
+  EXPECT_EQ(refusal_by([&] { both(); }),
+            "--with: smooth: must have the observable of the first campaign, \"relative_viscosity\"; it has "
+            "\"pressure\"");
 }
 
 TEST_F(CampaignPage, SaysWhereItComesFromAndHowToMakeItAgain) {
