@@ -10,6 +10,7 @@
 #include "contract/durable_file.h"
 #include "contract/errors.h"
 #include "contract/json.h"
+#include "contract/key_table.h"
 #include "contract/sha256.h"
 #include "engine/realisation/packing.h"
 #include "engine/realisation/placed_spheres.h"
@@ -74,6 +75,15 @@ std::string list_of(const std::vector<std::string>& files) {
   return lines;
 }
 
+// Throws InputError for a file that is there and is no such list, because it would be lost.
+void require_list(const std::string& path) {
+  if (!fs::exists(path)) return;
+  const std::string text = fs::is_regular_file(path) ? read_file(path) : "";
+  if (!is_hash(text.substr(0, 64)))
+    throw InputError("--list", "", path,
+                     "must be a new file or a list, and is another file, which would be lost");
+}
+
 }  // namespace
 
 StartAnswer start_block(const StartOptions& options) {
@@ -91,6 +101,7 @@ StartAnswer start_block(const StartOptions& options) {
         fmt::format("must have the radii and the cell of {}, and has others", options.files.front()));
   }
   const bool is_list = !options.list.empty();
+  if (is_list) require_list(options.list);
   if (is_list) write_durably(options.list, list_of(options.files));
   const std::string file = is_list ? options.list : options.files.front();
 

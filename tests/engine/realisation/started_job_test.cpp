@@ -105,6 +105,8 @@ TEST_F(StartedJob, HasAScenesKeysFromTheVerbStart) {
   }
   const std::vector<std::string> files = {path("a.final.xyz"), path("a.trajectory.gsd")};
   EXPECT_TRUE(contains(refusal_by([&] { start_block({.files = files, .list = ""}); }), "--list: is missing"));
+  EXPECT_TRUE(
+      contains(refusal_by([&] { start_block({.files = files, .list = files[1]}); }), "would be lost"));
   const StartAnswer several = start_block({.files = files, .list = path("starts")});
   EXPECT_EQ(read_file(path("starts")), line("a.final.xyz") + line("a.trajectory.gsd"));
   EXPECT_EQ(refusal(scene_of_block(several), 1), "") << several.block;
