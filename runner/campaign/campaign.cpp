@@ -211,7 +211,7 @@ std::vector<Curve> curves_of(const Json& document, const Target& target, const s
     pointer = fmt::format("/target/also/{}/curve/over", found - target.also.begin());
   }
   const auto curves_along = [&](const Json& sweep) {
-    return curves_over(target.over(), read_sweep(sweep, file), file, pointer);
+    return curves_over(target.over(), document.at("scene"), read_sweep(sweep, file), file, pointer);
   };
   std::vector<Curve> curves = curves_along(document.at("sweep"));  // numbers, to which values can be added
   return chosen_values(document).empty() ? curves : curves_along(whole_sweep(document, target));

@@ -26,6 +26,9 @@ constexpr std::size_t fewest_of_curve = 4;
 struct Curve {
   std::vector<std::size_t> points;  // places in the sweep, in the order of the rows
   std::vector<double> axis;         // value of each point
+  // Number of spheres of each point, /particles/count of its scene, which makes a step dear; 1 without the
+  // key. Empty: alike.
+  std::vector<double> spheres{};
 };
 
 // The defaults of a campaign's observable and of the confidence of its intervals.

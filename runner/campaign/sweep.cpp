@@ -346,8 +346,30 @@ std::vector<StatePoint> sweep_points(const Json& scene, const std::vector<SweepE
   return points;
 }
 
-std::vector<Curve> curves_over(const std::string& over, const std::vector<SweepEntry>& sweep,
-                               const std::string& file, const std::string& pointer) {
+namespace {
+
+// Returns the number of spheres of the point with these rows of the sweep, 1 if its scene has none.
+double spheres_of(const Json& scene, const std::vector<SweepEntry>& sweep, const GridIndex& index) {
+  const auto count_in = [](const Json& particles) {
+    return particles.is_object() ? particles.value("count", Json()) : Json();
+  };
+  Json count = scene.is_object() ? count_in(scene.value("particles", Json())) : Json();
+  for (std::size_t entry = 0; entry < sweep.size(); ++entry) {
+    const std::vector<std::string>& pointers = sweep[entry].pointers;
+    for (std::size_t i = 0; i < pointers.size(); ++i) {
+      const Json& value = sweep[entry].rows[index[entry]][i];
+      if (pointers[i] == "/particles/count") count = value;
+      if (pointers[i] == "/particles") count = count_in(value);
+    }
+  }
+  return count.is_number() ? count.get<double>() : 1;
+}
+
+}  // namespace
+
+std::vector<Curve> curves_over(const std::string& over, const Json& scene,
+                               const std::vector<SweepEntry>& sweep, const std::string& file,
+                               const std::string& pointer) {
   std::size_t entry = 0, column = 0;
   for (; entry < sweep.size(); ++entry) {
     const std::vector<std::string>& pointers = sweep[entry].pointers;
@@ -377,10 +399,12 @@ std::vector<Curve> curves_over(const std::string& over, const std::vector<SweepE
   for (const SweepEntry& each : sweep) points *= each.rows.size();
   for (std::size_t point = 0; point < points; ++point) {
     GridIndex index = grid_index(sweep, point);
+    const double spheres = spheres_of(scene, sweep, index);
     const std::size_t row = std::exchange(index[entry], 0);
     Curve& curve = curves[index];
     curve.points.push_back(point);
     curve.axis.push_back(axis[row]);
+    curve.spheres.push_back(spheres);
   }
   std::vector<Curve> all;
   all.reserve(curves.size());

@@ -34,10 +34,12 @@ void set_at(Json& scene, const std::string& pointer, const Json& value);
 std::vector<StatePoint> sweep_points(const Json& scene, const std::vector<SweepEntry>& sweep,
                                      const std::string& name, const std::string& file);
 
-// Returns the curves along the entry of the sweep that sets `over`. Throws InputError at `pointer` if no
-// entry sets it, for values that are no numbers or not different, and for fewer than fewest_of_curve.
-std::vector<Curve> curves_over(const std::string& over, const std::vector<SweepEntry>& sweep,
-                               const std::string& file, const std::string& pointer);
+// Returns the curves along the entry of the sweep that sets `over`, for points made of this scene. Throws
+// InputError at `pointer` if no entry sets it, for values that are no numbers or not different, and for fewer
+// than fewest_of_curve.
+std::vector<Curve> curves_over(const std::string& over, const Json& scene,
+                               const std::vector<SweepEntry>& sweep, const std::string& file,
+                               const std::string& pointer);
 
 // Returns the sweep of a document with one more value of `over`, which an entry must set to numbers. The
 // other pointers of the entry are set as in the row with the nearest value, on a logarithmic axis if all

@@ -57,7 +57,7 @@ std::vector<Place> places_of(std::vector<KnownOnCurve> points, bool is_even) {
 // them contradicts the curve.
 std::vector<KnownOnCurve> known_to(const Scheduler& scheduler, const Curve& curve, std::size_t place) {
   std::vector<KnownOnCurve> known;
-  bool has_steps = true;
+  bool is_known = true;
   for (std::size_t k = 0; k < curve.points.size(); ++k) {
     const int point = static_cast<int>(curve.points[k]);
     if (scheduler.stop_tests(point).empty()) continue;
@@ -65,13 +65,13 @@ std::vector<KnownOnCurve> known_to(const Scheduler& scheduler, const Curve& curv
     const ObservableStopTest& one = last.each[place];
     if (one.curve->refused) return {};
     if (!CurveFit::takes(one.estimate)) continue;
-    const double steps = scheduler.steps(point);
-    has_steps = has_steps && steps > 0;
+    const double work = scheduler.work_on_curve(point);
+    is_known = is_known && work > 0;
     known.push_back({{curve.axis[k], one.estimate.mean, one.estimate.standard_error, one.estimate.count},
                      last.seeds,
-                     steps});
+                     work});
   }
-  if (!has_steps) std::ranges::for_each(known, [](KnownOnCurve& point) { point.cost = 1; });
+  if (!is_known) std::ranges::for_each(known, [](KnownOnCurve& point) { point.cost = 1; });
   return known;
 }
 

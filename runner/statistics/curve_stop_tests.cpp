@@ -28,8 +28,8 @@ double mean_steps(const std::vector<std::optional<Outcome>>& outcomes, int seeds
 struct CurveStopTests::Round {
   std::vector<std::size_t> member{};  // at each place of the outlook
   std::size_t observable = 0;
-  // For each place the one whose next stop test lowers the variance there most per step. Absent if too few
-  // points are known, and if the curve is refused.
+  // For each place the one whose next stop test lowers the variance there most for its work. Absent if too
+  // few points are known, and if the curve is refused.
   std::optional<std::vector<std::size_t>> best{};
 
   // Returns the member whose next stop test is best for an unmet one.
@@ -39,11 +39,11 @@ struct CurveStopTests::Round {
   }
 };
 
-CurveStopTests::CurveStopTests(std::vector<double> axis, Target target, int minimum, int maximum)
-    : axis_(std::move(axis)),
+CurveStopTests::CurveStopTests(Curve curve, Target target, int minimum, int maximum)
+    : curve_(std::move(curve)),
       target_(std::move(target)),
       rule_(target_, minimum, maximum),
-      members_(axis_.size()) {}
+      members_(curve_.axis.size()) {}
 
 std::vector<std::size_t> CurveStopTests::advance(const std::vector<Member>& members) {
   std::vector<char> has_changed(members_.size(), 0);
@@ -57,7 +57,8 @@ std::vector<std::size_t> CurveStopTests::advance(const std::vector<Member>& memb
         is_complete = is_complete && members[i].cancelled;
         continue;
       }
-      if (state.stop_tests.empty()) state.steps = mean_steps(*members[i].outcomes, made->seeds);
+      const double spheres = curve_.spheres.empty() ? 1 : curve_.spheres[i];
+      if (state.stop_tests.empty()) state.work = mean_steps(*members[i].outcomes, made->seeds) * spheres;
       state.own = made->verdict;
       made->verdict = state.own == Verdict::failed ? Verdict::failed : Verdict::more;
       made->near_maximum = false;
@@ -98,7 +99,7 @@ CurveStopTests::Round CurveStopTests::estimate(std::size_t place, const Toleranc
     one.curve.emplace();
     if (!CurveFit::takes(one.estimate)) continue;
     known.push_back(i);
-    data.push_back({axis_[i], one.estimate.mean, one.estimate.standard_error, one.estimate.count});
+    data.push_back({curve_.axis[i], one.estimate.mean, one.estimate.standard_error, one.estimate.count});
   }
   std::optional<CurveFit::Through> through = CurveFit::through(data, tolerance.is_even);
   if (!through) return round;
@@ -164,8 +165,8 @@ void CurveStopTests::end_round(const std::vector<Member>& members) {
 
 std::vector<std::optional<CurveFit::Outlook::Offer>> CurveStopTests::offers(
     const Round& round, const std::vector<Member>& members) const {
-  const bool has_steps =
-      std::ranges::all_of(round.member, [this](std::size_t i) { return members_[i].steps > 0; });
+  const bool is_known =
+      std::ranges::all_of(round.member, [this](std::size_t i) { return members_[i].work > 0; });
   std::vector<std::optional<CurveFit::Outlook::Offer>> offers;
   for (const std::size_t i : round.member) {
     const State& state = members_[i];
@@ -175,7 +176,7 @@ std::vector<std::optional<CurveFit::Outlook::Offer>> CurveStopTests::offers(
     const Estimate& estimate = last.each[round.observable].estimate;
     const double error = estimate.standard_error / estimate.mean;
     const int more = next_seeds(state) - last.seeds;
-    offers.back() = {error * error * estimate.count / more, more * (has_steps ? state.steps : 1)};
+    offers.back() = {error * error * estimate.count / more, more * (is_known ? state.work : 1)};
   }
   return offers;
 }

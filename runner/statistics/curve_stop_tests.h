@@ -5,8 +5,8 @@
 // by the point's own interval or, for a criterion with a curve, by the band; a curve that a point contradicts
 // decides nothing. If each point is met or at the maximum, all of them are decided. Otherwise some points
 // make their next stop test in the next round: for each unmet point the one, itself or another, whose next
-// stop test lowers the variance of the band there most per step of an engine. If the curve is refused or the
-// criterion has none, it is the unmet point itself.
+// stop test lowers the variance of the band there most per step and sphere of an engine. If the curve is
+// refused or the criterion has none, it is the unmet point itself.
 //
 // The rounds depend on the outcomes alone, and on the points that are cancelled: these are not waited for. A
 // curve of a single round, with a fixed number of seeds, is decided by it.
@@ -29,8 +29,7 @@ class CurveStopTests {
     bool cancelled = false;
   };
 
-  // `axis` has the place of each point along the curve.
-  CurveStopTests(std::vector<double> axis, Target target, int minimum, int maximum);
+  CurveStopTests(Curve curve, Target target, int minimum, int maximum);
 
   // Makes all stop tests that the outcomes allow beyond those made. Returns the points with a stop test that
   // is new or has changed.
@@ -38,8 +37,8 @@ class CurveStopTests {
 
   // Returns the stop tests of a point. The last one decides unless its verdict is `more`.
   const std::vector<StopTest>& stop_tests(std::size_t member) const { return members_[member].stop_tests; }
-  // Returns the mean steps of the realisations of a point's first stop test; 0 if unknown.
-  double steps(std::size_t member) const { return members_[member].steps; }
+  // Returns the mean steps of the realisations of a point's first stop test times its spheres; 0 if unknown.
+  double work(std::size_t member) const { return members_[member].work; }
   // True if the point has made its stop test of this round, and others have not.
   bool is_waiting(std::size_t member) const { return !is_decided_ && !members_[member].is_next; }
 
@@ -48,7 +47,7 @@ class CurveStopTests {
     std::vector<StopTest> stop_tests{};
     Verdict own = Verdict::more;  // of the last stop test, by the point's own intervals
     bool is_next = true;          // makes its next stop test in this round
-    double steps = 0;             // as steps()
+    double work = 0;              // as work()
   };
   // One criterion with a curve, at the end of a round.
   struct Round;
@@ -59,12 +58,12 @@ class CurveStopTests {
   std::vector<std::size_t> places_of_curves() const;
   void end_round(const std::vector<Member>& members);
   Round estimate(std::size_t place, const Tolerance& tolerance, const std::vector<Member>& members);
-  // Returns what the next stop test of each member of a round would tell, and its steps.
+  // Returns what the next stop test of each member of a round would tell, and its work.
   std::vector<std::optional<CurveFit::Outlook::Offer>> offers(const Round& round,
                                                               const std::vector<Member>& members) const;
   int next_seeds(const State& state) const { return rule_.schedule()[state.stop_tests.size()]; }
 
-  std::vector<double> axis_;
+  Curve curve_;
   Target target_;
   StopRule rule_;
   std::vector<State> members_;

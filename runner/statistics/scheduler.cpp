@@ -61,8 +61,8 @@ Scheduler::Scheduler(std::vector<std::vector<std::optional<Outcome>>> outcomes, 
       points_[place].member = places.size();
       places.push_back(static_cast<int>(place));
     }
-    CurveStopTests stop_tests(curve.axis, target_, minimum_, maximum_);
-    curves_.push_back({std::move(places), std::move(curve.axis), std::move(stop_tests)});
+    CurveStopTests stop_tests(curve, target_, minimum_, maximum_);
+    curves_.push_back({std::move(places), std::move(curve), std::move(stop_tests)});
   }
   for (int number = 0; number < points(); ++number) stop_test_at(number, false);
 }
@@ -91,7 +91,7 @@ std::vector<Change> Scheduler::stop_test_at(int number, bool again) {
 }
 
 std::vector<Change> Scheduler::stop_test_at(JointStopTests& curve, bool again) {
-  if (again) curve.stop_tests = CurveStopTests(curve.axis, target_, minimum_, maximum_);
+  if (again) curve.stop_tests = CurveStopTests(curve.along, target_, minimum_, maximum_);
   std::vector<CurveStopTests::Member> members;
   for (const int number : curve.points)
     members.push_back({&point_at(number).outcomes, point_at(number).cancelled});

@@ -103,10 +103,10 @@ class Scheduler {
   bool cancelled(int point) const { return point_at(point).cancelled; }
   // True if the point needs no seeds until other points of its curve have made their stop tests.
   bool is_waiting(int point) const { return is_waiting(point_at(point)); }
-  // Returns the steps of a realisation of a point on a curve; 0 if unknown.
-  double steps(int point) const {
+  // Returns the steps times the spheres of a realisation of a point on a curve; 0 if unknown.
+  double work_on_curve(int point) const {
     const Point& about = point_at(point);
-    return curves_[about.curve.value()].stop_tests.steps(about.member);
+    return curves_[about.curve.value()].stop_tests.work(about.member);
   }
   // Returns true if every point is decided or cancelled, or all its seeds below the ceiling have ended.
   bool finished() const;
@@ -150,7 +150,7 @@ class Scheduler {
   // A curve, and the stop tests of its points.
   struct JointStopTests {
     std::vector<int> points;
-    std::vector<double> axis;
+    Curve along;
     CurveStopTests stop_tests;
   };
   const Point& point_at(int point) const { return points_[static_cast<std::size_t>(point)]; }

@@ -267,7 +267,7 @@ std::vector<StopTest> StopTestCheck::replayed(const PointRecord& point) {
     for (const std::size_t number : curve.points) outcomes.push_back(database_.outcomes(points[number].id));
     for (std::size_t i = 0; i < outcomes.size(); ++i)
       members.push_back({&outcomes[i], points[curve.points[i]].cancelled});
-    CurveStopTests made(curve.axis, target_.target, target_.minimum, target_.maximum);
+    CurveStopTests made(curve, target_.target, target_.minimum, target_.maximum);
     made.advance(members);
     for (std::size_t i = 0; i < members.size(); ++i)
       of_curves_[static_cast<int>(curve.points[i])] = made.stop_tests(i);

@@ -99,12 +99,26 @@ TEST(Sweep, HasACurveForEachValueOfTheOtherEntries) {
       {"set": "/a", "values": [10, 20]}, {"set": ["/x", "/w"], "values": [[4, 0], [1, 0], [2, 1], [3, 1]]},
       {"set": "/b", "values": ["p", "q"]}])"),
                                                    "f");
-  const std::vector<Curve> curves = curves_over("/x", sweep, "f", "/target/curve/over");
+  const std::vector<Curve> curves = curves_over("/x", Json::object(), sweep, "f", "/target/curve/over");
   ASSERT_EQ(curves.size(), 4);
   EXPECT_EQ(curves[0].points, (std::vector<std::size_t>{0, 2, 4, 6}));
   EXPECT_EQ(curves[0].axis, (std::vector<double>{4, 1, 2, 3}));
   EXPECT_EQ(curves[1].points, (std::vector<std::size_t>{1, 3, 5, 7}));
   EXPECT_EQ(curves[3].points, (std::vector<std::size_t>{9, 11, 13, 15}));
+  EXPECT_EQ(curves[0].spheres, (std::vector<double>{1, 1, 1, 1}));
+}
+
+TEST(Sweep, KnowsTheSpheresOfThePointsOfACurve) {
+  const Json base = {{"particles", {{"count", 50}}}};
+  const auto spheres = [&](const char* text) {
+    return curves_over("/x", base, read_sweep(Json::parse(text), "f"), "f", "/target/curve/over")[0].spheres;
+  };
+  EXPECT_EQ(spheres(R"([{"set": "/x", "values": [1, 2, 3, 4]}])"), (std::vector<double>{50, 50, 50, 50}));
+  EXPECT_EQ(spheres(R"([{"set": ["/x", "/particles/count"], "values": [[1, 9], [2, 8], [3, 7], [4, 6]]}])"),
+            (std::vector<double>{9, 8, 7, 6}));
+  EXPECT_EQ(
+      spheres(R"([{"set": "/x", "values": [1, 2, 3, 4]}, {"set": "/particles", "values": [{"count": 5}]}])"),
+      (std::vector<double>{5, 5, 5, 5}));
 }
 
 TEST(Sweep, LongValuesAreLabelledByTheirPlace) {

@@ -46,8 +46,9 @@ std::vector<CurveStopTests::Member> members(const std::vector<Outcomes>& all) {
   return found;
 }
 
-CurveStopTests made(const std::vector<Outcomes>& all, const Target& target, int most = maximum) {
-  CurveStopTests stop_tests(axis, target, minimum, most);
+CurveStopTests made(const std::vector<Outcomes>& all, const Target& target, int most = maximum,
+                    const std::vector<double>& spheres = {}) {
+  CurveStopTests stop_tests({{}, axis, spheres}, target, minimum, most);
   stop_tests.advance(members(all));
   return stop_tests;
 }
@@ -79,7 +80,7 @@ TEST(CurveStopTests, ABandDecidesBeforeTheIntervalsOfThePoints) {
 TEST(CurveStopTests, ThoseOfARoundWaitForOneAnother) {
   std::vector<Outcomes> all = curve(0.15);
   const Outcomes late = std::exchange(all[2], {});
-  CurveStopTests stop_tests(axis, along_axis(0.05), minimum, maximum);
+  CurveStopTests stop_tests({{}, axis}, along_axis(0.05), minimum, maximum);
   EXPECT_EQ(stop_tests.advance(members(all)), (std::vector<std::size_t>{0, 1, 3, 4, 5}));
   EXPECT_TRUE(stop_tests.is_waiting(0));
   EXPECT_FALSE(stop_tests.is_waiting(2));
@@ -97,7 +98,7 @@ TEST(CurveStopTests, ACancelledPointIsNotWaitedFor) {
   all[2].clear();
   std::vector<CurveStopTests::Member> without = members(all);
   without[2].cancelled = true;
-  CurveStopTests stop_tests(axis, along_axis(0.05), minimum, maximum);
+  CurveStopTests stop_tests({{}, axis}, along_axis(0.05), minimum, maximum);
   stop_tests.advance(without);
   EXPECT_TRUE(stop_tests.stop_tests(2).empty());
   EXPECT_EQ(last(stop_tests, 0).verdict, Verdict::converged);
@@ -165,21 +166,23 @@ TEST(CurveStopTests, OtherCriteriaMustBeMetToo) {
   EXPECT_EQ(last(joint, 2).verdict, Verdict::converged);
 }
 
-// Where a neighbour's seeds take a thousandth of the steps, it makes more stop tests than its own mean needs.
+// Where a neighbour's seeds take a thousandth of the steps, or have a thousandth of the spheres, it makes
+// more stop tests than its own mean needs.
 TEST(CurveStopTests, CheapNeighboursHelp) {
-  const auto seeds_at = [](double steps) {
+  const auto seeds_at = [](double steps, double spheres = 1) {
     std::vector<Outcomes> all;
     for (std::size_t i = 0; i < axis.size(); ++i) {
       all.push_back(outcomes(i, 5, i == 3 ? 0.4 : 0.2));
       for (std::optional<Outcome>& outcome : all.back()) outcome->steps = i == 3 ? steps : 1;
     }
-    const CurveStopTests joint = made(all, along_axis(0.05));
+    const CurveStopTests joint = made(all, along_axis(0.05), maximum, {1, 1, 1, spheres, 1, 1});
     return std::pair(last(joint, 3).seeds, last(joint, 2).seeds + last(joint, 4).seeds);
   };
   const auto [dear, beside_dear] = seeds_at(1000);
   const auto [even, beside_even] = seeds_at(1);
   EXPECT_LE(dear, even);
   EXPECT_GT(beside_dear, beside_even);
+  EXPECT_EQ(seeds_at(1, 1000), std::pair(dear, beside_dear));
 }
 
 // Returns what is stored of the stop tests of all points.

@@ -122,7 +122,7 @@ std::vector<KnownOnCurve> run(const Truth& truth, const std::vector<double>& gri
                               Source& source) {
   Target target{"viscosity", tolerance, 0.95};
   target.tolerance.over = "/axis";
-  CurveStopTests stop_tests(grid, target, minimum, maximum);
+  CurveStopTests stop_tests({{}, grid}, target, minimum, maximum);
   for (int most = minimum;; most = std::min(maximum, 2 * most)) {
     std::vector<std::vector<std::optional<Outcome>>> outcomes;
     for (const double axis : grid) outcomes.push_back(source.outcomes(axis, most));
