@@ -448,7 +448,7 @@ class CardSteps {
                                         .relative = squared_tolerance,
                                         .enough = 0},
                                        report);
-    report.residual = found.goal > 0 ? scene_.tolerance * __builtin_sqrt(found.squared / found.goal) : 0;
+    report.residual = relative_residual(scene_.tolerance, found.squared, found.goal);
     return found.finite;
   }
 

@@ -30,6 +30,12 @@ constexpr double far_residual = 7;
 // number in single precision.
 constexpr double no_motion = 0x1p-126;
 
+// Returns the relative residual of a linear system that was solved to this tolerance, which allowed the
+// squared residual `allowed`. Where few spheres are solved exactly, rounding leaves sums of squares below 0.
+inline double relative_residual(double tolerance, double squared, double allowed) {
+  return allowed > 0 ? tolerance * __builtin_sqrt((squared < 0 ? 0 : squared) / allowed) : 0;
+}
+
 // Factor of the tolerance of the predicted velocities of a step with noise. They matter only by the place to
 // which they lead.
 constexpr double factor_of_prediction = 5;

@@ -117,7 +117,7 @@ bool VelocitySolver::correct(System& system, double target, StepReport& report) 
   });
   begun_.reset();
   report.solver_iterations += solved.iterations;
-  report.solver_residual = target > 0 ? tolerance_ * std::sqrt(solved.squared_residual / target) : 0;
+  report.solver_residual = relative_residual(tolerance_, solved.squared_residual, target);
   return std::isfinite(solved.squared_residual);
 }
 

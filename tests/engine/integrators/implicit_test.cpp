@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "engine/flow/waves.h"
+#include "engine/integrators/implicit_rules.h"
 #include "engine/integrators/midpoint.h"
 #include "engine/integrators/noisy_midpoint.h"
 #include "engine/integrators/stability.h"
@@ -213,6 +215,14 @@ TEST(Implicit, SaysWhatItsEquationsAreLeftWith) {
   EXPECT_GT(report.solver_iterations, 0);
   EXPECT_GT(report.solver_residual, 0);
   EXPECT_LT(report.solver_residual, 1e-2);
+}
+
+// Two spheres are solved exactly, and rounding decides the sign of what is left.
+TEST(Implicit, ASquaredResidualBelowZeroIsNoResidual) {
+  EXPECT_EQ(relative_residual(0.01, -1e-30, 1), 0);
+  EXPECT_DOUBLE_EQ(relative_residual(0.01, 0.25, 4), 0.0025);
+  EXPECT_EQ(relative_residual(0.01, 0.25, 0), 0);
+  EXPECT_TRUE(std::isnan(relative_residual(0.01, std::nan(""), 1)));
 }
 
 TEST(Implicit, StrainAfterNStepsIsNTimesRateAndStep) {
