@@ -355,9 +355,10 @@ Json target_hints(const Scene& scene) {
       hints[name] = fmt::format("is called {}, which {}", meant, hints[meant].get<std::string>());
   }
   if (scene.physics.flow.deformation().at_stress() != nullptr) {
-    for (const char* const name : {"apparent_viscosity", "relative_viscosity", "eta_r", "eta", "viscosity"})
+    for (const char* const name : {"apparent_viscosity", "relative_viscosity", "eta_r", "eta", "viscosity"}) {
       hints[name] =
           "follows from the mean rate at a given stress: aim at shear_rate, the same relative_tolerance";
+    }
   }
   return hints;
 }

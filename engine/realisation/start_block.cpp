@@ -70,8 +70,9 @@ Found found_in(const std::string& file, std::int64_t frame) {
 
 std::string list_of(const std::vector<std::string>& files) {
   std::string lines;
-  for (const std::string& file : files)
+  for (const std::string& file : files) {
     lines += fmt::format("{}  {}\n", sha256_of_file(file), fs::absolute(file).lexically_normal().string());
+  }
   return lines;
 }
 
@@ -79,9 +80,10 @@ std::string list_of(const std::vector<std::string>& files) {
 void require_list(const std::string& path) {
   if (!fs::exists(path)) return;
   const std::string text = fs::is_regular_file(path) ? read_file(path) : "";
-  if (!is_hash(text.substr(0, 64)))
+  if (!is_hash(text.substr(0, 64))) {
     throw InputError("--list", "", path,
                      "must be a new file or a list, and is another file, which would be lost");
+  }
 }
 
 }  // namespace
@@ -126,9 +128,10 @@ StartAnswer start_block(const StartOptions& options) {
       options.files.size() == 1 ? options.files.front()
                                 : fmt::format("each of {} files", options.files.size()),
       overlap);
-  if (options.files.size() == 1)
+  if (options.files.size() == 1) {
     answer.remarks +=
         "Without noise all seeds of one file are alike: give a file for each seed, and --list.\n";
+  }
   return answer;
 }
 

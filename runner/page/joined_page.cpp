@@ -143,6 +143,7 @@ Json joined_scene(const std::vector<Part>& parts, const Json& parameters) {
 
 Json joined_page(const std::vector<PageSource>& sources) {
   std::vector<Part> parts;
+  parts.reserve(sources.size());
   for (const PageSource& source : sources) parts.push_back(part_of(source));
   Json parameters = Json::array(
       {{{"pointer", "campaign"}, {"words", "campaign"}, {"symbol", ""}, {"unit", ""}, {"meaning", ""}}});
