@@ -1,5 +1,7 @@
 #include "contract/decimal.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
@@ -58,5 +60,7 @@ std::from_chars_result read_double_by_strtod(const char* begin, const char* end,
   value = number;
   return {stop, std::errc()};
 }
+
+double with_digits(double value, int digits) { return std::stod(fmt::format("{:.{}g}", value, digits)); }
 
 }  // namespace peclet

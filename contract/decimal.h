@@ -1,4 +1,4 @@
-// Reads doubles from decimal texts, also where the C++ library has no std::from_chars() for them (libc++).
+// Doubles and decimal digits, also where the C++ library has no std::from_chars() for doubles (libc++).
 #pragma once
 
 #include <charconv>
@@ -11,5 +11,8 @@ std::from_chars_result read_double(const char* begin, const char* end, double& v
 
 // Does what read_double() does, by strtod() and in the locale "C". It is slower than std::from_chars().
 std::from_chars_result read_double_by_strtod(const char* begin, const char* end, double& value);
+
+// Returns the double nearest to the value with this many significant digits.
+double with_digits(double value, int digits);
 
 }  // namespace peclet

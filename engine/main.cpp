@@ -268,6 +268,12 @@ int done_with(const std::string& note) {
   return ExitCode::done;
 }
 
+int done_with(const WrittenKeys& keys) {
+  fmt::print(stderr, "{}", keys.remarks);
+  fmt::print("{}", keys.block);
+  return ExitCode::done;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -395,18 +401,8 @@ int main(int argc, char** argv) {
     if (*forces_command) return forces(configuration);
     if (*trajectory_command) return done_with(convert_trajectory(conversion));
     if (*snapshot_command) return done_with(picture.frames ? draw_film(picture) : draw_picture(picture));
-    if (*sizes_command) {
-      const SizesAnswer answer = choose_sizes(sizes);
-      fmt::print(stderr, "{}", answer.remarks);
-      fmt::print("{}", answer.block);
-      return ExitCode::done;
-    }
-    if (*start_command) {
-      const StartAnswer answer = start_block(start);
-      fmt::print(stderr, "{}", answer.remarks);
-      fmt::print("{}", answer.block);
-      return ExitCode::done;
-    }
+    if (*sizes_command) return done_with(choose_sizes(sizes));
+    if (*start_command) return done_with(start_block(start));
   } catch (const InputError& error) {
     fmt::print(stderr, "peclet-engine: {}\n", error.what());
     return ExitCode::usage;

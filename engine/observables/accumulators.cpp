@@ -1,8 +1,8 @@
 #include "engine/observables/accumulators.h"
 
-#include <fmt/format.h>
-
 #include <numeric>
+
+#include "contract/decimal.h"
 
 namespace peclet::engine {
 
@@ -13,7 +13,7 @@ Json rounded(const Json& number) {
     return list;
   }
   if (!number.is_number()) return number;
-  return std::stod(fmt::format("{:.5g}", number.get<double>()));
+  return with_digits(number.get<double>(), 5);
 }
 
 BlockedMean::BlockedMean(const std::vector<std::size_t>& shape, std::size_t kept)

@@ -21,8 +21,6 @@
 namespace peclet::engine {
 namespace {
 
-bool is_near(double a, double b, double scale) { return std::abs(a - b) <= rounding_of_files * scale; }
-
 // Returns the indices of radii in increasing order; those of equal radii stay in order.
 std::vector<std::size_t> order_of(const std::vector<double>& radius) {
   std::vector<std::size_t> order(radius.size());

@@ -13,8 +13,8 @@ namespace peclet::engine {
 // Relative tolerance of lengths in files with six digits: half of the sixth digit of 1.00000.
 inline constexpr double rounding_of_files = 5e-6;
 
-// True if lengths are equal within that tolerance of the second one.
-inline bool is_same_length(double a, double b) { return std::abs(a - b) <= rounding_of_files * b; }
+// True if two lengths are equal within that tolerance of `scale`.
+inline bool is_near(double a, double b, double scale) { return std::abs(a - b) <= rounding_of_files * scale; }
 
 // The fault of a file without sizes of spheres.
 inline constexpr const char* no_sizes =

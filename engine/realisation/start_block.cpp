@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <map>
 
+#include "contract/decimal.h"
 #include "contract/durable_file.h"
 #include "contract/errors.h"
 #include "contract/json.h"
@@ -22,8 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-double with_digits(double value, int digits) { return std::stod(fmt::format("{:.{}g}", value, digits)); }
-
 // The spheres and the cell of a file, as a scene names them.
 struct Found {
   std::map<double, std::size_t> spheres;  // number of each radius
@@ -31,10 +29,11 @@ struct Found {
   double overlap = 0;  // the largest, over the smaller radius
 
   bool is_alike(const Found& other) const {
-    return spheres == other.spheres && is_same_length(edges.x, other.edges.x) &&
-           is_same_length(edges.y, other.edges.y) && is_same_length(edges.z, other.edges.z);
+    const auto is_alike = [](double one, double two) { return is_near(one, two, two); };
+    return spheres == other.spheres && is_alike(edges.x, other.edges.x) && is_alike(edges.y, other.edges.y) &&
+           is_alike(edges.z, other.edges.z);
   }
-  bool is_cube() const { return is_same_length(edges.y, edges.x); }
+  bool is_cube() const { return is_near(edges.y, edges.x, edges.x); }
 
   double volume_fraction() const {
     std::vector<double> radius;
@@ -48,9 +47,9 @@ Found found_in(const std::string& file, std::int64_t frame) {
   const Snapshot snapshot = frames.read(frames.index_of(frame));
   if (!snapshot.has_sizes) throw InputError(file, "", "", no_sizes);
   const auto& [a, b, c] = snapshot.lattice.column;
-  if (is_turned(snapshot) || !is_same_length(c.x + a.x, a.x) || !is_same_length(c.y + a.x, a.x))
+  if (is_turned(snapshot) || !is_near(c.x, 0, a.x) || !is_near(c.y, 0, a.x))
     throw InputError(file, "", "", "must have a cell sheared along x, and has another one");
-  if (!is_same_length(c.z, a.x)) {
+  if (!is_near(c.z, a.x, a.x)) {
     throw InputError(
         file, "", "",
         fmt::format("must have a cell as long along z as along x, and has {:.6g} and {:.6g}", c.z, a.x));
@@ -88,23 +87,25 @@ void require_list(const std::string& path) {
 
 }  // namespace
 
-StartAnswer start_block(const StartOptions& options) {
+WrittenKeys start_block(const StartOptions& options) {
   if (options.files.size() > 1 && options.list.empty()) {
     throw InputError("--list", "", "", "is missing: it names the list that is written of several files");
   }
   const Found first = found_in(options.files.front(), options.frame);
   double overlap = first.overlap;
-  for (const std::string& file : options.files) {
-    const Found own = &file == &options.files.front() ? first : found_in(file, options.frame);
+  for (std::size_t k = 1; k < options.files.size(); ++k) {
+    const Found own = found_in(options.files[k], options.frame);
     overlap = std::max(overlap, own.overlap);
     if (own.is_alike(first)) continue;
     throw InputError(
-        file, "", "",
+        options.files[k], "", "",
         fmt::format("must have the radii and the cell of {}, and has others", options.files.front()));
   }
   const bool is_list = !options.list.empty();
-  if (is_list) require_list(options.list);
-  if (is_list) write_durably(options.list, list_of(options.files));
+  if (is_list) {
+    require_list(options.list);
+    write_durably(options.list, list_of(options.files));
+  }
   const std::string file = is_list ? options.list : options.files.front();
 
   Json species = Json::array();
@@ -116,7 +117,7 @@ StartAnswer start_block(const StartOptions& options) {
   Json start = {{is_list ? "list" : "file", fs::absolute(file).lexically_normal().string()},
                 {"sha256", sha256_of_file(file)}};
   if (options.frame != -1) start["frame"] = options.frame;
-  StartAnswer answer;
+  WrittenKeys answer;
   answer.block = fmt::format("\"particles\": {},\n\"volume_fraction\": {},\n",
                              Json{{"count", count}, {"density", 1}, {"species", species}}.dump(),
                              Json(first.volume_fraction()).dump());

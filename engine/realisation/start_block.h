@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/scene/measured_sizes.h"
+
 namespace peclet::engine {
 
 struct StartOptions {
@@ -13,14 +15,10 @@ struct StartOptions {
   std::int64_t frame = -1;
 };
 
-struct StartAnswer {
-  std::string block, remarks;  // text for standard output, and for a person
-};
-
 // Returns the keys of a scene for these spheres: count and radii (six digits), volume fraction, height of the
 // box if it is no cube, and the start with its hash. With a list writes one, as sha256sum does. Throws
 // InputError for a file that no scene can begin with, for one whose spheres or cell are not those of the
 // first, and for several files without a list.
-StartAnswer start_block(const StartOptions& options);
+WrittenKeys start_block(const StartOptions& options);
 
 }  // namespace peclet::engine

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "contract/decimal.h"
 #include "contract/errors.h"
 #include "contract/json.h"
 #include "contract/named_files.h"
@@ -170,8 +171,6 @@ constexpr std::size_t most_choices = 12;  // number of lines that are shown
 
 double cube(double x) { return x * x * x; }
 
-double six_digits(double value) { return std::stod(fmt::format("{:.6g}", value)); }
-
 std::pair<std::size_t, std::size_t> columns_named(const std::string& name) {
   if (name.empty()) return {0, 0};
   const std::string_view text = name;
@@ -205,8 +204,8 @@ struct Written {
     const auto weight = [&](const SizeClass& one) { return one.number * (by_volume ? cube(one.radius) : 1); };
     for (const SizeClass& one : classes) sum += weight(one);
     for (const SizeClass& one : classes) {
-      radii.push_back(six_digits(one.radius));
-      shares.push_back(six_digits(100 * weight(one) / sum));
+      radii.push_back(with_digits(one.radius, 6));
+      shares.push_back(with_digits(100 * weight(one) / sum, 6));
     }
   }
 
@@ -236,7 +235,7 @@ struct Written {
       number += own;
       sum += own * radii[i];
     }
-    return std::stod(fmt::format("{:.4g}", sum / number));
+    return with_digits(sum / number, 4);
   }
 
   bool by_volume_;
@@ -266,11 +265,11 @@ std::vector<SizeClass> with_one_size_less(std::vector<SizeClass> classes) {
   return classes;
 }
 
-SizesAnswer choose_sizes(const SizesOptions& options) {
+WrittenKeys choose_sizes(const SizesOptions& options) {
   const auto columns = columns_named(options.columns);
   std::vector<SizeClass> classes =
       classes_of(measured_sizes(read_input(options.file), options.file, columns), options);
-  SizesAnswer answer;
+  WrittenKeys answer;
   answer.remarks = fmt::format("{} sizes in {}. Number of sizes, and of spheres that give one of each:\n",
                                classes.size(), options.file);
   for (std::size_t shown = 0;; classes = with_one_size_less(std::move(classes))) {

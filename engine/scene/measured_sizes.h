@@ -33,7 +33,8 @@ struct SizesOptions {
   std::size_t count = 0;  // largest number of spheres; 0: all sizes of the file are kept
 };
 
-struct SizesAnswer {
+// Keys of a scene, written for its user.
+struct WrittenKeys {
   std::string block, remarks;  // text for standard output, and for a person
 };
 
@@ -44,6 +45,6 @@ std::vector<SizeClass> with_one_size_less(std::vector<SizeClass> classes);
 // Reads the file, merges sizes until each has one of `count` spheres, and writes the species of a scene, with
 // their mean radius by number as radius of reference.
 // Throws InputError.
-SizesAnswer choose_sizes(const SizesOptions& options);
+WrittenKeys choose_sizes(const SizesOptions& options);
 
 }  // namespace peclet::engine

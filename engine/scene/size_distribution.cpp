@@ -7,6 +7,8 @@
 #include <functional>
 #include <utility>
 
+#include "contract/decimal.h"
+
 namespace peclet::engine {
 namespace {
 
@@ -75,8 +77,6 @@ std::vector<Amount> amounts_of(const SizeDistribution& distribution) {
   }
   return amounts;
 }
-
-double with_six_digits(double value) { return std::stod(fmt::format("{:.6g}", value)); }
 
 constexpr std::size_t usual_classes = 16;
 
@@ -207,7 +207,7 @@ std::vector<SizeClass> size_classes(const SizeDistribution& distribution) {
   std::vector<SizeClass> sizes;
   sizes.reserve(classes.size());
   for (const Amount& one : classes) {
-    sizes.push_back({with_six_digits(std::cbrt(one.volume / one.number)), one.number / whole.number});
+    sizes.push_back({with_digits(std::cbrt(one.volume / one.number), 6), one.number / whole.number});
   }
   return sizes;
 }

@@ -35,7 +35,7 @@ Json figure_of(const PlotOptions& options) {
   OpenCampaign open = open_for_viewing(options.campaign, options.directory);
   if (options.others.empty()) return figure_data(open.database, options.choice);
   std::vector<OpenCampaign> others = open_beside(open, options.others);
-  std::vector<FigureSource> sources{{open.database, open.database.campaign().name}};
+  std::vector<NamedCampaign> sources{{open.database, open.database.campaign().name}};
   for (OpenCampaign& other : others) sources.push_back({other.database, other.database.campaign().name});
   return figure_data_of_several(sources, options.choice);
 }

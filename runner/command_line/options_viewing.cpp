@@ -250,7 +250,7 @@ void write_report(const ReportOptions& options) {
     return;
   }
   std::vector<OpenCampaign> others = open_beside(open, options.others);
-  std::vector<PageSource> sources{{open.database, open.database.campaign().name}};
+  std::vector<NamedCampaign> sources{{open.database, open.database.campaign().name}};
   for (OpenCampaign& other : others) sources.push_back({other.database, other.database.campaign().name});
   deliver(page_html(joined_page(sources)), options.output, options.quiet);
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "contract/json.h"
+#include "runner/page/swept.h"
 #include "runner/store/database.h"
 
 namespace peclet::runner {
@@ -32,16 +33,11 @@ struct FigureChoice {
 // the axes can show no point. Throws IntegrityError.
 Json figure_data(Database& database, const FigureChoice& choice);
 
-struct FigureSource {
-  Database& database;
-  std::string name;  // of the campaign, in the figure
-};
-
 // Returns one such document of the points of several campaigns. Their names are a parameter, "campaign". A
 // parameter that one of them does not sweep has the value of its scene there, or null if the scene has none.
 // Throws as figure_data(), and InputError for campaigns without the same quantities, confidence and axis, or
 // without values on the axis.
-Json figure_data_of_several(const std::vector<FigureSource>& sources, FigureChoice choice);
+Json figure_data_of_several(const std::vector<NamedCampaign>& sources, FigureChoice choice);
 
 // Returns drawing.py with these data in it, one line for each member and each point. The last line has the
 // SHA-256 of all before it. The same data give the same bytes.

@@ -246,17 +246,13 @@ class Figure {
     const std::string pointer = parameter.at("pointer");
     sweep_.parameters.push_back(parameter);
     for (std::size_t i = 0; i < sweep_.page.points.size(); ++i) {
-      const Json& scene = sweep_.status.points[i].point.scene;
-      const bool is_key = pointer.starts_with('/') && scene.contains(Json::json_pointer(pointer));
-      sweep_.page.points[i]["settings"][pointer] = is_key ? scene.at(Json::json_pointer(pointer)) : Json();
+      sweep_.page.points[i]["settings"][pointer] = value_in(sweep_.status.points[i].point.scene, pointer);
     }
   }
 
   // Adds the name of the campaign as a parameter, by which curves of several campaigns are told apart.
   void add_name(const std::string& name) {
-    const Json parameter = {
-        {"pointer", "campaign"}, {"words", "campaign"}, {"symbol", ""}, {"unit", ""}, {"meaning", ""}};
-    sweep_.parameters.insert(sweep_.parameters.begin(), parameter);
+    sweep_.parameters.insert(sweep_.parameters.begin(), campaign_parameter());
     for (Json& point : sweep_.page.points) point["settings"]["campaign"] = name;
   }
 
@@ -471,7 +467,7 @@ bool has_parameter(const Json& list, const Json& parameter) {
 
 // Calls make(), and names the campaign in its InputError.
 template <class Make>
-auto of_campaign(const FigureSource& source, const Make& make) {
+auto of_campaign(const NamedCampaign& source, const Make& make) {
   try {
     return make();
   } catch (const InputError& fault) {
@@ -491,10 +487,10 @@ void require_axis_values(const Json& points, const std::string& over, const std:
 
 }  // namespace
 
-Json figure_data_of_several(const std::vector<FigureSource>& sources, FigureChoice choice) {
+Json figure_data_of_several(const std::vector<NamedCampaign>& sources, FigureChoice choice) {
   std::vector<std::unique_ptr<Figure>> figures;
   Json all = Json::array();  // parameters that are swept in any of the campaigns
-  for (const FigureSource& source : sources) {
+  for (const NamedCampaign& source : sources) {
     figures.push_back(of_campaign(source, [&] { return std::make_unique<Figure>(source.database, choice); }));
     for (const Json& parameter : figures.back()->parameters()) {
       if (!has_parameter(all, parameter)) all.push_back(parameter);

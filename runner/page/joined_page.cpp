@@ -9,6 +9,7 @@
 
 #include "contract/errors.h"
 #include "runner/page/page_data.h"
+#include "runner/page/swept.h"
 #include "runner/reports/status.h"
 
 namespace peclet::runner {
@@ -19,7 +20,7 @@ struct Part {
   Json page, scenes;  // the document of the campaign, and the scene of each point
 };
 
-Part part_of(const PageSource& source) {
+Part part_of(const NamedCampaign& source) {
   Part part{source.name, page_data(source.database, std::nullopt), Json::array()};
   for (const PointSummary& point : read_status(source.database, std::nullopt).points)
     part.scenes.push_back(point.point.scene);
@@ -81,12 +82,6 @@ Json joined_target(const std::vector<Part>& parts) {
   return target;
 }
 
-// Returns the value of a key of a scene; null if the scene has none.
-Json value_of(const Json& scene, const std::string& pointer) {
-  const Json::json_pointer place(pointer);
-  return scene.contains(place) ? scene.at(place) : Json();
-}
-
 // Adds the points of a campaign. `quantities` and `parameters` are those of all campaigns.
 void add_points(const Part& part, const Json& quantities, const Json& parameters, Json& points) {
   const Json& own = part.page.at("quantities");
@@ -104,7 +99,7 @@ void add_points(const Part& part, const Json& quantities, const Json& parameters
     Json& settings = point["settings"];
     for (const Json& parameter : parameters) {
       const auto pointer = parameter.at("pointer").get<std::string>();
-      if (!settings.contains(pointer)) settings[pointer] = value_of(part.scenes[i], pointer);
+      if (!settings.contains(pointer)) settings[pointer] = value_in(part.scenes[i], pointer);
     }
     settings["campaign"] = part.name;
     point["label"] = fmt::format("{}: {}", part.name, point.at("label").get<std::string>());
@@ -126,7 +121,7 @@ Json joined_scene(const std::vector<Part>& parts, const Json& parameters) {
     std::vector<std::string> texts;
     std::set<std::string> values;
     for (const Part& part : parts) {
-      const Json value = part.scenes.empty() ? Json() : value_of(part.scenes.front(), pointer);
+      const Json value = part.scenes.empty() ? Json() : value_in(part.scenes.front(), pointer);
       const std::string text = value.is_null()     ? "–"
                                : value.is_string() ? value.get<std::string>()
                                                    : value.dump();
@@ -141,12 +136,11 @@ Json joined_scene(const std::vector<Part>& parts, const Json& parameters) {
 
 }  // namespace
 
-Json joined_page(const std::vector<PageSource>& sources) {
+Json joined_page(const std::vector<NamedCampaign>& sources) {
   std::vector<Part> parts;
   parts.reserve(sources.size());
-  for (const PageSource& source : sources) parts.push_back(part_of(source));
-  Json parameters = Json::array(
-      {{{"pointer", "campaign"}, {"words", "campaign"}, {"symbol", ""}, {"unit", ""}, {"meaning", ""}}});
+  for (const NamedCampaign& source : sources) parts.push_back(part_of(source));
+  Json parameters = Json::array({campaign_parameter()});
   Json quantities = Json::array(), derived = Json::array(), meanings = Json::object(), points = Json::array(),
        warnings = Json::array(), provenance = Json::array(), documents = Json::array();
   std::vector<std::string> names, commands;

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "contract/decimal.h"
 #include "runner/page/page_data.h"
 #include "runner/statistics/cohorts.h"
 #include "runner/statistics/quantities.h"
@@ -112,7 +113,7 @@ namespace {
 // Returns the value with six digits, which are enough for a line; null if it is not finite.
 Json drawn(double value) {
   if (!std::isfinite(value)) return nullptr;
-  return std::stod(fmt::format("{:.6g}", value));
+  return with_digits(value, 6);
 }
 
 // The values of the leading observable in the order of the seeds, up to the first seed that has not ended.

@@ -134,6 +134,15 @@ const Swept& called(const std::vector<Swept>& swept, const std::string& name, co
 
 }  // namespace
 
+Json campaign_parameter() {
+  return {{"pointer", "campaign"}, {"words", "campaign"}, {"symbol", ""}, {"unit", ""}, {"meaning", ""}};
+}
+
+Json value_in(const Json& scene, const std::string& pointer) {
+  const bool is_key = pointer.starts_with('/') && scene.contains(Json::json_pointer(pointer));
+  return is_key ? scene.at(Json::json_pointer(pointer)) : Json();
+}
+
 std::vector<Swept> swept_columns(const Json& parameters, const Json& points) {
   std::vector<Swept> swept;
   for (const Json& parameter : parameters) swept.push_back(column(parameter, points));

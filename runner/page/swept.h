@@ -30,6 +30,17 @@ struct MeasuredSweep {
   std::vector<Swept> swept;  // one for each parameter; the labels of the points if nothing is swept
 };
 
+// One of several campaigns that are shown together. Their names differ.
+struct NamedCampaign {
+  Database& database;
+  std::string name;
+};
+
+// Returns the name of a campaign as a parameter, "campaign", by which points of several are told apart.
+Json campaign_parameter();
+// Returns the value of a parameter in a scene; null if it is no key of the scene, or absent.
+Json value_in(const Json& scene, const std::string& pointer);
+
 // Returns the parameters with their values at the points; the labels of the points if there is none.
 std::vector<Swept> swept_columns(const Json& parameters, const Json& points);
 

@@ -91,7 +91,7 @@ TEST_F(StartedJob, WithSpheresThatOverlapTooMuchIsNoCampaign) {
 
 // The keys that are written for a file make a scene that begins with it.
 TEST_F(StartedJob, HasAScenesKeysFromTheVerbStart) {
-  const auto scene_of_block = [&](const StartAnswer& answer) {
+  const auto scene_of_block = [&](const WrittenKeys& answer) {
     const Json block = Json::parse("{" + answer.block + "}");
     Json all = small_scene();
     all.update(block);
@@ -99,7 +99,7 @@ TEST_F(StartedJob, HasAScenesKeysFromTheVerbStart) {
     return all;
   };
   for (const char* const name : {"a.final.xyz", "a.trajectory.gsd"}) {
-    const StartAnswer answer = start_block({.files = {path(name)}, .list = "", .frame = 0});
+    const WrittenKeys answer = start_block({.files = {path(name)}, .list = "", .frame = 0});
     EXPECT_EQ(refusal(scene_of_block(answer)), "") << answer.block;
     EXPECT_TRUE(contains(answer.remarks, "60 spheres of 2 radii")) << answer.remarks;
   }
@@ -107,7 +107,7 @@ TEST_F(StartedJob, HasAScenesKeysFromTheVerbStart) {
   EXPECT_TRUE(contains(refusal_by([&] { start_block({.files = files, .list = ""}); }), "--list: is missing"));
   EXPECT_TRUE(
       contains(refusal_by([&] { start_block({.files = files, .list = files[1]}); }), "would be lost"));
-  const StartAnswer several = start_block({.files = files, .list = path("starts")});
+  const WrittenKeys several = start_block({.files = files, .list = path("starts")});
   EXPECT_EQ(read_file(path("starts")), line("a.final.xyz") + line("a.trajectory.gsd"));
   EXPECT_EQ(refusal(scene_of_block(several), 1), "") << several.block;
 }

@@ -24,7 +24,7 @@ const char* const sieves =
 
 class SizeChoice : public testing::Test {
  protected:
-  SizesAnswer answer(std::size_t count, const char* text = sieves, const char* sizes = "radius") const {
+  WrittenKeys answer(std::size_t count, const char* text = sieves, const char* sizes = "radius") const {
     write_durably(folder_ / "s.txt", text);
     return choose_sizes({.file = (folder_ / "s.txt").string(),
                          .sizes = sizes,
@@ -32,11 +32,11 @@ class SizeChoice : public testing::Test {
                          .columns = "",
                          .count = count});
   }
-  static Json distribution(const SizesAnswer& answer) {
+  static Json distribution(const WrittenKeys& answer) {
     return Json::parse("{" + answer.block + "}").at("species")[0].at("distribution");
   }
   // Returns the refusal of a scene with these species and this many spheres, or nothing.
-  static std::string fault_of(const SizesAnswer& answer, std::size_t count) {
+  static std::string fault_of(const WrittenKeys& answer, std::size_t count) {
     Json scene = small_scene();
     scene["particles"]["species"] = Json::parse("{" + answer.block + "}").at("species");
     scene["particles"]["count"] = count;
@@ -51,7 +51,7 @@ class SizeChoice : public testing::Test {
 };
 
 TEST_F(SizeChoice, OfAllSizesSaysTheCountThatAScenePasses) {
-  const SizesAnswer all = answer(0);
+  const WrittenKeys all = answer(0);
   EXPECT_EQ(distribution(all).at("radii").size(), 14U);
   std::size_t size = 0, spheres = 0;
   std::sscanf(all.remarks.c_str() + all.remarks.find('\n'), "%zu %zu", &size, &spheres);
@@ -68,7 +68,7 @@ TEST_F(SizeChoice, OfAllSizesSaysTheCountThatAScenePasses) {
 
 TEST_F(SizeChoice, MergesThinSizesUntilEachHasASphere) {
   for (const std::size_t count : {1U, 20U, 300U, 1000U}) {
-    const SizesAnswer some = answer(count);
+    const WrittenKeys some = answer(count);
     // Few spheres make too small a box for a scene; one size exists at any count.
     EXPECT_EQ(fault_of(some, count == 1 ? 60 : count), "") << some.block;
     // Number and volume of all spheres are those of the table: the mean of a^-3 over the volume, inverted.

@@ -60,7 +60,7 @@ Record judge(int campaigns, int pilot, double spread, double tolerance, unsigned
 
 // About 43 seeds are needed. With 600 campaigns the share that a range of 95 % holds is below 91 % with a
 // probability of 1e-5 (4.5 standard errors). It is more than 95 % because stop tests are discrete: 96 to 98 %
-// after a pilot of four, 98 to 99.7 % after one of eight, in twenty populations. A range that always holds
+// after a pilot of four, 98 to 99.7 % after one of eight, with the seeds 1 to 20. A range that always holds
 // fails after four. The likely number is a median: half of the campaigns or more do not end above it, and
 // half or more not below; 41 % is 4.5 standard errors less. The seeds are fixed.
 TEST(Prediction, RangeAndMedianHoldTheDecidingStopTestAsOftenAsTheySay) {
