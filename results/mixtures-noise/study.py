@@ -7,8 +7,8 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.compositions import ALIKE, ALIKE_NOISE, MIXTURE_SCENE, NOISE, STIFFNESS, THERMAL_ENERGY, colloids_added
-from studies.compositions import composition_row, grains_added, mean_peclet, setting_of, windows
+from studies.compositions import ALIKE, ALIKE_NOISE, MIXTURE_SCENE, NOISE, STIFFNESS, THERMAL_ENERGY, alike
+from studies.compositions import colloids_added, composition_row, grains_added, mean_peclet, setting_of, windows
 from studies.driver import BLUE, Check, Figure, Finding, GREEN, GREY, ORANGE, PURPLE, RED, Statement, difference
 from studies.driver import estimate, in_brownian_times, log_minimum, log_of_rise, log_of_share, logarithm, main, merged
 from studies.driver import number, over, place_of_largest, propagated, propagated_lists, quotient, read_numbers
@@ -323,8 +323,7 @@ def checks(table):
         for p in (*NUMBERS, 1e4)
     ]
     mean = propagated(ratios, lambda values: math.exp(sum(values) / len(values)))
-    text = "φ = 0.55: η_r of grains alone at Pe_g over that of colloids alone at the same Pe_c, mean of seven"
-    yield Statement(text, "L5.2b", *mean, 0.95, 1.05)
+    yield alike("φ = 0.55: η_r of grains alone over that of colloids alone, mean of seven", "L5.2b", mean, (1, 0))
     base = table.viscosity("colloids-added", 0.7, 1)
     more = quotient(table.viscosity("size", 0.7, 1), base)
     yield Check("α = 0.7, Pe_c = 1: η_r of 4000 spheres over that of 2000", "size", *more, 0.9, 1.1, DEGREES)

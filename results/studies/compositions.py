@@ -8,6 +8,7 @@ import numpy as np
 from studies.estimates import difference
 from studies.published import gap_of, linear_mixture, rods
 from studies.scenes import REFERENCE_SCENE, merged
+from studies.verdicts import Statement
 
 COLLOIDS, GRAINS = (1.0, 1.4), (5.0, 7.0)
 
@@ -97,6 +98,16 @@ def windows(alpha, peclet):
     slow = math.sqrt(125 * peclet) if alpha == 1 else max(math.sqrt(peclet), 0.5 if alpha else 0)
     before = round(min(1, slow), 2)
     return {"/duration/equilibration/strain": before, "/duration/production/strain": 1.5 * before}
+
+
+def alike(text, source, one, other):
+    """Returns the statement that a number of one group alone is that of the other alone, in standard errors.
+
+    They are one suspension in two units, in which steps are the same bit by bit (tests/physics/units_test), so that
+    only their random numbers differ.
+    """
+    value, error = difference(one, other)
+    return Statement(f"{text}, in standard errors", source, value / error, 0, -3, 3)
 
 
 @functools.cache
