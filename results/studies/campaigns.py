@@ -121,8 +121,11 @@ class Program:
         return self._carry_out(path.stem, shutil.copy(path, self.folder))
 
     def _carry_out(self, name, path, options=()):
-        # Exit code 3: some points lost seeds, which studies accept.
+        # Exit code 3: some points lost seeds. Studies accept those that the engine ended, and no others.
         carry_out([self.peclet, "run", path, "--quiet", *options], allowed=(0, 3))
+        for point in json.loads(ask(self.peclet, "status", path, "--json"))["points"]:
+            if point["seeds"]["quarantined"]:
+                sys.exit(f"{path}: {point['label']}: seeds were given up: {point['loss_reasons']}")
         export = json.loads(ask(self.peclet, "export", path))
         for engine in export["engines"].values():
             self._note(engine)
