@@ -667,6 +667,16 @@ def set_ticks(axis, log, ends):
     axis.set_major_formatter(ticker.FuncFormatter(lambda value, _: plain_number(value)))
 
 
+def move_series(figure, drawn):
+    """Numbers the series of a figure of one panel from `drawn` on, for other colours and marks; returns how many."""
+    parts = [one for of in figure["panels"][0].values() if isinstance(of, list) for one in of]
+    numbered = [one for one in [*parts, *figure.get("legend", [])] if isinstance(one, dict) and "series" in one]
+    count = 1 + max((one["series"] for one in numbered), default=-1)
+    for one in {id(one): one for one in numbered}.values():
+        one["series"] += drawn
+    return count
+
+
 def legend_of(figure):
     """Returns matplotlib's legend handles for the series, kinds of marks, and bands of a figure."""
     from matplotlib.lines import Line2D

@@ -6,7 +6,7 @@ import json
 import os
 
 from peclet.dataset import dataset_of
-from peclet.drawing import cure_for, draw_panel, figure_of, legend_of, plain
+from peclet.drawing import cure_for, draw_panel, figure_of, legend_of, move_series, plain
 from peclet.program import PecletError, ask
 from peclet.table import Table, cell_of
 
@@ -367,7 +367,8 @@ class Results:
                   such as "shear_rate"; by default the parameter with most values. Values that are words, such as
                   "auto", are placed side by side
         by        name of another swept parameter, with a curve for each value; by default all others that vary
-        axes      matplotlib's Axes to draw in; by default new ones
+        axes      matplotlib's Axes to draw in; by default new ones. Curves get other colours and marks than those of
+                  earlier calls
         label     name of the curve in the legend, if there is a single one
         log       logarithmic axes: "", "x", "y" or "xy"; by default chosen by the values
         where     values of swept parameters by name, a dictionary; restricts the points
@@ -394,13 +395,16 @@ class Results:
         if label and not figure["legend"]:
             figure["legend"] = [{"series": 0, "name": plain(label)}]
         axes = axes or pyplot.subplots(figsize=(4.5, 3.4), layout="constrained")[1]
+        drawn = getattr(axes, "_peclet_series", 0)  # by earlier calls
+        axes._peclet_series = drawn + move_series(figure, drawn)
         draw_panel(axes, figure, figure["panels"][0])
         if not figure["x"]["categories"]:
             axes.autoscale()  # includes other curves in these axes
-        handles = legend_of(figure)
-        for handle in handles:
-            axes.add_line(handle)
-        if handles:
+        known = axes.get_legend_handles_labels()[1]
+        for k, handle in enumerate(legend_of(figure)):
+            if k < len(figure["legend"]) or handle.get_label() not in known:  # signs that all curves share, once
+                axes.add_line(handle)
+        if axes.get_legend_handles_labels()[1]:
             axes.legend(frameon=False)
         return axes
 

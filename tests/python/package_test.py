@@ -226,6 +226,15 @@ class OfACampaign(unittest.TestCase):
             axes.lines[0].get_xydata(), np.column_stack([table["volume_fraction"], table["mean"]])
         )
 
+    def test_plots_in_the_same_axes_have_other_colours_and_marks(self):
+        axes = None
+        for peclet_number, name in ((10, "slow"), (1000, "fast")):
+            axes = self.results.plot(x="volume_fraction", where={"peclet": peclet_number}, label=name, axes=axes)
+        self.assertEqual([text.get_text() for text in axes.get_legend().get_texts()], ["slow", "not converged", "fast"])
+        slow, _, fast = axes.get_legend().get_lines()
+        self.assertNotEqual(slow.get_color(), fast.get_color())
+        self.assertNotEqual(slow.get_marker(), fast.get_marker())
+
     def test_tables_go_to_pandas(self):
         frame = self.results.estimates().to_pandas()
         self.assertEqual(list(frame["label"]), [p["label"] for p in self.export["points"]])
