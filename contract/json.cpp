@@ -99,6 +99,12 @@ std::string usual_fault(std::string_view text, std::size_t offset) {
   if (closes && before != std::string_view::npos && text[before] == ',') {
     return "; the comma before it is one too many";
   }
+  // A number where a key should be, as in "a": 0,5.
+  const std::size_t sign = text.substr(0, offset + 1).find_last_not_of("0123456789");
+  if (sign != std::string_view::npos && sign > 0 && sign < offset && text[sign] == ',' &&
+      text[sign - 1] >= '0' && text[sign - 1] <= '9') {
+    return "; decimals have a point, 0.5, and no comma";
+  }
   if (from_here.starts_with("//")) return "; JSON has no comments";
   if (from_here.starts_with("/") || from_here.starts_with("#")) return "; comments begin with //";
   if (from_here.starts_with("'")) return "; JSON has double quotation marks, \"";

@@ -51,9 +51,13 @@ TEST(Json, WhatPeopleUsuallyTypeWrongIsNamedAndTheMessageIsWholeText) {
       {"{\"a\": [1, 2,]}", "f.json: line 1, column 13: ", "; the comma before it is one too many"},
       {"{\"a\": 1,\n}", "f.json: line 2, column 1: ", "; the comma before it is one too many"},
       {"{\"a\": 1, // no\n}", "f.json: line 1, column 10: ", "; JSON has no comments"},
+      {"{\"a\": 0,50}", "f.json: line 1, column 10: ", "; decimals have a point, 0.5, and no comma"},
+      {"{\"a\": 0,5,\n \"b\": 1}",
+       "f.json: line 1, column 9: ", "; decimals have a point, 0.5, and no comma"},
       {"{'a': 1}", "f.json: line 1, column 2: ", "; JSON has double quotation marks"},
   });
   EXPECT_FALSE(contains(message_of("[NaN]"), "too many"));
+  EXPECT_FALSE(contains(message_of("[1,5 x]"), "decimals"));
 }
 
 // Cases from the grammar of strings and of both kinds of comments; nothing else of the text changes.
