@@ -104,6 +104,7 @@ AxisScale DerivedNumbers::scale(const std::string& option, const std::string& wa
   if (const std::optional<double> number = number_in<double>(wanted); number && *number > 0) {
     std::fill(scale.factors.begin(), scale.factors.end(), 1 / *number);
     scale.text = " / " + wanted;
+    scale.unit = "1";
     return scale;
   }
   std::string given_in = unit;
