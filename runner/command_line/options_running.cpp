@@ -84,8 +84,8 @@ that its times are a guess.
 )");
   add_campaign_file(verb, options->run);
   add_number(verb, "--pilot", options->pilot, whole_number(2, 1'000'000),
-             "Run the first seeds of every point, 4 unless given, and store predictions from them, which "
-             "`status` compares with the outcome; later runs count these seeds")
+             "Run the first seeds of every point, 4 unless given, which takes as long as they do, and store "
+             "predictions from them, which `status` compares with the outcome; later runs count these seeds")
       ->expected(0, 1)
       ->default_str("4");
   add_team(verb, options->run);
