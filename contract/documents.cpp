@@ -123,6 +123,7 @@ constexpr const char* frame_rows = R"(
 -- validated | Engine: the scene can be run.
 {request}
 /timestep | number >= 0 and <= {largest} or null | Time step; null if the engine has no time step.
+/timestep_limit? | string | What keeps the time step from being longer, in a word.
 /steps | number >= 0 and <= {largest} | Estimated number of steps of a whole realisation.
 /particles | integer >= 0 and <= 2147483647 | Number of particles; 0 if not known.
 /derived | object | Dimensionless groups and time scales of the scene, by name.

@@ -35,7 +35,7 @@ const FlowKind& flow_kind_of(const SceneDocument& scene) {
   const FlowKind& flow = other == all.end() ? all.front() : *other;
   const auto refuse = [&](const std::string& key) {
     if (key == flow.key || !scene.has(key) || std::ranges::count(flow.beside, key) > 0) return;
-    scene.refuse(key, "must be left out together with {}", flow.key);
+    scene.refuse(key, "must be left out, because {} is given", flow.key);
   };
   for (const FlowKind& kind : all) refuse(kind.key);
   for (const char* key : {"/flow/waves", "/peclet"}) refuse(key);

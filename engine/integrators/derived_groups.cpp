@@ -320,7 +320,7 @@ std::vector<Warning> scene_warnings(const Scene& scene) {
   const bool friction = scene.physics.contact && scene.physics.contact->friction > 0;
   if (scene.method == Method::implicit_steps && scene.timestep &&
       (noise || friction || scene.physics.flow.varies())) {
-    if (const double excess = *scene.timestep / automatic_timestep(scene); excess > 1) {
+    if (const double excess = *scene.timestep / automatic_timestep(scene).value; excess > 1) {
       warn(warnings, "timestep",
            "the step is {:.3g} times the automatic one; with {} no other test shows its "
            "error: see results/speed-accuracy and results/stability",
@@ -380,6 +380,25 @@ void warn_of_first_radius(const Scene& scene, std::vector<Warning>& warnings) {
        a, *mean);
 }
 
+// Warns if the flow presses spheres together by so much more or less than the critical load that friction
+// acts at all contacts or at none: mostly a load in other units.
+void warn_of_critical_load(const Scene& scene, std::vector<Warning>& warnings) {
+  constexpr double furthest = 1e4;
+  const Physics& physics = scene.physics;
+  if (!physics.contact || !(physics.contact->friction > 0) || !(physics.contact->critical_load > 0)) return;
+  const ControlledShear* const held = physics.flow.deformation().at_stress();
+  const double stress = held != nullptr ? held->stress() : physics.viscosity * physics.flow.rate();
+  if (!(stress > 0)) return;
+  const double a = scene.particles.reference_radius;
+  const double loads = stress * a * a / physics.contact->critical_load;
+  if (1 / furthest <= loads && loads <= furthest) return;
+  warn(warnings, "critical-load",
+       "{} is {:.2g} times the critical_load, so that friction acts {}: is the load in the units of the "
+       "scene?",
+       held != nullptr ? "stress a^2" : "viscosity rate a^2", loads,
+       loads > 1 ? "at every contact" : "at none but the hardest contacts");
+}
+
 }  // namespace
 
 std::vector<Warning> warnings_before_run(const Scene& scene) {
@@ -389,6 +408,7 @@ std::vector<Warning> warnings_before_run(const Scene& scene) {
   const Physics& physics = scene.physics;
   std::vector<Warning> warnings;
   warn_of_first_radius(scene, warnings);
+  warn_of_critical_load(scene, warnings);
   if (const double densest = densest_random_packing(scene.particles);
       !scene.start && scene.volume_fraction > densest) {
     warn(warnings, "packing",

@@ -166,17 +166,19 @@ std::vector<Species> leaping_species(const Particles& particles) {
 }
 
 // Returns the longer of `step`, bounded by inertia, and `without_inertia`, bounded by leaps of the species.
-double step_with_noise_and_lubrication(const Scene& scene, double step, double without_inertia) {
+Timestep step_with_noise_and_lubrication(const Scene& scene, const Timestep& step,
+                                         const Timestep& without_inertia) {
   constexpr double leaps = 5;
   const Physics& physics = scene.physics;
-  double inertial = step, leaping = without_inertia;
+  Timestep inertial = step, leaping = without_inertia;
   for (const Species& species : leaping_species(scene.particles)) {
     const double mass = mass_of(scene.particles, species);
-    inertial = std::min(inertial, longest_inertial_step(physics.viscosity, physics.thermal_energy,
-                                                        *physics.lubrication, species.radius, mass));
-    leaping = std::min(leaping, step_of_leaps(scene, species, leaps, without_inertia));
+    inertial.stay_below(longest_inertial_step(physics.viscosity, physics.thermal_energy, *physics.lubrication,
+                                              species.radius, mass),
+                        "inertia");
+    leaping.stay_below(step_of_leaps(scene, species, leaps, without_inertia.value), "inertia");
   }
-  return std::max(inertial, leaping);
+  return leaping.value > inertial.value ? leaping : inertial;
 }
 
 }  // namespace
@@ -247,11 +249,11 @@ ImplicitStep longest_implicit_step(const Scene& scene, double rate, double small
   return {strain_without_noise(scene), 20};
 }
 
-double automatic_implicit_timestep(const Scene& scene) {
+Timestep automatic_implicit_timestep(const Scene& scene) {
   const Physics& physics = scene.physics;
   constexpr double brownian_times = 0.0017, pushing_times = 20;
   constexpr double inertial_brownian_times = 0.0045;
-  double step = std::numeric_limits<double>::infinity();
+  Timestep step;
   double smallest = scene.particles.species.front().radius, largest_inertia = 0;  // rho a^2
   for (const Species& species : scene.particles.species) {
     const double a = species.radius;
@@ -262,50 +264,52 @@ double automatic_implicit_timestep(const Scene& scene) {
   const auto [strain, contact_times] = longest_implicit_step(scene, rate, smallest);
   if (rate > 0) {
     const double stokes = largest_inertia * rate / physics.viscosity;
-    step = strain / ((1 + 2 * stokes) * rate);
+    step.stay_below(strain / ((1 + 2 * stokes) * rate), "flow");
   }
   Scene undamped = scene;  // a dashpot does not lengthen the times of the contact's other motions
   if (undamped.physics.contact) undamped.physics.contact->tangential_damping = 0;
   if (const PairRates rates = stiffest_pair(undamped); rates.frequency_squared > 0) {
-    step = std::min(step, contact_times * rates.damping / rates.frequency_squared);
+    step.stay_below(contact_times * rates.damping / rates.frequency_squared, "contacts");
   }
   for (const Species& first : scene.particles.species) {
     for (const Species& second : scene.particles.species) {
       if (physics.lubrication) {
-        step = std::min(step, pushing_times * time_beyond_lubrication(physics, first.radius, second.radius));
+        step.stay_below(pushing_times * time_beyond_lubrication(physics, first.radius, second.radius),
+                        "repulsion");
       }
-      step = std::min(step, time_of_pulling(physics, first.radius, second.radius));
+      step.stay_below(time_of_pulling(physics, first.radius, second.radius), "attraction");
     }
   }
   if (!(physics.thermal_energy > 0)) return step;
   const double brownian_time = physics.viscosity * std::pow(smallest, 3) / physics.thermal_energy;
-  const double without_inertia = std::min(step, brownian_times * brownian_time);
+  Timestep without_inertia = step;
+  without_inertia.stay_below(brownian_times * brownian_time, "noise");
   if (!physics.lubrication) return without_inertia;
-  return step_with_noise_and_lubrication(scene, std::min(step, inertial_brownian_times * brownian_time),
-                                         without_inertia);
+  step.stay_below(inertial_brownian_times * brownian_time, "noise");
+  return step_with_noise_and_lubrication(scene, step, without_inertia);
 }
 
-double automatic_timestep(const Scene& scene) {
-  return scene.method == Method::implicit_steps ? automatic_implicit_timestep(scene)
-                                                : 0.5 * largest_timestep(scene);
+Timestep automatic_timestep(const Scene& scene) {
+  if (scene.method == Method::implicit_steps) return automatic_implicit_timestep(scene);
+  return {0.5 * largest_timestep(scene), "stability"};
 }
 
-double resolved_timestep(const Scene& scene, const std::string& file) {
-  const double automatic = automatic_timestep(scene);
+Timestep resolved_timestep(const Scene& scene, const std::string& file) {
+  const Timestep automatic = automatic_timestep(scene);
   if (!scene.timestep) {
-    if (!std::isfinite(automatic)) {
+    if (!std::isfinite(automatic.value)) {
       throw InputError(file, "/integrator/timestep", "\"auto\"",
                        "must be a number in a scene without flow, temperature, contact and repulsion");
     }
     return automatic;
   }
   if (scene.method == Method::implicit_steps) {
-    if (*scene.timestep > largest_over_automatic * automatic) {
+    if (*scene.timestep > largest_over_automatic * automatic.value) {
       throw InputError(file, "/integrator/timestep", fmt::format("{}", *scene.timestep),
                        fmt::format("must be at most {:.4g}, {} times \"auto\" in this scene",
-                                   largest_over_automatic * automatic, largest_over_automatic));
+                                   largest_over_automatic * automatic.value, largest_over_automatic));
     }
-    return *scene.timestep;
+    return {*scene.timestep, "given"};
   }
   const double largest = largest_timestep(scene);
   if (*scene.timestep > largest) {
@@ -315,7 +319,7 @@ double resolved_timestep(const Scene& scene, const std::string& file) {
                     "dense packing (or \"auto\", half of that)",
                     largest));
   }
-  return *scene.timestep;
+  return {*scene.timestep, "given"};
 }
 
 }  // namespace peclet::engine

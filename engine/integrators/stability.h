@@ -1,9 +1,21 @@
 // These functions give stable explicit steps of a scene, and implicit steps whose error has been measured.
 #pragma once
 
+#include <limits>
+
 #include "engine/scene/scene.h"
 
 namespace peclet::engine {
+
+// Timestep is a step [time] and what keeps it from being longer, in a word.
+struct Timestep {
+  double value = std::numeric_limits<double>::infinity();
+  const char* limit = "";
+
+  void stay_below(double bound, const char* name) {
+    if (bound < value) *this = {bound, name};
+  }
+};
 
 // PairRates holds the fastest modes of the stiffest pair of a scene, at the inner gap and in contact.
 struct PairRates {
@@ -48,16 +60,19 @@ double largest_timestep(const Scene& scene);
 //   (terms/lubrication.h). If it is shorter, two other bounds replace it and 0.0045 eta a^3 / kT: 0.0017 eta
 //   a^3 / kT, and the step in which five standard deviations of a leap out of the range of lubrication are
 //   twice the outer gap. Either way spheres that were out of range are not hit.
-double automatic_implicit_timestep(const Scene& scene);
+//
+// The step is said to be limited by: the flow (strain), contacts (times X_A / k), repulsion (drag / k),
+// attraction, noise, or inertia (which carries spheres across the outer gap).
+Timestep automatic_implicit_timestep(const Scene& scene);
 
 // The largest ratio of a given implicit step to the automatic one. Warnings tell the error of steps above the
 // automatic one: half steps without noise, the step itself with noise.
 constexpr double largest_over_automatic = 4;
 
 // Returns the meaning of "auto": half of the largest explicit step, or the automatic implicit one.
-double automatic_timestep(const Scene& scene);
+Timestep automatic_timestep(const Scene& scene);
 
 // Returns the scene's own step or the automatic one. Throws InputError if the step is too large or infinite.
-double resolved_timestep(const Scene& scene, const std::string& file);
+Timestep resolved_timestep(const Scene& scene, const std::string& file);
 
 }  // namespace peclet::engine

@@ -238,7 +238,7 @@ void place_randomly(ParticleState& particles, const PeriodicCell& box, std::uint
 
 void relax(System& system, const Scene& scene, int threads, const std::function<void()>& made_step) {
   constexpr int most_steps = 200;
-  const double timestep = automatic_implicit_timestep(scene);
+  const double timestep = automatic_implicit_timestep(scene).value;
   const double far = 0.05 * *std::min_element(system.particles.radius.begin(), system.particles.radius.end());
   Physics still = scene.physics;
   still.flow = {};

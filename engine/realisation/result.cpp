@@ -357,7 +357,8 @@ Json target_hints(const Scene& scene) {
   if (scene.physics.flow.deformation().at_stress() != nullptr) {
     for (const char* const name : {"apparent_viscosity", "relative_viscosity", "eta_r", "eta", "viscosity"}) {
       hints[name] =
-          "follows from the mean rate at a given stress: aim at shear_rate, the same relative_tolerance";
+          "follows from the mean rate at a given stress: name shear_rate, whose relative error is the same; "
+          "`peclet plot --quantity apparent_viscosity` draws it";
     }
   }
   return hints;

@@ -67,16 +67,17 @@ std::vector<double> present_radii(const Particles& particles, const std::string&
 Schedule make_schedule(const Scene& scene, const std::string& file) {
   const double begin = time_of(scene.equilibration, scene);  // of the window
   Schedule schedule;
-  schedule.timestep = resolved_timestep(scene, file);
+  Timestep step = resolved_timestep(scene, file);
   if (!scene.timestep) {
     // A short window gets smaller steps, one for each block.
-    schedule.timestep =
-        std::min(schedule.timestep, time_of(scene.production, scene, begin) / count_of_blocks);
+    step.stay_below(time_of(scene.production, scene, begin) / count_of_blocks, "window");
   }
   if (const std::optional<double> period = scene.physics.flow.period()) {
-    const double steps = std::ceil(std::max(*period / schedule.timestep * (1 - 1e-12), least_steps_of_cycle));
-    schedule.timestep = *period / steps;
+    step.stay_below(*period / least_steps_of_cycle, "cycle");
+    step.value = *period / std::ceil(*period / step.value * (1 - 1e-12));
   }
+  schedule.timestep = step.value;
+  schedule.timestep_limit = step.limit;
   if (!std::isnormal(schedule.timestep)) {
     throw InputError(file, "/integrator/timestep", fmt::format("{}", schedule.timestep),
                      "must be a normal floating-point number above 0: sizes, forces or durations of the "
@@ -90,6 +91,17 @@ Schedule make_schedule(const Scene& scene, const std::string& file) {
                                  schedule.timestep));
   }
   return schedule;
+}
+
+std::optional<Warning> warning_of_length(const Scene& scene, const Schedule& schedule) {
+  constexpr double most = 1e13, a_second = 1e6;  // steps of a sphere; docs/speed.md
+  const double work = static_cast<double>(schedule.total()) * static_cast<double>(scene.particles.count);
+  if (work <= most) return std::nullopt;
+  return Warning{"long",
+                 fmt::format("a seed has {:.2g} steps of {} spheres, of the order of {:.1g} years of a "
+                             "processor: are all numbers in one system of units?",
+                             static_cast<double>(schedule.total()), scene.particles.count,
+                             work / a_second / (365 * 24 * 3600.0))};
 }
 
 std::string motion_of(const Scene& scene, const Schedule& schedule) {

@@ -16,6 +16,7 @@ namespace peclet::engine {
 struct Schedule {
   double timestep = 0;
   std::uint64_t equilibration = 0, production = 0;
+  const char* timestep_limit = "";  // what keeps the step from being longer, in a word
 
   std::uint64_t total() const { return equilibration + production; }
 };
@@ -23,6 +24,9 @@ struct Schedule {
 // Returns the schedule of a scene; `file` is the scene's name in messages. Throws InputError if the step is
 // too large, the production window is shorter than its 32 blocks, or a phase has too many steps.
 Schedule make_schedule(const Scene& scene, const std::string& file);
+
+// Returns the warning `long` if a seed takes months; empty otherwise.
+std::optional<Warning> warning_of_length(const Scene& scene, const Schedule& schedule);
 
 // Returns the SHA-256 of the scene without durations, observables and files, and of the size of the step.
 std::string motion_of(const Scene& scene, const Schedule& schedule);

@@ -174,6 +174,7 @@ class Worker {
       }
       answer["type"] = "validated";
       answer["timestep"] = schedule.timestep;
+      answer["timestep_limit"] = schedule.timestep_limit;
       answer["steps"] = schedule.total();
       answer["particles"] = scene.particles.count;
       answer["derived"] = to_json(derived_groups(scene));
@@ -182,6 +183,9 @@ class Worker {
       answer["warnings"] = Json::array();
       for (const std::vector<Warning>& warnings : {scene_warnings(scene), warnings_before_run(scene)}) {
         for (const Warning& warning : warnings) answer["warnings"].push_back(warning);
+      }
+      if (const std::optional<Warning> endless = warning_of_length(scene, schedule)) {
+        answer["warnings"].push_back(*endless);
       }
     } catch (const InputError& error) {
       answer["type"] = "refused";

@@ -157,7 +157,8 @@ double radius_of_reference(const SceneDocument& scene, const Particles& particle
   if (!particles.mixture) return scene.number_or(given, particles.species.front().radius);
   const Mixture& mixture = *particles.mixture;
   if (!scene.has(named)) return scene.number_or(given, mixture.colloid_radius);
-  if (scene.has(given)) scene.refuse(given, "must be left out together with /particles/mixture/reference");
+  if (scene.has(given))
+    scene.refuse(given, "must be left out, because /particles/mixture/reference is given");
   const Json& name = scene.at(named);
   if (name == "colloids") return mixture.colloid_radius;
   return name == "grains" ? mixture.grain_radius : mixture.mean_radius();

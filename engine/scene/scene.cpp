@@ -123,7 +123,7 @@ std::vector<std::string> flows_without_rate(std::size_t begin) {
 // (6 pi eta a^3). At Pe = 0 the rate is 0.
 double rate_from_peclet(const SceneDocument& scene, double radius, Physics& physics) {
   for (const char* pointer : {"/flow/shear_rate", "/fluid/thermal_energy"}) {
-    if (scene.has(pointer)) scene.refuse(pointer, "must be left out together with /peclet, which sets it");
+    if (scene.has(pointer)) scene.refuse(pointer, "must be left out, because /peclet sets it");
   }
   const double peclet = scene.number("/peclet");
   const double scale = 6 * std::numbers::pi * physics.viscosity * radius * radius * radius;

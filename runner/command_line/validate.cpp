@@ -53,13 +53,14 @@ std::string points_table(const Campaign& campaign, const std::vector<SceneAnswer
   TextTable table;
   points.add_to(table);
   for (const Derived& column : columns) table.add_column(column.heading);
-  for (const char* const title : {"particles", "timestep", "steps"}) table.add_column(title);
+  for (const char* const title : {"particles", "timestep", "limited by", "steps"}) table.add_column(title);
   for (std::size_t i = 0; i < answers.size(); ++i) {
     const SceneAnswer& answer = answers[i];
     std::vector<std::string> cells = points.cells(i);
     for (const Derived& column : columns) cells.push_back(cell(answer.derived, column.key));
     cells.push_back(fmt::format("{}", answer.particles));
     cells.push_back(answer.timestep ? rough(*answer.timestep) : "-");
+    cells.push_back(answer.timestep_limit.empty() ? "-" : answer.timestep_limit);
     cells.push_back(rough(answer.steps));
     table.add_row(cells);
   }
@@ -88,6 +89,7 @@ Json answers_json(const Campaign& campaign, const std::vector<SceneAnswer>& answ
                       {"settings", campaign.points[i].settings},
                       {"particles", answers[i].particles},
                       {"timestep", answers[i].timestep ? Json(*answers[i].timestep) : Json(nullptr)},
+                      {"timestep_limit", answers[i].timestep_limit},
                       {"steps", answers[i].steps},
                       {"derived", answers[i].derived},
                       {"warnings", answers[i].warnings}});

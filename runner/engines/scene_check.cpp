@@ -204,6 +204,8 @@ SceneAnswer read_answer(const Json& message, const Json& identity) {
   constexpr std::size_t longest_warning = 1000;
   SceneAnswer answer;
   if (!message["timestep"].is_null()) answer.timestep = message["timestep"].get<double>();
+  if (message.contains("timestep_limit"))
+    answer.timestep_limit = plain(message["timestep_limit"].get<std::string>(), longest_warning);
   answer.steps = message["steps"].get<double>();
   answer.particles = message["particles"].get<std::int64_t>();
   answer.derived = message["derived"];

@@ -16,6 +16,7 @@ namespace peclet::runner {
 
 struct SceneAnswer {
   std::optional<double> timestep;  // absent if the engine has none
+  std::string timestep_limit;      // what keeps it from being longer; "" if the engine does not say
   double steps = 0;                // estimate for the whole realisation
   std::int64_t particles = 0;
   Json derived;  // numbers that follow from the scene, by name

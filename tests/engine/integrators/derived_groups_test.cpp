@@ -182,6 +182,24 @@ TEST(WarningsBeforeRun, ContactsThatAreSoftForTheirStressAreSaid) {
   EXPECT_EQ(codes(16e3), Codes{});
 }
 
+// stress a^2 over the critical load is 1 / load here, and viscosity rate a^2 over it 0.2 / load.
+TEST(WarningsBeforeRun, ACriticalLoadOfAnotherUnitIsSaid) {
+  const auto codes = [](double load, bool at_stress) {
+    Json scene =
+        small_scene({{"contact", {{"normal_stiffness", 1e6}, {"friction", 0.5}, {"critical_load", load}}},
+                     {"fluid", {{"thermal_energy", nullptr}}}});
+    if (at_stress) {
+      scene["flow"] = {{"stress", 1}};
+      scene["duration"] = {{"equilibration", {{"time", 0}}}, {"production", {{"stress_times", 400}}}};
+    }
+    return codes_of(warnings_before_run(read_scene(scene, "scene.json")));
+  };
+  for (const double load : {1.1e-4, 1.0, 0.9e4}) EXPECT_EQ(codes(load, true), Codes{}) << load;
+  for (const double load : {0.9e-4, 1.1e4}) EXPECT_EQ(codes(load, true), Codes{"critical-load"}) << load;
+  for (const double load : {0.22e-4, 0.18e4}) EXPECT_EQ(codes(load, false), Codes{}) << load;
+  for (const double load : {0.18e-4, 0.22e4}) EXPECT_EQ(codes(load, false), Codes{"critical-load"}) << load;
+}
+
 // k_B T = 0.02 and an inner gap of 0.03: sqrt(0.02 / k_n) is 0.015 at k_n = 88.9.
 TEST(WarningsBeforeRun, RoughContactsThatAreSoftForTheNoiseAreSaid) {
   const auto codes = [](double stiffness, double friction) {

@@ -175,7 +175,7 @@ double mean_stress(Integrator& integrator, System& system, double time) {
 // The contact forces left relax within the first step, which large steps do not resolve.
 TEST_P(AgainstExplicit, TheStressAfterAReversalIsTheSame) {
   const Scene scene = read_scene(document(), "scene.json");
-  Simulation simulation(scene, {automatic_timestep(scene), 0, 1000}, 4, 1, "scene.json");
+  Simulation simulation(scene, {automatic_timestep(scene).value, 0, 1000}, 4, 1, "scene.json");
   simulation.start();
   ASSERT_FALSE(simulation.advance(400));
   System reversed = simulation.system();
@@ -196,7 +196,7 @@ TEST_P(AgainstExplicit, TheStressAfterAReversalIsTheSame) {
     integrator.start(system);
     return mean_stress(integrator, system, time);
   };
-  const double step = automatic_timestep(scene);
+  const double step = automatic_timestep(scene).value;
   for (const auto& [steps, tolerance] : {std::pair{5, 0.05}, std::pair{25, 0.01}}) {
     VelocityVerlet small(ForceField(physics, particles, step / 400, 1, 1), particles, step / 400);
     Midpoint large(physics, particles, step, scene.solver_tolerance, 1, 1);
@@ -250,7 +250,7 @@ TEST(Implicit, LeavesNoLargerResidualThanItsTolerance) {
   constexpr double tolerance = 1e-3;
   const Simulation simulation = started(scene, 3);
   System system = simulation.system();
-  Midpoint integrator(scene.physics, system.particles, automatic_timestep(scene), tolerance, 1, 1);
+  Midpoint integrator(scene.physics, system.particles, automatic_timestep(scene).value, tolerance, 1, 1);
   integrator.start(system);
   for (int step = 0; step < 200; ++step)
     EXPECT_LE(integrator.advance(system).solver_residual, tolerance) << step;
@@ -260,7 +260,7 @@ TEST(Implicit, LeavesNoLargerResidualThanItsTolerance) {
 TEST(Implicit, ComparesStepsWithHalfSteps) {
   const Scene scene = scene_from(
       {{"fluid", {{"thermal_energy", 0}}}, {"integrator", {{"method", "implicit"}, {"timestep", "auto"}}}});
-  const double step = 4 * automatic_timestep(scene);
+  const double step = 4 * automatic_timestep(scene).value;
   Simulation simulation(scene, {step, 200, 200}, 1, 1, "scene.json");
   simulation.start();
   ASSERT_FALSE(simulation.advance(100));

@@ -18,7 +18,8 @@ const Json by_automatic_steps = {{"integrator", {{"method", "implicit"}, {"times
 Scene scene_by_automatic_steps(const Json& patch) {
   return scene_from(together({by_automatic_steps, patch}));
 }
-double step_of(const Json& patch) { return automatic_timestep(scene_by_automatic_steps(patch)); }
+double step_of(const Json& patch) { return automatic_timestep(scene_by_automatic_steps(patch)).value; }
+std::string limit_of(const Json& patch) { return automatic_timestep(scene_by_automatic_steps(patch)).limit; }
 
 // Bounds of the step:
 //   - 0.01 / rate (1 + 2 St), half with friction, repulsion or noise at large Pe, a quarter at more friction
@@ -28,6 +29,7 @@ TEST(ImplicitTimestep, IsTheLeastOfStrainBrownianAndContactTimes) {
   const double stokes = 0.1 * 1.4 * 1.4 * 2 / 0.1;
   const auto expect_strain = [&](const Json& patch, double strain) {
     EXPECT_NEAR(step_of(patch), strain / 2 / (1 + 2 * stokes), 1e-12) << patch;
+    EXPECT_EQ(limit_of(patch), "flow") << patch;
   };
   const Json soft = {{"contact", {{"normal_stiffness", 1e-3}, {"friction", 0.5}}}, {"repulsion", nullptr}};
   expect_strain(soft, 0.0025);
@@ -59,14 +61,17 @@ TEST(ImplicitTimestep, IsTheLeastOfStrainBrownianAndContactTimes) {
   Json warm = soft;
   warm["fluid"] = {{"thermal_energy", 5}};
   EXPECT_NEAR(step_of(warm), 0.0045 * 0.1 / 5, 1e-12);
+  EXPECT_EQ(limit_of(warm), "noise");
   warm["lubrication"] = nullptr;
   EXPECT_NEAR(step_of(warm), 0.0017 * 0.1 / 5, 1e-12);
+  EXPECT_EQ(limit_of(warm), "noise");
   const Json stiff = together({soft, without_friction, {{"contact", {{"normal_stiffness", 1e9}}}}});
   const Json stiff_with_friction = together({stiff, {{"contact", {{"friction", 0.5}}}}});
   for (const auto& [patch, factor] : {std::pair(stiff, 7), std::pair(stiff_with_friction, 2)}) {
     const PairRates rates = stiffest_pair(scene_by_automatic_steps(patch));
     const double time = rates.damping / rates.frequency_squared;
     EXPECT_NEAR(step_of(patch), factor * time, 1e-15);
+    EXPECT_EQ(limit_of(patch), "contacts");
     EXPECT_NEAR(step_of(together({patch, without_noise})), (factor == 7 ? 20 : 4) * time, 1e-15);
   }
 }
@@ -89,6 +94,7 @@ TEST(ImplicitTimestep, IsBoundByARepulsionBeyondLubrication) {
       together({without_friction, {{"repulsion", {{"strength", 1e5}, {"relative_length", 0.5}}}}});
   const double drag = 0.5 * 6 * pi * 0.1, stiffness = 1e5 * std::exp(-0.1);
   EXPECT_NEAR(step_of(strong) / (20 * drag / stiffness), 1, 1e-12);
+  EXPECT_EQ(limit_of(strong), "repulsion");
   // A repulsion that ends within the range of lubrication sets no bound.
   const Json short_one = together({strong, {{"repulsion", {{"cutoff_lengths", 0.09}}}}});
   EXPECT_GT(step_of(short_one), 1.2 * step_of(strong));
@@ -107,6 +113,7 @@ TEST(ImplicitTimestep, IsBoundByTheGrowthOfAttraction) {
     const double steepest = 9 / (8 * std::sqrt(3.0)) * 10 / std::pow(regularisation, 3);
     EXPECT_GE(step_of(patch), drag / steepest * (1 - 1e-12));
     EXPECT_LE(step_of(patch), drag / steepest * within);
+    EXPECT_EQ(limit_of(patch), "attraction");
   }
 }
 
@@ -142,6 +149,7 @@ TEST(ImplicitTimestep, IsBoundByLeapsOutOfTheRangeOfLubrication) {
       ASSERT_LT(step, 0.9 * 0.0017 * 0.1 / 0.017);
       const double squeeze = zeta * (0.25 / outer_gap + 9.0 / 40 * std::log(1 / outer_gap));
       expect_leap(step, density * 4 * pi / 3, zeta, squeeze, 2 * outer_gap);
+      EXPECT_EQ(limit_of(light_spheres(density, outer_gap, one_size)), "inertia");
     }
   }
   // A wide range sets no bound: 0.0017 eta a^3 / kT.
@@ -158,6 +166,8 @@ TEST(ImplicitTimestep, OfSpheresThatInertiaCarriesIsBoundByTheirFlight) {
     return 2 * outer_gap / (5 * std::sqrt(2 * 0.017 / (density * 4 * pi / 3)));
   };
   EXPECT_NEAR(step(1e-3, 0.02) / flight(1e-3, 0.02), 1, 1e-12);
+  EXPECT_EQ(limit_of(light_spheres(1e-3, 0.02, one_size)), "inertia");
+  EXPECT_EQ(limit_of(light_spheres(0.02, 0.05, one_size)), "noise");
   EXPECT_NEAR(step(3e-3, 0.03) / flight(3e-3, 0.03), 1, 1e-12);
   const double decay = 1e-4 * 4 * pi / 3 / (6 * pi * 0.1);
   EXPECT_NEAR(step(1e-4, 0.022) / (4 * decay), 1, 1e-12);
@@ -198,7 +208,8 @@ TEST(ImplicitTimestep, IsRefusedBeyondFourTimesTheAutomaticOne) {
   const double automatic = step_of(Json::object());
   const auto resolved = [&](double factor) {
     return resolved_timestep(scene_by_automatic_steps({{"integrator", {{"timestep", factor * automatic}}}}),
-                             "scene.json");
+                             "scene.json")
+        .value;
   };
   EXPECT_EQ(resolved(3.99), 3.99 * automatic);
   EXPECT_THROW(resolved(4.01), InputError);

@@ -71,7 +71,7 @@ TEST(Relaxation, LeavesAPackingWithoutForcesWhereItIs) {
 TEST(Relaxation, LetsStronglyRepulsivePackingsStart) {
   const Scene scene = repulsive_scene();
   for (const std::uint64_t seed : {0U, 1U, 2U, 3U, 4U, 5U, 6U, 7U}) {
-    Simulation simulation(scene, {automatic_timestep(scene), 0, 40}, seed, 1, "scene.json");
+    Simulation simulation(scene, {automatic_timestep(scene).value, 0, 40}, seed, 1, "scene.json");
     simulation.start();
     const std::optional<Ending> ending = simulation.advance(40);
     ASSERT_TRUE(ending.has_value());

@@ -156,8 +156,10 @@ TEST(TargetHints, SayWhatPeopleMayMean) {
   const Json rest = {{"flow", {{"shear_rate", nullptr}, {"stress", 0.1}}},
                      {"integrator", {{"method", "implicit"}, {"timestep", nullptr}}}};
   for (const char* const name : {"relative_viscosity", "apparent_viscosity"}) {
-    EXPECT_EQ(target_hints(scene_from(rest))[name],
-              "follows from the mean rate at a given stress: aim at shear_rate, the same relative_tolerance");
+    EXPECT_EQ(
+        target_hints(scene_from(rest))[name],
+        "follows from the mean rate at a given stress: name shear_rate, whose relative error is the same; "
+        "`peclet plot --quantity apparent_viscosity` draws it");
   }
 }
 

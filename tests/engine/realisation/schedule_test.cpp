@@ -31,6 +31,17 @@ TEST(Schedule, TheFirstLimitThatIsReachedEndsAPhase) {
                {100, 3430});
 }
 
+// 200 times 4.9e10 steps are below 10^13, 5.1e10 are not; at 10^6 a second 10^13 are 0.3 years.
+TEST(Schedule, SaysWhichSeedsTakeMonths) {
+  const auto warning = [](std::uint64_t steps) {
+    Scene scene = read_scene(small_scene(), "scene.json");
+    scene.particles.count = 200;
+    return warning_of_length(scene, {0.1, 0, steps});
+  };
+  EXPECT_FALSE(warning(49'000'000'000));
+  EXPECT_NE(warning(51'000'000'000)->message.find("of the order of 0.3 years"), std::string::npos);
+}
+
 // A cycle of 2 has 1000 steps of 0.002, rounded up for other steps; a step is at most a 128th of a cycle.
 TEST(Schedule, CyclesHaveWholeNumbersOfSteps) {
   const auto schedule_of_cycles = [](double frequency, double timestep) {
@@ -44,12 +55,14 @@ TEST(Schedule, CyclesHaveWholeNumbersOfSteps) {
   EXPECT_EQ(given.equilibration, 2000u);
   EXPECT_EQ(given.production, 3000u);
   EXPECT_DOUBLE_EQ(given.timestep, 0.002);
+  EXPECT_EQ(given.timestep_limit, std::string("given"));
   const Schedule shortened = schedule_of_cycles(std::numbers::pi, 0.0021);  // 952.4 of them
   EXPECT_EQ(shortened.production, 3u * 953u);
   EXPECT_DOUBLE_EQ(shortened.timestep, 2.0 / 953);
   const Schedule fast = schedule_of_cycles(100 * std::numbers::pi, 0.002);  // a cycle of 0.02
   EXPECT_EQ(fast.production, 3u * 128u);
   EXPECT_DOUBLE_EQ(fast.timestep, 0.02 / 128);
+  EXPECT_EQ(fast.timestep_limit, std::string("cycle"));
 }
 
 }  // namespace

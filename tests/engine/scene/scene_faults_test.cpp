@@ -93,9 +93,9 @@ const SceneFault faults[] = {
     {R"({"flow": {"waves": [{"periods": 1, "sine": 1}]}})", "/flow/faxen", "missing",
      "must be true or false where there are /flow/waves"},
     {R"({"peclet": 1, "limits": {"shear_rate": 1, "thermal_energy": 2}})", "/flow/shear_rate", "0.009",
-     "left out together with /peclet"},
+     "left out, because /peclet sets it"},
     {R"({"flow": null, "peclet": 1, "limits": {"shear_rate": 1, "thermal_energy": 2}})",
-     "/fluid/thermal_energy", "0.017", "left out together with /peclet"},
+     "/fluid/thermal_energy", "0.017", "left out, because /peclet sets it"},
     {R"({"flow": null, "fluid": {"thermal_energy": null}, "peclet": 1})", "/limits", "missing",
      "must be an object with shear_rate, thermal_energy, because peclet is given"},
     {R"({"limits": {"shear_rate": 1, "thermal_energy": 2}})", "/limits",
@@ -212,11 +212,11 @@ const SceneFault faults[] = {
          "lubrication": {"form": "mari", "inner_gap": null, "outer_gap": null, "outer_distance": 0.2}})",
      "/observables", R"(["linear_response"])", "with /lubrication/form mari"},
     {R"({"flow": {"oscillation": {"amplitude": 0.1, "frequency": 1}}})", "/flow/shear_rate", "0.009",
-     "must be left out together with /flow/oscillation"},
+     "must be left out, because /flow/oscillation is given"},
     {R"({"flow": {"shear_rate": null, "oscillation": {"amplitude": 0.1, "frequency": 1},
                   "waves": [{"periods": 1, "sine": 1}], "faxen": false}})",
      "/flow/waves", R"([{"cosine":0,"periods":1,"sine":1}])",
-     "must be left out together with /flow/oscillation"},
+     "must be left out, because /flow/oscillation is given"},
     {R"({"flow": {"shear_rate": null, "oscillation": {"amplitude": 0, "frequency": 1}}})",
      "/flow/oscillation/amplitude", "0", "must be a number > 0"},
     {R"({"flow": {"shear_rate": null, "oscillation": {"amplitude": 0.1}}})", "/flow/oscillation/frequency",
@@ -264,9 +264,9 @@ const char* const stress_times = R"({"duration": {"equilibration": {"time": null
 
 const FlowFault flow_faults[] = {
     {R"({"shear_rate": 1, "extension_rate": 1})", "{}", "/flow/shear_rate", "1",
-     "must be left out together with /flow/extension_rate"},
+     "must be left out, because /flow/extension_rate is given"},
     {R"({"segments": [{"shear_rate": 1}], "stress": 2})", "{}", "/flow/stress", "2",
-     "must be left out together with /flow/segments"},
+     "must be left out, because /flow/segments is given"},
     {R"({"extension_rate": 0})", "{}", "/flow/extension_rate", "0", "must be a number > 0"},
     {R"({"extension_rate": 1})", R"({"box": {"height": 9}})", "/box", R"({"height":9})",
      "must be left out with /flow/extension_rate"},
@@ -277,7 +277,7 @@ const FlowFault flow_faults[] = {
     {R"({"uniaxial_rate": 0})", "{}", "/flow/uniaxial_rate", "0", "must be a number other than 0"},
     {R"({"uniaxial_rate": "fast"})", "{}", "/flow/uniaxial_rate", "\"fast\"", "must be a number"},
     {R"({"extension_rate": 1, "uniaxial_rate": 1})", "{}", "/flow/uniaxial_rate", "1",
-     "must be left out together with /flow/extension_rate"},
+     "must be left out, because /flow/extension_rate is given"},
     {R"({"uniaxial_rate": -20})", "{}", "/duration", R"({"equilibration":{"time":0.2...)",
      "must have a Hencky strain of at most 10 in all with /flow/uniaxial_rate; it has 16.8"},
     {R"({"uniaxial_rate": 1})", R"({"box": {"height": 9}})", "/box", R"({"height":9})",
@@ -361,7 +361,7 @@ TEST(FlowFaults, NameTheFlowBesideWhichAnotherIsGiven) {
       } catch (const InputError& error) {
         const std::string refused = error.pointer().substr(6), other = refused == first ? second : first;
         EXPECT_TRUE(both.contains(refused)) << error.what();
-        EXPECT_EQ(error.allowed(), "must be left out together with /flow/" + other);
+        EXPECT_EQ(error.allowed(), "must be left out, because /flow/" + other + " is given");
       }
     }
   }
@@ -398,7 +398,7 @@ const SceneFault mixture_faults[] = {
     {R"({"particles": {"mixture": {"grains": [{"radius": 1e90}]}}})", "/particles/mixture/grains/0/radius",
      "1e+90", "choose other units"},
     {R"({"particles": {"mixture": {"reference": "mean"}, "reference_radius": 1}})",
-     "/particles/reference_radius", "1", "must be left out together with /particles/mixture/reference"},
+     "/particles/reference_radius", "1", "must be left out, because /particles/mixture/reference is given"},
     {R"({"particles": {"mixture": {"reference": "largest"}}})", "/particles/mixture/reference", "\"largest\"",
      "colloids, grains, mean"},
     {R"({"particles": {"mixture": {"grains": [{"radius": 1.4, "density": 2}]}}})",
