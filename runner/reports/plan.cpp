@@ -346,12 +346,24 @@ std::string time_text(const Expected<double>& seconds) {
                      duration_text(seconds.upper));
 }
 
+// Returns what the seeds that open points must have, and have not yet, take; "" if that is not known.
+std::string first_seeds_text(const Plan& plan) {
+  double seconds = 0;
+  for (const PointPlan& point : plan.points) {
+    if (!point.decided) seconds += std::max(0, plan.minimum - point.ended) * point.cost.cpu_seconds;
+  }
+  if (!(seconds > 0)) return "";
+  return fmt::format("; the {} seeds that each of them needs at least take another {} of processor time",
+                     plan.minimum, duration_text(seconds));
+}
+
 std::string ending_text(const Plan& plan) {
   const Totals& totals = plan.totals;
   if (totals.predicted == 0) {
     const bool all_decided = std::all_of(plan.points.begin(), plan.points.end(),
                                          [](const PointPlan& point) { return point.decided.has_value(); });
-    return all_decided ? "every point is decided\n" : "no prediction is possible for the open points\n";
+    return all_decided ? "every point is decided\n"
+                       : "no prediction is possible for the open points" + first_seeds_text(plan) + '\n';
   }
   const auto others = static_cast<int>(plan.points.size()) - totals.points;
   std::string text;

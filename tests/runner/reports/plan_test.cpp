@@ -118,6 +118,19 @@ TEST(Plan, WhatIsToComeFollowsFromThePilot) {
   EXPECT_NE(text.find("with 4 workers 3 min"), std::string::npos) << text;
 }
 
+// Seeds of the decided point took 36 s, so that ten of the other one take 6 min.
+TEST(Plan, WithoutAPredictionSaysWhatTheFirstSeedsTake) {
+  const Campaign campaign = plain_campaign(2, 10, 100, 0.05);
+  PointHistory decided{{10, 36, 18}, {}};
+  for (int seed = 0; seed < 10; ++seed) decided.outcomes.emplace_back(Outcome{{10.0 + 0.001 * seed}});
+  const std::string text = plan_text(make_plan(campaign, {1, 1}, {{campaign.points[0].hash, decided}}, 4));
+  EXPECT_NE(
+      text.find("no prediction is possible for the open points; the 10 seeds that each of them needs at "
+                "least take another 6 min of processor time"),
+      std::string::npos)
+      << text;
+}
+
 TEST(Plan, WithOneWorkerEverythingIsOneChain) {
   const Campaign campaign = plain_campaign(2, 10, 100, 0.05);
   const Plan plan = make_plan(campaign, {1, 1},
