@@ -1,5 +1,6 @@
 """Reads the results of a campaign."""
 import csv
+import difflib
 import html
 import io
 import json
@@ -230,7 +231,8 @@ class Results:
         if not chosen:
             there = sorted({row["quantity"] for row in everything})
             none = "no estimates before the first stop test of a point, except of the target"
-            raise PecletError(f"{quantity}: not measured; there are {', '.join(there) or none}")
+            near = "".join(f"; did you mean {name}?" for name in difflib.get_close_matches(quantity, there, 1))
+            raise PecletError(f"{quantity}: not measured; there are {', '.join(there) or none}{near}")
         rows, axes = self._named(chosen)
         names = [chosen[0][f"axis_{k}"] for k in (1, 2, 3) if chosen[0].get(f"axis_{k}")]
         names = [apart(name, axes, "axis_") for name in names]

@@ -204,6 +204,8 @@ class OfACampaign(unittest.TestCase):
             peclet.PecletError, "is a list by component; name one element, such as stress/total/xx"
         ):
             self.results.estimates("stress/total")
+        with self.assertRaisesRegex(peclet.PecletError, r"did you mean relative_viscosity\?"):
+            self.results.estimates("relative_viscocity")
         with self.assertRaisesRegex(peclet.PecletError, "stress/total/tt: not measured"):
             self.results.estimates("stress/total/tt")
 
