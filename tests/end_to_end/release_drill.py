@@ -3,25 +3,33 @@
 
 Tests the packages that `./bootstrap.sh package` writes to FOLDER (build/package) on a bare Debian, as a user
 without rights: the smallest that debootstrap makes, in a folder. Needs root, debootstrap, readelf and a
-mirror; takes minutes, most of them for debootstrap. --root keeps that folder for the next time. Requirements:
+mirror; takes some ten minutes, half of them for the last campaign. --root keeps that folder for the next time. Requirements:
 
     programs  need no shared library
     .tar.gz   unpacked by the user, runs the demonstration, also after a move; has studies, adapters and manual
     .deb      is installed by dpkg alone, runs the demonstration with equal bytes, and is removed completely
+    .whl      is installed by pip beside Debian's NumPy, SciPy and matplotlib, and gives equal bytes. Then the way of a
+              new user, timed: from pip to a figure with error bars of spheres whose sizes a laboratory has measured,
+              rough under a sweep of the stress
 """
 import argparse
 import contextlib
 import glob
 import hashlib
+import json
+import math
 import os
 import re
 import shutil
 import subprocess
 import sys
 import tempfile
+import time
 
 USER, HOME = "guest", "/home/guest"
 DEMO = "share/peclet/results/demo/campaign.json"
+# Debian's packages for the wheel's figures and fits.
+PYTHON = "python3-venv python3-pip python3-numpy python3-scipy python3-matplotlib".split()
 
 
 def fail(message):
@@ -157,6 +165,74 @@ def try_package(root, package, digest):
     say(f"purged, it leaves none of its {len(files)} files")
 
 
+def measured_sizes():
+    """Returns a distribution of diameters as a laser diffractometer saves it, with decimal commas."""
+    diameters = [0.46 * 1.15**k for k in range(20)]
+    shares = [math.exp(-0.5 * (math.log(d / 1.6) / 0.28) ** 2) for d in diameters]
+    rows = [f"{d:.3f};{100 * share / sum(shares):.2f};".replace(".", ",") for d, share in zip(diameters, shares)]
+    head = ["Sample Name;Silica;", "Obscuration (%);8,31;", "Size Classes (µm);Volume Density (%);"]
+    return "\r\n".join([*head, *rows, ""]).encode("latin-1")
+
+
+def campaign_of(particles):
+    """Returns a sweep of the stress, in µm, mPa s and ms: friction acts above a critical load."""
+    return {
+        "name": "own",
+        "scene": {
+            "particles": {"count": 100, "density": 0.002, **particles},
+            "volume_fraction": 0.5,
+            "fluid": {"viscosity": 1},
+            "flow": {"stress": 1},
+            "contact": {"normal_stiffness": 1e6, "friction": 0.5, "critical_load": 4.3},
+            "lubrication": {"form": "kim-karrila", "inner_gap": 1e-2, "outer_gap": 0.05},
+            "duration": {"equilibration": {"stress_times": 40}, "production": {"stress_times": 150}},
+        },
+        "sweep": [{"set": "/flow/stress", "values": [1, 10, 100]}],
+        "target": {"observable": "shear_rate", "relative_tolerance": 0.1},
+        "realisations": {"minimum": 8, "maximum": 32},
+    }
+
+
+def try_wheel(root, wheel, digest):
+    shutil.copy("/etc/resolv.conf", root.outside("/etc"))
+    root.run("apt-get", "update", "-qq")
+    root.run("apt-get", "install", "-y", "-qq", "--no-install-recommends", *PYTHON)
+    shutil.copy(wheel, root.outside(HOME))
+    started = time.monotonic()
+
+    def run(*command):
+        return root.run(*command, user=USER, folder=HOME)
+
+    run("python3", "-m", "venv", "--system-site-packages", "env")
+    run("env/bin/pip", "install", "--no-index", os.path.basename(wheel))
+    if "No broken requirements" not in run("env/bin/pip", "check"):
+        fail("pip check finds a fault")
+    _, same = demonstration(root, f"{HOME}/env/bin/peclet", f"{HOME}/env", f"{HOME}/wheel.peclet")
+    if same != digest:
+        fail("the wheel gives other bytes than the archive")
+    say("pip installs the wheel, and it gives the archive's bytes")
+
+    with open(root.outside(f"{HOME}/sizes.csv"), "wb") as f:
+        f.write(measured_sizes())
+    sizes = run("env/bin/peclet", "sizes", "sizes.csv", "--sizes", "diameter", "--shares", "volume", "--count", "100")
+    species = "".join(line for line in sizes.splitlines() if line.startswith('"'))
+    with open(root.outside(f"{HOME}/own.json"), "w") as f:
+        json.dump(campaign_of(json.loads("{" + species + "}")), f)
+    for verb in (["validate"], ["plan"], ["run", "--quiet"], ["status", "--check"]):
+        said = run("env/bin/python", "-m", "peclet", *verb, "own.json")
+    run("env/bin/peclet", "plot", "own.json", "--quantity", "apparent_viscosity", "--output", "own.png")
+    table = json.loads(run("env/bin/peclet", "plot", "own.json", "--quantity", "apparent_viscosity", "--json"))
+    rows = sorted((p["settings"]["/flow/stress"], p["mean"], p["half_width"]) for p in table["points"])
+    if not rows[-1][1] - rows[-1][2] > rows[0][1] + rows[0][2]:
+        fail(f"rough spheres do not thicken: {rows}")
+    with open(root.outside(f"{HOME}/own.png"), "rb") as f:
+        if f.read(4) != b"\x89PNG":
+            fail("own.png is no picture")
+    say(f"from pip to a figure of one's own suspension in {time.monotonic() - started:.0f} s: {said.splitlines()[-1]}")
+    for stress, mean, half in rows:
+        print(f"      σ = {stress:<5g} η_r = {mean:.1f} ± {half:.1f}")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder")
@@ -170,9 +246,11 @@ def main():
         if not shutil.which(tool):
             fail(f"needs {tool}: apt install debootstrap binutils")
     archive = only(f"{arguments.folder}/peclet-*-linux-x86_64.tar.gz")
-    package = only(f"{arguments.folder}/peclet_*.deb")
+    package, wheel = only(f"{arguments.folder}/peclet_*.deb"), only(f"{arguments.folder}/peclet-*.whl")
     with debian(arguments) as root:
-        try_package(root, package, try_archive(root, archive))
+        digest = try_archive(root, archive)
+        try_package(root, package, digest)
+        try_wheel(root, wheel, digest)
 
 
 if __name__ == "__main__":
