@@ -122,15 +122,15 @@ with_clang() {
   ctest --preset clang --parallel 2 -L unit
 }
 
-# Whole simulations are left out, because the emulator is slow, and the tests of runner/, because
-# it starts no other programs.
+# Whole simulations and threads are left out, because the emulator is slow, and the tests of runner/ and of scripts,
+# because it starts no other programs.
 for_arm64() {
   say "Building for 64-bit ARM into build/arm64"
   cmake --preset arm64 -DBUILD_TESTING=ON >/dev/null
   cmake --build --preset arm64 --target contract_tests \
-    engine_{state,snapshots,pictures,flow,terms,scene,kernels,integrators,forces}_tests
+    engine_{state,snapshots,pictures,flow,terms,scene,kernels,integrators,forces,observables}_tests
   say "Running the unit tests by qemu"
-  ctest --preset arm64 --parallel 2 -L unit
+  ctest --preset arm64 --parallel 2 -L unit -E "Threads|SameBits|AgainstExplicit|Dumbbell|Measure"
 }
 
 tidy() {
