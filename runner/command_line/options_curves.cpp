@@ -104,8 +104,8 @@ point, with the interval of the mean as a band. Dashed curves are provisional. A
 needs their elements, as profiles/stress/total/xy.
 
 --scale-x and --scale-y divide an axis by a number in its unit, or by a number that follows from the scene:
-times and stresses such as brownian_time, shear_time, thermal_stress, critical_stress, repulsion_stress. An axis in 1 /
-time is multiplied by a time.
+times and stresses such as brownian_time, shear_time, thermal_stress, critical_stress, repulsion_stress. An
+axis in 1 / time is multiplied by a time.
 
 --with adds the points of another campaign. Curves then have the campaign's name; a parameter that one of the
 campaigns does not sweep has the value of its scene, or – if that has none. --where names parameters that all
