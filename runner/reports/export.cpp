@@ -163,7 +163,8 @@ class PointExport {
     read_seeds();
   }
 
-  Json json() const {
+  // Hands over the seeds, which are too large for a copy.
+  Json take() {
     Json json = {
         {"label", point_.label},
         {"hash", point_.hash},
@@ -175,13 +176,13 @@ class PointExport {
                                                                        : Json(nullptr)},
         {"derived", derived_},
         {"warnings", warnings_},
-        {"quantities", estimates_.json(level_)},
-        {"realisations", realisations_}};
+        {"quantities", estimates_.json(level_)}};
+    json["realisations"] = std::move(realisations_);
     if (!canonical_) {
       json["suspect"] = point_.suspect;
       json["cancelled"] = point_.cancelled;
       json["set_aside"] = to_json(database_.set_aside(point_.hash));
-      json["extra"] = extra_;
+      json["extra"] = std::move(extra_);
     }
     return json;
   }
@@ -211,7 +212,7 @@ class PointExport {
       const bool has_ended = record.state != SeedState::queued && record.state != SeedState::running;
       if (!has_ended || (canonical_ && record.seed >= seeds())) continue;
       const auto result = results_.find(record.seed);
-      Json json = result != results_.end() ? result->second : content_without_result(record);
+      Json json = result != results_.end() ? std::move(result->second) : content_without_result(record);
       if (!record.content_sha256.empty()) json["content_sha256"] = record.content_sha256;
       if (!canonical_) {
         json["files"] = files_.contains(record.seed) ? files_.at(record.seed) : Json::array();
@@ -267,7 +268,7 @@ std::string export_json(Database& database, bool canonical) {
     std::vector<PointSummary> summaries;
     if (!canonical) summaries = summarise_points(database, campaign.target);
     for (const PointRecord& record : database.points()) {
-      Json point = PointExport(database, check, record, campaign.target, canonical).json();
+      Json point = PointExport(database, check, record, campaign.target, canonical).take();
       if (!canonical) point["endings"] = to_json(summaries[static_cast<std::size_t>(*record.place)].endings);
       text += separator + canonical_json(point);
       separator = ",\n";
