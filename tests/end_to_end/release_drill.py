@@ -3,7 +3,8 @@
 
 Tests the packages that `./bootstrap.sh package` writes to FOLDER (build/package) on a bare Debian, as a user
 without rights: the smallest that debootstrap makes, in a folder. Needs root, debootstrap, readelf and a
-mirror; takes some ten minutes, half of them for the last campaign. --root keeps that folder for the next time. Requirements:
+mirror; takes some ten minutes, half of them for the last campaign. --root keeps that folder for the next time.
+Requirements:
 
     programs  need no shared library
     .tar.gz   unpacked by the user, runs the demonstration, also after a move; has studies, adapters and manual
