@@ -8,6 +8,7 @@
 
 #include "contract/errors.h"
 #include "contract/sha256.h"
+#include "engine/integrators/derived_groups.h"
 #include "engine/integrators/stability.h"
 #include "engine/kernels/pair_kinds.h"
 #include "engine/observables/observable.h"
@@ -93,15 +94,19 @@ Schedule make_schedule(const Scene& scene, const std::string& file) {
   return schedule;
 }
 
-std::optional<Warning> warning_of_length(const Scene& scene, const Schedule& schedule) {
+std::vector<Warning> schedule_warnings(const Scene& scene, const Schedule& schedule) {
   constexpr double most = 1e13, a_second = 1e6;  // steps of a sphere; docs/speed.md
-  const double work = static_cast<double>(schedule.total()) * static_cast<double>(scene.particles.count);
-  if (work <= most) return std::nullopt;
-  return Warning{"long",
-                 fmt::format("a seed has {:.2g} steps of {} spheres, of the order of {:.1g} years of a "
-                             "processor: are all numbers in one system of units?",
-                             static_cast<double>(schedule.total()), scene.particles.count,
-                             work / a_second / (365 * 24 * 3600.0))};
+  const auto steps = static_cast<double>(schedule.total());
+  const double work = steps * static_cast<double>(scene.particles.count);
+  std::vector<Warning> warnings;
+  if (work > most) {
+    warn(warnings, "long",
+         "a seed has {:.2g} steps of {} spheres, of the order of {:.1g} years of a processor: are all "
+         "numbers in "
+         "one system of units?",
+         steps, scene.particles.count, work / a_second / (365 * 24 * 3600.0));
+  }
+  return warnings;
 }
 
 std::string motion_of(const Scene& scene, const Schedule& schedule) {

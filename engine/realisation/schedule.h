@@ -25,8 +25,8 @@ struct Schedule {
 // too large, the production window is shorter than its 32 blocks, or a phase has too many steps.
 Schedule make_schedule(const Scene& scene, const std::string& file);
 
-// Returns the warning `long` if a seed takes months; empty otherwise.
-std::optional<Warning> warning_of_length(const Scene& scene, const Schedule& schedule);
+// Returns the warning `long` if a seed takes months.
+std::vector<Warning> schedule_warnings(const Scene& scene, const Schedule& schedule);
 
 // Returns the SHA-256 of the scene without durations, observables and files, and of the size of the step.
 std::string motion_of(const Scene& scene, const Schedule& schedule);

@@ -181,11 +181,9 @@ class Worker {
       answer["observables"] = names_of_targets(scene, schedule);
       answer["hints"] = target_hints(scene);
       answer["warnings"] = Json::array();
-      for (const std::vector<Warning>& warnings : {scene_warnings(scene), warnings_before_run(scene)}) {
+      for (const std::vector<Warning>& warnings :
+           {scene_warnings(scene), warnings_before_run(scene), schedule_warnings(scene, schedule)}) {
         for (const Warning& warning : warnings) answer["warnings"].push_back(warning);
-      }
-      if (const std::optional<Warning> endless = warning_of_length(scene, schedule)) {
-        answer["warnings"].push_back(*endless);
       }
     } catch (const InputError& error) {
       answer["type"] = "refused";

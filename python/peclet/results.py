@@ -403,10 +403,12 @@ class Results:
         if not figure["x"]["categories"]:
             axes.autoscale()  # includes other curves in these axes
         known = axes.get_legend_handles_labels()[1]
-        for k, handle in enumerate(legend_of(figure)):
-            if k < len(figure["legend"]) or handle.get_label() not in known:  # signs that all curves share, once
-                axes.add_line(handle)
-        if axes.get_legend_handles_labels()[1]:
+        handles, curves = legend_of(figure), len(figure["legend"])
+        # Signs that all curves share, such as "not converged", are named once.
+        handles[curves:] = [handle for handle in handles[curves:] if handle.get_label() not in known]
+        for handle in handles:
+            axes.add_line(handle)
+        if handles:
             axes.legend(frameon=False)
         return axes
 

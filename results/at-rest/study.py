@@ -7,7 +7,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.driver import BLUE, Check, ERROR, Figure, Finding, GREEN, JAMMED_AT_REST, RED, REFERENCE_SCENE, SLOWEST
-from studies.driver import at_peclet, difference, diverging, entries, estimate, first, flow_over_rest, in_brownian_times
+from studies.driver import at_peclet, diverging, entries, estimate, first, flow_over_rest, in_brownian_times, in_errors
 from studies.driver import main, merged, number, over, price, quotient, read_rows, row_ratio, seconds_of_window, shade
 from studies.driver import slow_rows, storage_by_loss, viscosity_at_high_frequency, where, write_rows, write_table
 import numpy as np
@@ -122,17 +122,16 @@ def measure(program):
     write_table(HERE / "prices.csv", "fraction, peclet, count, seeds, viscosity±, seconds±, foretold", prices, 4)
 
 
-def in_errors(a, b):
-    """Returns the difference of two viscosities over its standard error, and an error of 0."""
-    value, error = difference(number(a, "viscosity"), number(b, "viscosity"))
-    return value / error, 0.0
+def viscosities_in_errors(a, b):
+    """Returns the difference of two rows' viscosities over its standard error, and an error of 0."""
+    return in_errors(number(a, "viscosity"), number(b, "viscosity"))
 
 
 def compared(table, label, **which):
     """Returns the check that both estimates of one point agree."""
     row, other = (first(table, by=by, **which) for by in ("momentum", "correlation"))
     text = f"{label}: by correlation less by momentum, in standard errors"
-    return Check(text, "two forms", *in_errors(other, row), -3, 3)
+    return Check(text, "two forms", *viscosities_in_errors(other, row), -3, 3)
 
 
 def two_forms(table):
@@ -156,11 +155,11 @@ def size_and_step(table):
     for (fraction, text), which in others.items():
         usual, other = (first(table, fraction=fraction, by="momentum", **w) for w in (USUAL, which))
         text = f"φ = {fraction:g}: {text}, in standard errors"
-        yield Check(text, "size and step", *in_errors(other, usual), -3, 3)
+        yield Check(text, "size and step", *viscosities_in_errors(other, usual), -3, 3)
     yield compared(table, "φ = 0.3, N = 1000", fraction=0.3, count=1000, step="automatic")
     for fraction, row in slow_rows().items():
         text = f"φ = {fraction:g}: η_r at Pe = {SLOWEST:g} less at rest, in standard errors"
-        yield Finding(text, "slow shear", *in_errors(row, usual_rows(table)[fraction]))
+        yield Finding(text, "slow shear", *viscosities_in_errors(row, usual_rows(table)[fraction]))
 
 
 def modulus(curves, fraction, name):

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from studies.estimates import difference
+from studies.estimates import difference, in_errors
 from studies.published import gap_of, linear_mixture, rods
 from studies.scenes import REFERENCE_SCENE, merged
 from studies.verdicts import Statement
@@ -106,8 +106,7 @@ def alike(text, source, one, other):
     They are one suspension in two units, in which steps are the same bit by bit (tests/physics/units_test), so that
     only their random numbers differ.
     """
-    value, error = difference(one, other)
-    return Statement(f"{text}, in standard errors", source, value / error, 0, -3, 3)
+    return Statement(f"{text}, in standard errors", source, *in_errors(one, other), -3, 3)
 
 
 @functools.cache

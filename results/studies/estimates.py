@@ -33,6 +33,12 @@ def difference(a, b):
     return a[0] - b[0], math.hypot(a[1], b[1])
 
 
+def in_errors(a, b):
+    """Returns a - b of two independent numbers over its standard error, and an error of 0."""
+    value, error = difference(a, b)
+    return value / error, 0.0
+
+
 def quotient(a, b):
     """Returns a / b of two independent numbers."""
     value = a[0] / b[0]

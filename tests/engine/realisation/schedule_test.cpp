@@ -33,13 +33,13 @@ TEST(Schedule, TheFirstLimitThatIsReachedEndsAPhase) {
 
 // 200 times 4.9e10 steps are below 10^13, 5.1e10 are not; at 10^6 a second 10^13 are 0.3 years.
 TEST(Schedule, SaysWhichSeedsTakeMonths) {
-  const auto warning = [](std::uint64_t steps) {
+  const auto warnings = [](std::uint64_t steps) {
     Scene scene = read_scene(small_scene(), "scene.json");
     scene.particles.count = 200;
-    return warning_of_length(scene, {0.1, 0, steps});
+    return schedule_warnings(scene, {0.1, 0, steps});
   };
-  EXPECT_FALSE(warning(49'000'000'000));
-  EXPECT_NE(warning(51'000'000'000)->message.find("of the order of 0.3 years"), std::string::npos);
+  EXPECT_TRUE(warnings(49'000'000'000).empty());
+  EXPECT_NE(warnings(51'000'000'000).at(0).message.find("of the order of 0.3 years"), std::string::npos);
 }
 
 // A cycle of 2 has 1000 steps of 0.002, rounded up for other steps; a step is at most a 128th of a cycle.
