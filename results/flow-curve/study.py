@@ -117,7 +117,8 @@ def lubrication_rows(curve):
     """Yields rows about the increase of lubrication. "Weakly" has no published number, and depends on the terms that
     are counted as hydrodynamic."""
     pairs = curve.ratio("lubrication", 1e4, 1)
-    yield curve.row(Statement, "lubrication at Pe = 10⁴ over that at 1: it increases", pairs, low=1)
+    text = "lubrication at Pe = 10⁴ over that at 1: it increases (published: weakly)"
+    yield curve.row(Statement, text, pairs, low=1, essential=False)
     for text, more in (("2.5 φ", 2.5 * curve.fraction), ("1 + 2.5 φ", 1 + 2.5 * curve.fraction)):
         parts = ((number(curve.at[p], "lubrication")[0] + more, curve.at[p]["lubrication_error"]) for p in (1e4, 1))
         yield curve.row(Finding, f"lubrication + {text} at Pe = 10⁴ over that at 1", quotient(*parts))
@@ -232,7 +233,7 @@ def draw_overview():
     figure = Figure(HERE / "overview.png", columns=1, size=(1000, 460))
     ends = {"x_range": (3.5e-3, 4e4), "y_range": (3, 130)}
     bare = {row["fraction"]: row for row in where(read_rows(HERE / "table.csv"), method=WITHOUT_NOISE)}
-    titles = "Péclet number Pe (shear over Brownian motion)", "relative viscosity η_r"
+    titles = "Péclet number Pe = 6πηa³γ̇/kT", "relative viscosity η_r, with 1 + 2.5 φ"
     panel = figure.panel(*titles, log="xy", powers="x", **ends)
     table = read_rows(HERE / "curve.csv")
     for fraction, colour in ((0.55, GREEN), (0.5, RED), (0.45, BLUE)):
@@ -243,10 +244,10 @@ def draw_overview():
         panel.points(points, f"volume fraction φ = {fraction:.2f}", colour)
         panel.line([(row["peclet"], row["curve"]) for row in flowing], None, colour)
         rest = [(5e-3, row["viscosity"], row["half_width"]) for row in rows if row["peclet"] == 0]
-        panel.points(rest, "at rest" if colour == BLUE else None, colour, 6)
+        panel.points(rest, "left: at rest" if colour == BLUE else None, colour, 6)
         value, error = number(bare[fraction], "viscosity")
         half = t.ppf(0.975, bare[fraction]["seeds"] - 1) * error
-        panel.points([(2.5e4, value, half)], "without noise" if colour == BLUE else None, colour, 4)
+        panel.points([(2.5e4, value, half)], "right: without noise" if colour == BLUE else None, colour, 4)
     figure.draw()
 
 
@@ -261,7 +262,7 @@ def draw():
     }
     figure = Figure(HERE / "chart.png", columns=3, size=(1400, 460))
     rest = table_at_rest()
-    for fraction, largest in zip(FRACTIONS, (100, 200, 600)):
+    for fraction, largest in zip(FRACTIONS, (200, 400, 1200)):
         ends = {"x_range": (5e-3, 3e4), "y_range": (0.1, largest)}
         panel = figure.panel("Pe", "σ / (η γ̇)", f"φ = {fraction:g}", log="xy", powers="x", **ends)
         for name, (colour, mark, title) in terms.items():
@@ -270,7 +271,7 @@ def draw():
         panel.level(diverging(fraction, JAMMED_IN_STRONG_FLOW), None, GREY, (3e3, 3e4), width=3)
         if fraction in rest:
             recipe = rest[fraction]["viscosity"]
-            panel.level(recipe, "its integral at rest (zero-shear)", GREEN, (5e-3, 0.1), width=2, dash=2)
+            panel.level(recipe, "integral of it at rest (zero-shear)", GREEN, (5e-3, 0.1), width=2, dash=2)
     figure.draw()
 
 
