@@ -44,6 +44,13 @@ def fit_with_error(rows, quantity, function=jammed_and_exponent):
     return [(value, math.hypot(a, b), a, b) for value, a, b in zip(whole, by_seeds, by_fractions)]
 
 
+def rest_of(rows, quantity, jammed, exponent):
+    """Returns the rms residual of ln η_r of a fit with the prefactor 1."""
+    return math.sqrt(
+        np.square([math.log(r[quantity] / diverging(r["fraction"], jammed, exponent)) for r in rows]).mean()
+    )
+
+
 def other_forms(rows, quantity, lowest):
     """Returns other fits to points from `lowest` on: phi_J with lambda = 1.5; phi_J, lambda and c of
     c (1 - phi / phi_J)^-lambda. Least squares in the logarithm, with rms residuals."""
@@ -170,12 +177,17 @@ def measure(program):
         table.append({"method": f"{method} at rate 0.045", **row})
     names = "method, peclet, fraction, seeds, lost, transient, viscosity±, pairs±, lubrication±, contact±, brownian±"
     write_table(HERE / "table.csv", f"{names}, time±", table, 4)
+
+
+def write_fits(curves):
+    """Writes fits.csv and forms.csv, for curves by name."""
     parts = ("", "_error", "_by_seeds", "_by_fractions")
-    columns = ["peclet", "quantity", *(name + part for name in ("jammed", "exponent") for part in parts)]
-    fits = [(p, reading, *sum(fit_with_error(curves[p], reading), ())) for p in curves for reading in READINGS]
-    write_rows(HERE / "fits.csv", [dict(zip(columns, fit)) for fit in fits], 4)
-    cases = [(p, q, f) for p in curves for q in READINGS for f in (0.40, 0.48)]
-    rows = [{"peclet": p, "quantity": q, "lowest": f, **other_forms(curves[p], q, f)} for p, q, f in cases]
+    columns = ["of", "quantity", *(name + part for name in ("jammed", "exponent") for part in parts)]
+    fits = [(name, q, *sum(fit_with_error(curves[name], q), ())) for name in curves for q in READINGS]
+    rows = [{**dict(zip(columns, fit)), "rest": rest_of(curves[fit[0]], fit[1], fit[2], fit[6])} for fit in fits]
+    write_rows(HERE / "fits.csv", rows, 4)
+    cases = [(name, q, f) for name in curves for q in READINGS for f in (0.40, 0.48)]
+    rows = [{"of": name, "quantity": q, "lowest": f, **other_forms(curves[name], q, f)} for name, q, f in cases]
     write_rows(HERE / "forms.csv", rows, 4)
 
 
@@ -187,24 +199,23 @@ def draw_divergence(panel, title, colour, power, jammed, exponent, **style):
 def draw():
     curves, _ = curves_of_table()
     rest, how = rows_at_rest()
-    fits = {p: [found[0] for found in fit_with_error(rows, "pairs")] for p, rows in curves.items()}
+    by_response = [rest[f] for f in sorted(rest) if f >= FRACTIONS[0]]
+    write_fits({**{NAMES[p]: rows for p, rows in curves.items()}, f"Pe → 0, {how}": by_response})
     figure = Figure(HERE / "chart.png", columns=2)
     ends = {"x_range": (0.38, 0.66)}
-    of_pairs = figure.panel("φ", "η_r of pairs", log="y", y_range=(1, 300), key="top left", **ends)
-    straight = figure.panel("φ", "(η_r of pairs)^{-2/3}", y_range=(0, 0.6), **ends)
-    for (peclet, rows), colour in zip(curves.items(), (BLUE, GREEN, RED)):
+    of_pairs = figure.panel("φ", "η_r of pairs", log="y", y_range=(1, 1000), key="top left", **ends)
+    straight = figure.panel("φ", "(η_r of pairs)^{-2/3}", y_range=(0, 0.85), key=None, **ends)
+    shown = [*((NAMES[p], rows, PUBLISHED[p], c, 7) for (p, rows), c in zip(curves.items(), (BLUE, GREEN, RED)))]
+    shown.append((f"Pe → 0, {how}", by_response, (None, None), ORANGE, 5))
+    for name, rows, (jammed, exponent), colour, mark in shown:
         numbers = [(r["fraction"], *number(r, "pairs")) for r in rows]
         raised = [(f, v ** (-2 / 3), e * 2 / 3 * v ** (-5 / 3)) if v > 0 else (f, math.nan, 0) for f, v, e in numbers]
-        fit, (jammed, exponent) = fits[peclet], PUBLISHED[peclet]
+        fit = [found[0] for found in fit_with_error(rows, "pairs")]
         for panel, points, power in ((of_pairs, numbers, 1), (straight, raised, -2 / 3)):
-            panel.points(points, NAMES[peclet], colour, size=0.8)
-
+            panel.points(points, name, colour, mark, 0.8)
             draw_divergence(panel, None, colour, power, *fit)
             if jammed:
                 draw_divergence(panel, f"published, φ_J = {jammed}", colour, power, jammed, exponent, dash=2)
-    slow = [(r["fraction"], *number(r, "pairs")) for r in rest.values()]
-    of_pairs.points(slow, how, ORANGE, 5, 0.9)
-    straight.points([(f, v ** (-2 / 3), e * 2 / 3 * v ** (-5 / 3)) for f, v, e in slow], how, ORANGE, 5, 0.9)
     figure.draw()
 
 

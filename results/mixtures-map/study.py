@@ -9,21 +9,7 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.compositions import ALIKE, ALIKE_NOISE, DENSITY, MIXTURE_SCENE, NOISE, STIFFNESS, THERMAL_ENERGY, alike
 from studies.compositions import composition_row, draw_models, from_nearer_model, mean_peclet, setting_of, windows
-from studies.driver import (
-    BLACK,
-    BLUE,
-    Check,
-    Figure,
-    Finding,
-    GREEN,
-    GREY,
-    Hours,
-    ORANGE,
-    PURPLE,
-    RED,
-    Statement,
-    difference,
-)
+from studies.driver import BLACK, BLUE, Check, Figure, Finding, GREEN, Hours, ORANGE, PURPLE, RED, Statement, difference
 from studies.driver import entries, first, main, merged, number, over, place_of_largest, propagated, quotient
 from studies.driver import read_numbers, read_rows, row_ratio, viscosity_row, where, write_numbers, write_rows
 from studies.driver import write_table
@@ -323,21 +309,21 @@ def draw():
         1: ("Pe_{cg} = 1", BLACK, 9),
         10: ("Pe_{cg} = 10", GREEN, 5),
         100: ("Pe_{cg} = 100", ORANGE, 11),
-        ROUGH: ("no noise", RED, 7),
-        FIXED: ("Pe_c = 1", GREY, 4),
+        ROUGH: ("μ = 1, no noise", RED, 7),
+        FIXED: ("Pe_c = 1", BLACK, 4),
     }
     for row, (title, colour, mark) in styles.items():
         panel.points([(a, *jams.jammed(row, a)) for a in jams.shares(row)], title, colour, mark)
-    range_ = {"x_range": (0.54, 0.74), "y_range": (10, 1e4)}
-    title = "α = 0.4 (filled) and 0 (open); ×: jams"
+    range_ = {"x_range": (0.54, 0.76), "y_range": (10, 1e4)}
+    title = "α = 0.4 (filled) and 0 (open); × and +: these jam"
     panel = figure.panel("φ", "η_r", title, log="y", key="center right", **range_)
-    for alpha, marks in ((0.4, 7), (0, 6)):
+    for alpha, mark, jam_mark in ((0.4, 7, 2), (0, 6, 1)):
         for row in (0.1, 1, 10, 100, ROUGH):
             title, colour, _ = styles[row]
             flowing = where(jams.curve(row, alpha), state="flowing")
-            panel.rows(flowing, "fraction", "viscosity", None if alpha else title, colour, marks, joined=True)
+            panel.rows(flowing, "fraction", "viscosity", None if alpha else title, colour, mark, joined=True)
             jammed = [r["fraction"] for r in jams.curve(row, alpha) if r["state"] != "flowing"]
-            panel.points([(min(jammed), 9e3, 0)] if jammed else [], None, colour, 2)
+            panel.points([(min(jammed), 8e3, 0)] if jammed else [], None, colour, jam_mark, 1.3)
     figure.draw()
 
 
