@@ -13,8 +13,8 @@ LONGEST = 190  # characters of an answer
 HEAD = """# Studies
 
 Each page begins with its question, its picture and its answer. [How studies are repeated and
-judged](../docs/studies.md); [the published statements](../docs/statements.md) one by one. *Hours* are the processor
-hours that the numbers of the study took; – where a page has no such count.
+judged, and what their symbols mean](../docs/studies.md); [the published statements](../docs/statements.md) one by one.
+*Hours* are the processor hours that the numbers of the study took; – where a page has no such count.
 
 <!-- written by index.py -->
 """

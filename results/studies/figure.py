@@ -13,8 +13,8 @@ from studies.tables import number
 BLUE, GREEN, ORANGE, RED, PURPLE = "#2060b0", "#308030", "#d08020", "#c03028", "#8040a0"
 BLACK, GREY, LIGHT_GREY = "#000000", "#a0a0a0", "#d8d8d8"
 # Markers by number: matplotlib's marker, and True if it is filled.
-MARKS = {1: ("+", True), 2: ("x", True), 4: ("s", False), 5: ("s", True), 6: ("o", False), 7: ("o", True), 8: ("^", False)}
-MARKS |= {9: ("^", True), 10: ("v", False), 11: ("v", True), 12: ("D", False), 13: ("D", True)}
+MARKS = {1: ("+", True), 2: ("x", True), 4: ("s", False), 5: ("s", True), 6: ("o", False), 7: ("o", True)}
+MARKS |= {8: ("^", False), 9: ("^", True), 10: ("v", False), 11: ("v", True), 12: ("D", False), 13: ("D", True)}
 DASHES = {1: "-", 2: "--", 3: ":", 4: "-."}
 POINTS, DPI = 10, 100  # size of the text [points]; dots per inch
 STYLE = {"font.size": POINTS, "axes.labelsize": POINTS, "axes.titlesize": POINTS, "legend.fontsize": POINTS - 1}

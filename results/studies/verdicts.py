@@ -28,8 +28,9 @@ HEADS = {
     "finding": ("finding", "about", "value ± standard error"),
 }
 BEGIN, END = "<!-- rows, written by study.py -->", "<!-- end of rows -->"
-LEGEND = """A row is *open* while its 95 % interval contains a bound ([rules](../../docs/studies.md)). L and M are [the
-publications](../../docs/statements.md)."""
+LEGEND = """\
+A row is *open* while its 95 % interval contains a bound ([rules and symbols](../../docs/studies.md)). L and M are
+[the publications](../../docs/statements.md)."""
 ROUNDING = 1e-12  # a relative error below this is due to floating point
 
 
