@@ -103,7 +103,7 @@ def draw():
     panel = figure.panel("Pe", "variance over that of η_r", log="x", powers="x", **ends)
     for k, (name, colour) in enumerate(COLOURS.items()):
         rows = [(r["peclet"] * 1.12 ** (k - 1), *number(r, "ratio")) for r in table if r["controls"] == name]
-        panel.points(rows, name, colour, joined=True)
+        panel.points(sorted(rows), name, colour, joined=True)
     panel = figure.panel("average over, τ_B", "variance of η_r + B over that of η_r", log="x", key="top left", **axes)
     for peclet, colour in ((0.01, BLUE), (0.1, GREEN), (1, RED)):
         rows = [(r["brownian_times"], *number(r, "ratio")) for r in windows if r["peclet"] == peclet]
