@@ -8,7 +8,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.driver import BLUE, Check, Figure, Finding, GREY, MARI_FITS, RED, Statement, column, divergence, diverging
+from studies.driver import BLUE, Check, Figure, Finding, GREY, MARI_FITS, RED, Statement, column, divergence
 from studies.driver import entries, first, flags, groups, in_strains, main, mari_fit, merged, number, over, propagated
 from studies.driver import quotient, read_numbers, read_rows, read_texts, relative_difference, row_ratio, viscosity_row
 from studies.driver import where, with_pairs, write_numbers, write_rows, write_table
@@ -227,7 +227,6 @@ def measure(program):
     write_table(HERE / "table.csv", names, table, 4)
     fits = {key: fit_row(rows, *key) for key in itertools.product(NAMES, GAPS, FITTED)}
     write_rows(HERE / "fits.csv", list(fits.values()), 4)
-    draw(rows, fits)
     write_numbers(HERE / "numbers.csv", dict(unit_numbers(program)))
 
 
@@ -242,8 +241,10 @@ def fit_row(rows, friction, gap, part):
     return row
 
 
-def draw(rows, fits):
-    figure = Figure(HERE / "chart.png", columns=2)
+def draw():
+    texts = [r["variant"] for r in read_texts(HERE / "table.csv")]
+    rows = [row for row, text in zip(read_rows(HERE / "table.csv"), texts) if not text]
+    figure = Figure(HERE / "chart.png", columns=2, rows=2, size=(1100, 800))
     for friction, name in NAMES.items():
         title = f"{name}: μ = {friction}, N = {COUNTS[friction]}"
         ends = {"x_range": (0.28, 0.58), "y_range": (2, 2000 if friction else 100)}
@@ -252,16 +253,15 @@ def draw(rows, fits):
         panel.curve(lambda phi, m=friction: mari_fit(phi, m), "Mari fit (published)", span=span, width=2)
         for gap, colour in zip(GAPS, (BLUE, RED)):
             panel.rows(chosen(rows, friction, gap), "fraction", "viscosity", f"gap {gap} a", colour, 7, 0.9)
-            fit = fits[friction, gap, "one power"]
-
-            def of_fit(phi, fit=fit):
-                return fit["factor"] * diverging(phi, fit["jammed"], fit["exponent"])
-
-            ends = (0.28, min(0.58, fit["jammed"] - 0.002))
-            panel.curve(of_fit, f"fit to them: φ_J = {fit['jammed']:.3f}", colour, span=ends, dash=2)
-        points = chosen(rows, friction, GAPS[0])
-        twice = [(r["fraction"], *number(r, "double")) for r in points]
+        twice = [(r["fraction"], r["double_over_fit"] * r["fit"], 0) for r in chosen(rows, friction, GAPS[0])]
         panel.points(twice, f"gap {GAPS[0]} a, pairs counted twice", GREY, 6, 0.9)
+    for friction in NAMES:
+        low, high, share = COMPARED[friction]
+        panel = figure.panel("φ", "η_r over the published fit", x_range=(0.28, 0.58), y_range=(0.4, 1.2), key=None)
+        panel.band([(f, 1 - share, 1 + share) for f in (low, high)], GREY)
+        panel.level(1)
+        for gap, colour in zip(GAPS, (BLUE, RED)):
+            panel.rows(chosen(rows, friction, gap), "fraction", "viscosity_over_fit", None, colour, 7, 0.9, joined=True)
     figure.draw()
 
 
@@ -282,4 +282,4 @@ def quick_measure(program):
     yield from unit_rows(dict(unit_numbers(program)))
 
 
-main(HERE, TITLE, measure, quick_measure, judge)
+main(HERE, TITLE, measure, quick_measure, judge, draw)
