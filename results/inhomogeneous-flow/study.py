@@ -351,7 +351,7 @@ def draw():
         one.points([(y, v / scale, e / scale) for y, v, e in by_height("sine-50-56", name)], title, colour)
     kinds = (TRAINING, "training", BLUE), (PUBLISHED, "tests", ORANGE), (UNSEEN, "others", GREEN)
     ends = {"x_range": (1e-5, 1), "y_range": (1e-3, 10), "log": "xy", "key": "top left"}
-    one = figure.panel("J", "μ", "friction coefficient", powers="x", **ends)
+    one = figure.panel("J", "μ", "stress ratio", powers="x", **ends)
     one.rows(tables.uniform, "J", "mu", "uniform flow", BLACK, 7)
     for some, name, colour in kinds:
         one.rows(tables.bins(*some), "J", "mu", name, colour, 6)
