@@ -349,21 +349,31 @@ void warn_of_soft_contacts_under_stress(const Scene& scene, std::vector<Warning>
        overlap, most);
 }
 
-// Warns if thermal motion presses rough spheres together by much of the gap at which lubrication ends.
-void warn_of_soft_contacts_with_noise(const Scene& scene, std::vector<Warning>& warnings) {
-  // In colloids with grains eta_r is 140, 71, 43 and 41 +- 3 where this is 1.8, 0.9, 0.5 and 0.2 inner gaps;
-  // without friction it stays (results/mixtures-noise).
-  constexpr double most = 0.5;
+// Warns if friction sets in near the stress of this flow only because contacts are as soft as they are.
+// Thermal motion opens contacts that are pressed by much less than sqrt(k_n k_B T), so that the onset goes
+// with k_n, unless a repulsion or a critical load holds spheres apart up to a larger force.
+void warn_of_softness_at_onset_of_friction(const Scene& scene, std::vector<Warning>& warnings) {
+  // Half of the effect of friction is reached where stress a^2 is this part of sqrt(k_n k_B T), a sixth at a
+  // third and nine tenths at ten times that (results/friction-repulsion for phi = 0.45 to 0.53,
+  // results/mixtures-noise for k_n that differ 60-fold).
+  constexpr double part = 0.03;
   const Physics& physics = scene.physics;
-  const double a = scene.particles.reference_radius;
-  const double overlap = std::sqrt(physics.thermal_energy / physics.contact->normal_stiffness) / a;
-  const double gaps = overlap / physics.lubrication->inner_gap;
-  if (gaps < most) return;
+  const std::optional<Mixture>& mixture = scene.particles.mixture;
+  const double a = mixture && mixture->alpha > 0 ? mixture->grain_radius : scene.particles.reference_radius;
+  const double onset = part * std::sqrt(physics.contact->normal_stiffness * physics.thermal_energy);
+  const double repulsion = physics.repulsion ? -of_pair(*physics.repulsion, a, a).slope(0.0) : 0;
+  if (std::max(repulsion, physics.contact->critical_load) > onset) return;
+  const ControlledShear* const held = physics.flow.deformation().at_stress();
+  const double unit = held != nullptr ? held->stress() : physics.viscosity * physics.flow.rate();
+  // At a given rate the viscosity is not known; that of suspensions that friction may thicken is 3 to 100.
+  const auto [least, most] = held != nullptr ? std::pair(0.1, 10.0) : std::pair(3.0, 100.0);
+  const double units = onset / (a * a * unit);
+  if (!(least < units && units < most)) return;
   warn(warnings, "soft",
-       "thermal motion presses spheres together by sqrt(k_B T / k_n) = {:.2g} of a radius, {:.2g} of "
-       "the inner gap, so that friction acts where hard spheres do not touch: see whether four times "
-       "the normal_stiffness changes the viscosity",
-       overlap, gaps);
+       "thermal motion opens soft contacts, so that friction sets in near the stress 0.03 "
+       "sqrt(normal_stiffness k_B T) / a^2, here {:.2g} times {}: see whether four times the "
+       "normal_stiffness changes the viscosity, or give the repulsion that decides it",
+       units, held != nullptr ? "the given one" : "viscosity rate");
 }
 
 // Warns if the radius of reference is the first one of a distribution, far from the mean: few want its Pe.
@@ -427,8 +437,8 @@ std::vector<Warning> warnings_before_run(const Scene& scene) {
          "softer ones; a larger normal_stiffness cures it",
          *stiffness, stiff);
   }
-  if (physics.thermal_energy > 0 && physics.contact && physics.contact->friction > 0 && physics.lubrication)
-    warn_of_soft_contacts_with_noise(scene, warnings);
+  if (physics.thermal_energy > 0 && physics.contact && physics.contact->friction > 0)
+    warn_of_softness_at_onset_of_friction(scene, warnings);
   return warnings;
 }
 

@@ -200,21 +200,68 @@ TEST(WarningsBeforeRun, ACriticalLoadOfAnotherUnitIsSaid) {
   for (const double load : {0.18e-4, 0.22e4}) EXPECT_EQ(codes(load, false), Codes{"critical-load"}) << load;
 }
 
-// k_B T = 0.02 and an inner gap of 0.03: sqrt(0.02 / k_n) is 0.015 at k_n = 88.9.
-TEST(WarningsBeforeRun, RoughContactsThatAreSoftForTheNoiseAreSaid) {
-  const auto codes = [](double stiffness, double friction) {
-    const Json scene = small_scene({{"flow", {{"shear_rate", 0.01}}},
-                                    {"contact",
-                                     {{"normal_stiffness", stiffness},
-                                      {"friction", friction},
-                                      {"rolling_stiffness", nullptr},
-                                      {"rolling_friction", nullptr}}},
-                                    {"duration", {{"production", {{"time", 10}}}}}});
-    return codes_of(warnings_before_run(read_scene(scene, "scene.json")));
+// k_B T = 0.02: 0.03 sqrt(k_n k_B T) is 0.424 at k_n = 10^4 and 4.24 at 10^6.
+Codes codes_of_rough_noisy_scene(const Json& patch) {
+  const Json rough = {{"repulsion", nullptr},
+                      {"flow", {{"shear_rate", 0.1}}},  // viscosity times rate is 0.01
+                      {"contact", {{"rolling_stiffness", nullptr}, {"rolling_friction", nullptr}}},
+                      {"duration", {{"production", {{"time", 10}}}}}};
+  return codes_of(warnings_before_run(read_scene(small_scene(together({rough, patch})), "scene.json")));
+}
+const auto with_stiffness = [](double stiffness) {
+  return Json{{"contact", {{"normal_stiffness", stiffness}}}};
+};
+
+TEST(WarningsBeforeRun, AnOnsetOfFrictionThatSoftnessSetsIsSaid) {
+  const Codes soft{"soft"}, none;
+  const auto codes = codes_of_rough_noisy_scene;
+  EXPECT_EQ(codes(with_stiffness(1e4)), soft);
+  EXPECT_EQ(codes(with_stiffness(5.5e4)), soft);  // 99.5 times viscosity rate
+  EXPECT_EQ(codes(with_stiffness(5.6e4)), none);  // 100.4 times
+  const auto at_rate = [](double rate) { return Json{{"flow", {{"shear_rate", rate}}}}; };
+  EXPECT_EQ(codes(at_rate(1.4)), soft);  // 3.03 times
+  EXPECT_EQ(codes(at_rate(1.42)), none);
+  EXPECT_EQ(codes({{"contact", {{"friction", 0}}}}), none);
+  EXPECT_EQ(codes({{"fluid", {{"thermal_energy", nullptr}}}}), none);
+}
+
+TEST(WarningsBeforeRun, TheOnsetOfFrictionAtAGivenStressIsSaid) {
+  const auto codes = [](double stress) {
+    return codes_of_rough_noisy_scene(
+        {{"flow", {{"shear_rate", nullptr}, {"stress", stress}}},
+         {"contact", {{"normal_stiffness", 1e6}}},
+         {"duration", {{"production", {{"time", nullptr}, {"stress_times", 400}}}}}});
   };
-  EXPECT_EQ(codes(88, 0.5), Codes{"soft"});
-  EXPECT_EQ(codes(90, 0.5), Codes{});
-  EXPECT_EQ(codes(88, 0), Codes{});
+  EXPECT_EQ(codes(0.43), Codes{"soft"});
+  EXPECT_EQ(codes(0.42), Codes{});
+  EXPECT_EQ(codes(42), Codes{"soft"});
+  EXPECT_EQ(codes(43), Codes{});
+}
+
+// The force of the repulsion at contact is strength / (0.01 * 2 a).
+TEST(WarningsBeforeRun, NoOnsetOfFrictionThatARepulsionSetsIsSaid) {
+  const auto codes = codes_of_rough_noisy_scene;
+  const auto repelled = [](double strength) {
+    return Json{{"repulsion", {{"form", "exponential"}, {"strength", strength}, {"relative_length", 0.01}}}};
+  };
+  EXPECT_EQ(codes(repelled(0.0084)), Codes{"soft"});
+  EXPECT_EQ(codes(repelled(0.0086)), Codes{});
+  EXPECT_EQ(codes({{"contact", {{"critical_load", 0.42}}}}), Codes{"soft"});
+  EXPECT_EQ(codes({{"contact", {{"critical_load", 0.43}}}}), Codes{});
+}
+
+TEST(WarningsBeforeRun, TheOnsetOfFrictionInMixturesIsThatOfTheGrains) {
+  const auto codes = [](double alpha) {
+    const Json mixture = {{"colloids", {{{"radius", 1}, {"volume_share", 1}}}},
+                          {"grains", {{{"radius", 5}, {"volume_share", 1}}}},
+                          {"alpha", alpha}};
+    return codes_of_rough_noisy_scene(
+        {{"particles", {{"species", nullptr}, {"count", 500}, {"mixture", mixture}}},
+         {"volume_fraction", 0.3},
+         {"integrator", {{"method", "implicit"}, {"timestep", nullptr}}}});
+  };
+  EXPECT_EQ(codes(0), Codes{"soft"});
+  EXPECT_EQ(codes(0.5), Codes{});  // 42.4 / 25 times viscosity rate
 }
 
 // Radii 1 and 2 in equal numbers have the mean 1.5.
