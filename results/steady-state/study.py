@@ -17,7 +17,7 @@ BLOCKS = 32  # of the window, which begins with the packing
 WEAK, STRONG = 0.1, 1e4
 # By Peclet number: seeds, unit and length of the window, its early part, right after the published 3 to 4 Brownian
 # times or a strain of 2, and its late part, which gives the steady viscosity.
-RUNS = {WEAK: (80, "brownian_times", 96, (3, 6), (63, 96)), STRONG: (48, "strain", 8, (2, 3), (5, 8))}
+RUNS = {WEAK: (320, "brownian_times", 96, (3, 6), (63, 96)), STRONG: (48, "strain", 8, (2, 3), (5, 8))}
 # The thesis has two Brownian times, η a³ / kT (3.57) and one with 6π (2.3), and does not say which one is meant by 3 to
 # 4 times. As in other studies the nearer reading decides. LATER: 3 to 4 times with 6π, and the rest of the window.
 DIFFUSION_TIME = 6 * math.pi
@@ -145,7 +145,8 @@ def draw():
             points = [((r["from"] + r["to"]) / 2, *over(number(r, "pairs"), steady)) for r in rows]
             panel.points(points, f"φ = {fraction:g}", colour, 7, 0.7, joined=True)
         panel.level(1, span=(0, length))
-        panel.upright({WEAK: 4, STRONG: 2}[peclet])
+        for place in {WEAK: (4, LATER[0][0]), STRONG: (2,)}[peclet]:
+            panel.upright(place)
     figure.draw()
 
 
