@@ -111,9 +111,14 @@ def curve_of(rows, fraction):
     return where(rows, kind="thickening", fraction=fraction, control="stress")
 
 
+def flowing(curve):
+    """Returns the rows of which no seed jams; a jammed one has no viscosity."""
+    return [row for row in curve if row["flowing"] == 1]
+
+
 def slopes(rows, fraction):
     """Yields stress, d ln viscosity / d ln stress and its error between neighbours of the curve at given stresses."""
-    curve = curve_of(rows, fraction)
+    curve = flowing(curve_of(rows, fraction))
     for low, high in zip(curve, curve[1:]):
         width = math.log(high["at"] / low["at"])
         value = math.log(high["viscosity"] / low["viscosity"]) / width
@@ -149,7 +154,7 @@ def judge():
         share = sum(r["flowing"] * r["seeds"] for r in curve) / seeds
         error = math.sqrt(share * (1 - share) / seeds)
         yield Finding(f"φ = {fraction:.2f}: share of seeds that flow", "jamming", share, error)
-    for row in where(rows, kind="thickening", fraction=JUMPING):
+    for row in flowing(where(rows, kind="thickening", fraction=JUMPING)):
         if row["seeds"] > 1:
             text = f"φ = {JUMPING:.2f}, at a {row['control']} of {row['at']:g}: viscosity"
             yield Finding(text, "jump", *number(row, "viscosity"), row["seeds"] - 1)
@@ -169,21 +174,30 @@ def onset_of(steep):
 def draw():
     rows = read_rows(HERE / "table.csv")
     figure = Figure(HERE / "chart.png", columns=3, size=(1500, 480))
-    one = figure.panel("σ a²/F_{CL}", "η_r", "φ = 0.50 to 0.57; friction 1", log="xy", key="top left")
-    for fraction, colour in zip(THICKENING, (BLUE, GREEN, ORANGE, RED)):
-        one.rows(curve_of(rows, fraction), "at", "viscosity", f"at a stress, {fraction:.2f}", colour, joined=True)
+    ends = {"y_range": (10, 3e4), "key": "top left"}
+    one = figure.panel("σ a²/F_{CL}", "η_r", "φ = 0.50 to 0.57, friction 1; above: seeds jam", log="xy", **ends)
+    for fraction, colour, height in zip(THICKENING, (BLUE, GREEN, ORANGE, RED), (3e3, 6e3, 1.2e4, 2e4)):
+        curve = curve_of(rows, fraction)
+        one.rows(flowing(curve), "at", "viscosity", f"at a stress, {fraction:.2f}", colour, joined=True)
+        one.points([(r["at"], height, 0) for r in curve if r not in flowing(curve)], None, colour, 9)
     by_rate = [(r["at"] * r["viscosity"], *number(r, "viscosity")) for r, _ in pairs_of(rows, "grains")]
     one.points(by_rate, "at a rate, 0.50", BLUE, 6)
     two = figure.panel("γ̇ ηa²/F_{CL}", "σ a²/F_{CL}", f"φ = {JUMPING:.2f}", log="xy", key="top left", powers="y")
-    points = [(r["at"] / r["viscosity"], r["at"], 0) for r in curve_of(rows, JUMPING)]
+    points = [(r["at"] / r["viscosity"], r["at"], 0) for r in flowing(curve_of(rows, JUMPING))]
     two.points(points, "at a stress", ORANGE, joined=True)
     by_rate = where(rows, kind="thickening", fraction=JUMPING, control="rate")
     two.points([(r["at"], *scaled(number(r, "viscosity"), r["at"])) for r in by_rate], "at a rate", BLUE, 6)
-    three = figure.panel("Pe", "η_r", "colloids, φ = 0.45, no friction", log="x", key="top left")
-    for place, (title, colour, mark) in enumerate((("at a rate", BLUE, 7), ("at its stress", RED, 6))):
-        both = pairs_of(rows, "colloids")
-        points = [(6 * math.pi * pair[0]["at"], *number(pair[place], "viscosity")) for pair in both]
-        three.points(points, title, colour, mark)
+    title = "both controls"
+    three = figure.panel(
+        "Pe, and rate in 10⁻³ F_{CL}/ηa²", "η_r at the stress over at the rate", title, log="x", y_range=(0.9, 1.1)
+    )
+    three.level(1)
+    for kind, factor, name, colour in (
+        ("colloids", 6 * math.pi, "colloids, φ = 0.45, no friction", BLUE),
+        ("grains", 1e3, "grains, φ = 0.50, friction 1", RED),
+    ):
+        points = [(a["at"] * factor, *row_ratio(b, a, "viscosity")) for a, b in pairs_of(rows, kind)]
+        three.points(points, name, colour)
     figure.draw()
 
 
