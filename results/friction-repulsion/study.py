@@ -7,8 +7,8 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.driver import BLUE, Check, Figure, Finding, GREEN, ORANGE, RED, Statement, TABLE_SCENE, difference, during
-from studies.driver import first, in_strains, log_of_share, main, merged, number, propagated, quotient, read_rows
-from studies.driver import row_ratio, thickening_decades, viscosity_row, where, write_table
+from studies.driver import first, in_strains, log_of_share, main, merged, number, propagated, propagated_lists, quotient
+from studies.driver import read_rows, row_ratio, thickening_decades, viscosity_row, where, write_table
 import numpy as np
 
 TITLE = "Friction and repulsion in flow curves"
@@ -27,7 +27,12 @@ SCENE = merged(
     contact={"friction": 0},
     repulsion={"form": "exponential", "strength": 0},
 )
-SEEDS, SLOW_SEEDS, METHOD_SEEDS = 5, 8, 12
+SEEDS, SLOW_SEEDS, METHOD_SEEDS = 5, 8, 18
+# Curves with more seeds and Peclet numbers: their decades from the minimum to the end of the thickening are published.
+MORE, MORE_SEEDS = [(0.5, m, 0) for m in (0.5, 1)], 12
+MORE_PECLET = (4.6, 10, 22, 100, 460, 1e3, 2200, 1e4, 1e5, 1e6)
+# Curves with contacts four times as stiff, which move a thickening that softness brings about.
+STIFFER, STIFFER_NAME, STIFFER_STRENGTHS = 4, "four times k_n", (0, 100)
 # Largest rate, largest kT, eta, and the decay length of the repulsion of two unit spheres.
 RATE, THERMAL_ENERGY, VISCOSITY, LENGTH = 0.009, 0.017, 0.1, 0.02
 # Published thickening: volume fraction, friction, figure.
@@ -59,6 +64,11 @@ def curve_of(rows, *case):
     """Returns the rows of a volume fraction, a friction coefficient and a strength of the repulsion."""
     chosen = where(rows, **dict(zip(("fraction", "friction", "strength"), case)))
     return sorted(chosen, key=lambda r: r["peclet"])
+
+
+def coarse(curve):
+    """Returns the rows of a curve at the Peclet numbers that all curves have."""
+    return [row for row in curve if row["peclet"] in PECLET]
 
 
 def of_curve(curve, function):
@@ -108,7 +118,7 @@ def friction_rows(rows, degrees):
         yield Statement(text, "L4.9b", *ratio, low=1, degrees=degrees)
     for low, high in ((0.45, 0.5), (0.5, 0.53)):
         text = f"μ = 0.5, A = 0: η_r at Pe = 10⁶ over its least, φ = {high:g} over that at {low:g}"
-        curves = (curve_of(rows, f, 0.5, 0) for f in (high, low))
+        curves = (coarse(curve_of(rows, f, 0.5, 0)) for f in (high, low))
         grown = quotient(*(of_curve(curve, lambda x, values: values[-1] / min(values)) for curve in curves))
         yield Statement(text, "L4.9c", *grown, low=1, degrees=degrees)
 
@@ -117,11 +127,15 @@ def thickening_rows(rows, fraction, friction, source, degrees):
     name = f"φ = {fraction:g}, μ = {friction}"
     bare = curve_of(rows, fraction, friction, 0)
     if fraction == 0.5:
-        # The published decades have no definition; the bounds allow half a decade.
-        text = f"{name}, A = 0: decades of Pe from the minimum to 95 % of the thickening (published: 4 to 5)"
-        yield Statement(text, source, *of_curve(bare, thickening_decades), 3.5, 5.5, degrees, essential=False)
+        # Print does not say where its decades begin and end.
+        for share in (0.95, 0.99):
+            text = f"{name}, A = 0: decades of Pe from the minimum to {share:.0%} of the thickening (published: 4 to 5)"
+            found = of_curve(bare, lambda x, values, share=share: thickening_decades(x, values, share))
+            yield Finding(text.replace("%", " %", 1), source, *found, degrees)
         text = f"{name}, A = 0: decades of Pe from a tenth to nine tenths of the thickening"
         yield Finding(text, source, *width(bare), degrees)
+        text = f"{name}, A = 0: the same with one point a decade less that with two"
+        yield Finding(text, source, *difference(width(coarse(bare)), width(bare)), degrees)
     for strength in (1, 100, 1000):
         repelled = curve_of(rows, fraction, friction, strength)
         if not repelled:
@@ -162,6 +176,45 @@ def stress_rows(rows, degrees):
         yield Finding(f"{text} (0: the repulsion alone sets the stress)", "L4.9d", *less, degrees)
 
 
+def pressed(row, factor=1):
+    """Returns σa² of a row over sqrt(k_n kT), the force that thermal overlaps need; k_n is that of the table times
+    `factor`."""
+    energy = thermal_energy(row["peclet"])
+    stress = row["viscosity"] * row["peclet"] * energy / (6 * math.pi)
+    return stress / math.sqrt(factor * SCENE["contact"]["normal_stiffness"] * energy)
+
+
+def shared(curve, smooth, k):
+    """Returns ln(η_r/η_r without friction) at a place of a curve, over that at its end."""
+    numbers = [[number(row, "viscosity") for row in of] for of in (curve, smooth)]
+    return propagated_lists(numbers, lambda v: float(np.log(v[0][k] / v[1][k]) / np.log(v[0][-1] / v[1][-1])))
+
+
+def stiffness_rows(rows, stiffer, degrees):
+    """Yields findings about contacts four times as stiff. Without a repulsion friction sets in where the force on a
+    pair, about σa², is a given part of that of thermal overlaps, sqrt(k_n kT)."""
+    for strength in STIFFER_STRENGTHS:
+        soft, stiff = (coarse(curve_of(of, 0.5, 1, strength)) for of in (rows, stiffer))
+        text = (
+            f"φ = 0.5, μ = 1, A = {strength} kT: middle of the thickening with 4 k_n less that with k_n, decades of Pe"
+        )
+        yield Finding(text, "stiffness", *difference(middle(stiff), middle(soft)), degrees)
+    smooth, soft = (coarse(curve_of(rows, 0.5, friction, 0)) for friction in (0, 1))
+    stiff = coarse(curve_of(stiffer, 0.5, 1, 0))
+    numbers = [[number(r, "viscosity") for r in of] for of in (smooth, soft, stiff)]
+    places = [np.log([pressed(row, factor) for row in of]) for of, factor in ((soft, 1), (stiff, STIFFER))]
+    for k, peclet in enumerate(PECLET[1:4], 1):
+        for how, at in (("Pe", soft[k]["peclet"]), ("σa²/√(k_n kT)", None)):
+
+            def less(values, k=k, at=at):
+                bare, one, other = np.log(values)
+                share, then = ((of - bare) / (one[-1] - bare[-1]) for of in (one, other))
+                return float(then[k] - (share[k] if at else np.interp(places[1][k], places[0], share)))
+
+            text = f"Pe = {peclet:g}: share of the effect of friction with 4 k_n less that with k_n at the same {how}"
+            yield Finding(f"φ = 0.5, μ = 1, A = 0, {text}", "stiffness", *propagated_lists(numbers, less), degrees)
+
+
 def judge():
     table = read_rows(HERE / "table.csv")
     rows = where(table, method="implicit")
@@ -171,6 +224,7 @@ def judge():
         yield from thickening_rows(rows, *case, degrees)
     yield from plateau_rows(rows, degrees)
     yield from stress_rows(rows, degrees)
+    yield from stiffness_rows(rows, where(table, method=STIFFER_NAME), degrees)
     text = "φ = 0.5, μ = 0.5, A = 1000 kT, Pe = 10⁴: η_r with implicit steps over that with explicit ones"
     methods = [first(table, method=f"{m} at rate 0.045") for m in ("implicit", "explicit")]
     yield Check(text, "method", *row_ratio(*methods, "viscosity"), 0.9, 1.1, methods[1]["seeds"] - 1)
@@ -188,39 +242,61 @@ def measured_method(program, method):
 
 
 def measure(program):
-    rows = measured(program, "friction-repulsion", [(*c, p) for c in CURVES for p in PECLET], SEEDS)
+    others = [c for c in CURVES if c not in MORE]
+    rows = measured(program, "friction-repulsion", [(*c, p) for c in others for p in PECLET], SEEDS)
+    rows += measured(program, "more", [(*c, p) for c in MORE for p in MORE_PECLET], MORE_SEEDS)
     rows += measured(program, "slow", [(0.5, m, 0, SLOW) for m in FRICTIONS], SLOW_SEEDS)
+    stiff = {"contact": {"normal_stiffness": STIFFER * SCENE["contact"]["normal_stiffness"]}}
+    cases = [(0.5, 1, a, p) for a in STIFFER_STRENGTHS for p in PECLET]
+    stiffer = measured(program, "stiffer", cases, SEEDS, stiff)
     methods = {m: measured_method(program, m) for m in ("implicit", "explicit")}
     table = [{"method": "implicit", **r} for r in rows]
+    table += [{"method": STIFFER_NAME, **r} for r in stiffer]
     table += [{"method": f"{m} at rate 0.045", **r} for m, r in methods.items()]
     names = "method, fraction, friction, strength, peclet, seeds, lost, transient, viscosity±, pairs±, lubrication±, "
     write_table(HERE / "table.csv", names + "contact±, repulsion±, stress, stress_over_repulsion", table, 4)
-    draw(rows)
 
 
-def draw(rows):
-    figure = Figure(HERE / "chart.png", columns=2, rows=2, size=(1200, 900))
+def draw():
+    table = read_rows(HERE / "table.csv")
+    rows, stiffer = where(table, method="implicit"), where(table, method=STIFFER_NAME)
+    figure = Figure(HERE / "chart.png", columns=3, rows=2, size=(1600, 900))
     colours = (BLUE, GREEN, ORANGE, RED)
 
-    def panel(curves, x, label, x_range, y_range):
+    def panel(curves, title, x, label, x_range, y_range):
         ends = {"x_range": x_range, "y_range": y_range, "key": "top left"}
-        axes = figure.panel(label, "η_r of pairs", log="xy", powers="x", **ends)
-        for case, title, colour, mark in curves:
-            axes.rows(curve_of(rows, *case), x, "pairs", title, colour, mark, 0.8, joined=True)
+        axes = figure.panel(label, "η_r of pairs", title, log="xy", powers="x", **ends)
+        for case, name, colour, mark in curves:
+            axes.rows(curve_of(rows, *case), x, "pairs", name, colour, mark, 0.8, joined=True)
 
-    ends = (0.5, 2e6), (2, 300)
-    rough = [((0.5, m, 0), f"φ = 0.5, A = 0, μ = {m}", c, 7) for m, c in zip(FRICTIONS, colours)]
-    panel(rough, "peclet", "Pe", *ends)
-    repelled = [((0.5, 0.5, a), f"φ = 0.5, μ = 0.5, A = {a} k_B T", c, 7) for a, c in zip(STRENGTHS, colours)]
-    panel(repelled, "peclet", "Pe", *ends)
+    ends = "Pe", (0.5, 2e6), (2, 300)
+    rough = [((0.5, m, 0), f"μ = {m}", c, 7) for m, c in zip(FRICTIONS, colours)]
+    panel(rough, "friction: φ = 0.5, A = 0", "peclet", *ends)
+    repelled = [((0.5, 0.5, a), f"A = {a} kT", c, 7) for a, c in zip(STRENGTHS, colours)]
+    panel(repelled, "repulsion: φ = 0.5, μ = 0.5", "peclet", *ends)
     packed = [
-        ((f, 0.5, a), f"φ = {f:g}, μ = 0.5, A = {a} k_B T", c, mark)
-        for f, mark in ((0.45, 6), (0.5, 7), (0.53, 5))
+        ((f, 0.5, a), f"φ = {f:g}, A = {a} kT", c, mark)
+        for f, mark in ((0.53, 4), (0.5, 7), (0.45, 9))
         for a, c in ((0, BLUE), (1000, RED))
     ]
-    panel(packed, "peclet", "Pe", (0.5, 2e6), (1, 2000))
-    stressed = [((0.5, 1, a), f"φ = 0.5, μ = 1, A = {a} k_B T", c, 7) for a, c in zip(STRENGTHS, colours)]
-    panel(stressed, "stress", "σ a³ / k_B T (pairs)", (0.1, 1e7), (2, 300))
+    panel(packed, "volume fractions: μ = 0.5", "peclet", "Pe", (0.5, 2e6), (1, 2000))
+    stressed = [((0.5, 1, a), f"A = {a} kT", c, 7) for a, c in zip(STRENGTHS, colours)]
+    panel(stressed, "over stress: φ = 0.5, μ = 1", "stress", "σ a³ / kT of the pairs", (0.1, 1e7), (2, 300))
+    ends = {"x_range": (0.5, 2e6), "y_range": (2, 300), "key": "top left"}
+    axes = figure.panel("Pe", "η_r of pairs", "stiffness: φ = 0.5, μ = 1", log="xy", powers="x", **ends)
+    for strength, colour in zip(STIFFER_STRENGTHS, (BLUE, ORANGE)):
+        for of, name, mark in ((rows, "k_n", 7), (stiffer, "4 k_n", 4)):
+            title = f"A = {strength} kT, {name}"
+            axes.rows(curve_of(of, 0.5, 1, strength), "peclet", "pairs", title, colour, mark, 0.8, joined=True)
+    ends = {"x_range": (1e-3, 10), "y_range": (-0.05, 1.1), "key": "top left"}
+    axes = figure.panel(
+        "σ a² / (k_n kT)^{1/2}", "share of the effect of friction", "φ = 0.5, μ = 1, A = 0", log="x", **ends
+    )
+    smooth = coarse(curve_of(rows, 0.5, 0, 0))
+    for of, name, factor, mark in ((rows, "k_n", 1, 7), (stiffer, "4 k_n", STIFFER, 4)):
+        curve = coarse(curve_of(of, 0.5, 1, 0))
+        points = [(pressed(row, factor), *shared(curve, smooth, k)) for k, row in enumerate(curve)]
+        axes.points(points, name, BLUE, mark, joined=True)
     figure.draw()
 
 
@@ -235,4 +311,4 @@ def quick_measure(program):
     yield Statement(f"φ = 0.5, Pe = 1: {text}", "L4.9b", *ratio_of(*slow[::-1]), 0.5, 1.6, 7)
 
 
-main(HERE, TITLE, measure, quick_measure, judge)
+main(HERE, TITLE, measure, quick_measure, judge, draw)

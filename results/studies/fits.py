@@ -82,9 +82,9 @@ def log_of_share(abscissae, values, share):
     return log_of_rise(abscissae, values, share * math.log(last / lowest))
 
 
-def thickening_decades(abscissae, values):
-    """Returns the decades from the lowest point of a curve to 95 % of its rise in logarithms."""
-    return log_of_share(abscissae, values, 0.95) - log_minimum(abscissae, values)
+def thickening_decades(abscissae, values, share=0.95):
+    """Returns the decades from the lowest point of a curve to this share of its rise in logarithms."""
+    return log_of_share(abscissae, values, share) - log_minimum(abscissae, values)
 
 
 def divergence(fractions, numbers, start):
