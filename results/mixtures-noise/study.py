@@ -28,19 +28,19 @@ NUMBERS = (0.1, 1, 10, 100, 1e3, 1e5)  # Peclet numbers of the colloids
 FRACTION, SHARES = 0.565, (0, 0.5, 0.7, 1)  # a constant volume fraction, and its shares of grains
 SLOW_MEANS = (0.3, 1)  # Peclet numbers of the mean radius, for single groups only: a strain of mixtures takes long
 MEANS = (3, 10, 30, 100, 1e3, 1e5)  # Peclet numbers of the mean radius at this volume fraction
-SEEDS = 4
+SEEDS, MORE_SEEDS = 4, 16  # more where the published drop is
 # Bounds of d ln eta / d ln k_n: above the first a point is jammed but soft, below the second it flows.
 JAMMED, FLOWING = 0.5, 0.2
 
 
-def rows_of(program, part, cases, stiffness=STIFFNESS, count_times=1, besides=None):
+def rows_of(program, part, cases, stiffness=STIFFNESS, count_times=1, besides=None, seeds=SEEDS):
     """Yields rows for cases (share of grains, volume fraction, Peclet number of the colloids)."""
     settings = []
     for alpha, fraction, peclet in cases:
         more, count = {**(besides or {}), **windows(alpha, peclet)}, round(count_times * COUNTS[alpha])
         settings.append(setting_of(alpha, count, round(fraction, 4), stiffness, peclet, more))
     scene = NOISY if math.isfinite(cases[0][2]) else SCENE
-    for case, setting, point in zip(cases, settings, program.run(part, scene, settings, SEEDS)):
+    for case, setting, point in zip(cases, settings, program.run(part, scene, settings, seeds)):
         yield {
             "part": part,
             **composition_row(setting),
@@ -58,11 +58,11 @@ def line(base, numbers, shares=COLLOIDS_ADDED, fraction=colloids_added):
 def parts(program):
     fast = NUMBERS[1:]
     middle = (0.7, colloids_added(0.7, BASE))
-    yield from rows_of(program, "colloids-added", line(BASE, fast))
+    yield from rows_of(program, "colloids-added", line(BASE, fast), seeds=MORE_SEEDS)
     yield from rows_of(program, "colloids-added-soft", line(BASE, (1,)), SOFTER)
     for stiffness, name in ((STIFFNESS, "dense"), (SOFTER, "dense-soft")):
         yield from rows_of(program, name, line(DENSE, (1, 100)), stiffness)
-    yield from rows_of(program, "no-noise", line(BASE, (math.inf,)))
+    yield from rows_of(program, "no-noise", line(BASE, (math.inf,)), seeds=MORE_SEEDS)
     # Grains alone are colloids in other units, with the same hardness and inertia.
     grains = {"grains-alone": (BASE, (*NUMBERS, 1e4)), "fraction-grains": (FRACTION, (*SLOW_MEANS, *MEANS, 125))}
     for name, (fraction, peclets) in grains.items():
@@ -134,6 +134,10 @@ class Table:
     def __init__(self, rows):
         # A part and its slow part have different Peclet numbers.
         self._rows = {(r["part"].removesuffix("-slow"), r["alpha"], f"{r['peclet']:.4g}"): r for r in rows}
+
+    def degrees(self, part):
+        """Returns the degrees of freedom of the least seeds of a part, of points that have any."""
+        return min(r["seeds"] for r in self._rows.values() if r["part"] == part and r["seeds"]) - 1
 
     def viscosity(self, part, alpha, peclet):
         row = self._rows[part, alpha, f"{peclet:.4g}"]
@@ -231,9 +235,10 @@ def steepness(logarithms):
 def rows_of_colloids_added(table):
     """Yields statements about Figs 5.2 b, c and 5.6: colloids added to grains at 0.55."""
     of = {peclet: drops(table, peclet) for peclet in NUMBERS}
+    degrees, of_bare = table.degrees("colloids-added"), table.degrees("no-noise")
     best, fast = factor(of[1]), factor(of[1000])
     text = "grains at φ₀ = 0.55, Pe_c = 1: η_r at α = 1 over the smallest with colloids added"
-    yield Statement(text, "L5.2b", *best, 4, 12, DEGREES)
+    yield Statement(text, "L5.2b", *best, 4, 12, degrees)
     text = "grains at φ₀ = 0.55, Pe_c = 1: α of the smallest η_r with colloids added"
     yield Statement(text, "L5.2b", *place_of_largest(COLLOIDS_ADDED[1:], of[1]), 0.6, 0.8)
     decades = NUMBERS[:-1]
@@ -244,21 +249,21 @@ def rows_of_colloids_added(table):
     text = f"lg Pe_c at which {drop} is largest, of 0.1, 1, 10, 100, 1000"
     yield Statement(text, "L5.2b", *strongest, -1, 1)
     then = table.ratio("colloids-added", (0.6, 0.7), 1)
-    yield Statement("Pe_c = 1: η_r at α = 0.6 over that at 0.7", "L5.2b", *then, 1, math.inf, DEGREES)
+    yield Statement("Pe_c = 1: η_r at α = 0.6 over that at 0.7", "L5.2b", *then, 1, math.inf, degrees)
     text = "Pe_c = 1, α = 0.5: d ln η_r/d ln k_n (jams: 1)"
     yield Statement(text, "L5.2b", *table.stiffening("colloids-added", 0.5, 1), JAMMED, math.inf, DEGREES)
     alone = quotient(*(table.viscosity("colloids-added", 1, peclet) for peclet in (1, 1e5)))
-    yield Statement("grains alone: η_r at Pe_c = 1 over that at 10⁵", "L5.2b", *alone, 0.5, math.inf, DEGREES)
+    yield Statement("grains alone: η_r at Pe_c = 1 over that at 10⁵", "L5.2b", *alone, 0.5, math.inf, degrees)
     near = propagated(table.curve("grains-added", 0, NUMBERS), lambda v: math.exp(v[1] - min(v)))
     yield Statement("colloids alone: η_r at Pe_c = 1 over its minimum", "L5.2b", *near, high=1.3, degrees=DEGREES)
-    yield Statement(f"Pe_c = 1000: {drop}", "L5.2b", *fast, 1.2, math.inf, DEGREES)
+    yield Statement(f"Pe_c = 1000: {drop}", "L5.2b", *fast, 1.2, math.inf, degrees)
     less = quotient(fast, best)
-    yield Statement(f"{drop}: at Pe_c = 1000 over at 1", "L5.2c", *less, high=0.5, degrees=DEGREES)
+    yield Statement(f"{drop}: at Pe_c = 1000 over at 1", "L5.2c", *less, high=0.5, degrees=degrees)
     for peclet in NUMBERS[1:-1]:
         text = f"Pe_c = {peclet:g}: η_r at α = 0.9 over that of grains alone"
-        yield Statement(text, "L5.2c", *table.ratio("colloids-added", (0.9, 1), peclet), high=1, degrees=DEGREES)
+        yield Statement(text, "L5.2c", *table.ratio("colloids-added", (0.9, 1), peclet), high=1, degrees=degrees)
     none = factor(drops(table, math.inf, "no-noise"))
-    yield Statement(f"without noise: {drop}", "L5.2c", *none, 1.2, math.inf, DEGREES)
+    yield Statement(f"without noise: {drop}", "L5.2c", *none, 1.2, math.inf, of_bare)
     curves = [table.curve("grains-alone", 1, [peclet / 125 for peclet in NUMBERS])]
     curves += [table.curve("colloids-added", alpha, NUMBERS) for alpha in SLOW_ADDED[1:]]
 
@@ -269,10 +274,10 @@ def rows_of_colloids_added(table):
     more = propagated_lists(curves, wider)
     yield Statement("decades of thickening, the most of α = 0.9, 0.8, 0.7 less those of α = 1", "L5.2b", *more, 0)
     less = quotient(none, best)
-    yield Statement(f"{drop}: without noise over at Pe_c = 1", "L5.2c", *less, high=1, degrees=DEGREES)
+    yield Statement(f"{drop}: without noise over at Pe_c = 1", "L5.2c", *less, high=1, degrees=of_bare)
     for before, then in ((1, 0.9), (0.9, 0.8)):
         text = f"without noise: η_r at α = {then:g} over that at {before:g}"
-        yield Statement(text, "L5.2", *table.ratio("no-noise", (then, before), math.inf), high=1, degrees=DEGREES)
+        yield Statement(text, "L5.2", *table.ratio("no-noise", (then, before), math.inf), high=1, degrees=of_bare)
     for peclet in (1, 100):
         name = f"grains at φ₀ = 0.60, Pe_c = {peclet:g}: d ln η_r/d ln k_n at α"
         for alpha, low, high in ((1, JAMMED, math.inf), (0.8, -math.inf, FLOWING), (0.5, JAMMED, math.inf)):
@@ -330,7 +335,7 @@ def checks(table):
     for peclet in (1, 1e3):
         stiff = quotient(table.viscosity("stiff", 0.7, peclet), table.viscosity("colloids-added", 0.7, peclet))
         text = f"α = 0.7, Pe_c = {peclet:g}: η_r with contacts 4 times as stiff over η_r"
-        yield Check(text, "stiffness", *stiff, 0.95, 1.05, DEGREES)
+        yield Finding(text, "stiffness", *stiff, DEGREES)  # no check: with noise k_n sets where friction begins
     stiffer = over(logarithm(quotient(table.viscosity("stiff", 0.7, 1), base)), math.log(4))
     for steps, slope in (
         ("2.5·10⁴ to 10⁵", table.stiffening("colloids-added", 0.7, 1)),
