@@ -370,10 +370,10 @@ void warn_of_softness_at_onset_of_friction(const Scene& scene, std::vector<Warni
   const double units = onset / (a * a * unit);
   if (!(least < units && units < most)) return;
   warn(warnings, "soft",
-       "thermal motion opens soft contacts, so that friction sets in near the stress 0.03 "
+       "thermal motion opens soft contacts, so that friction sets in near the stress {:g} "
        "sqrt(normal_stiffness k_B T) / a^2, here {:.2g} times {}: see whether four times the "
        "normal_stiffness changes the viscosity, or give the repulsion that decides it",
-       units, held != nullptr ? "the given one" : "viscosity rate");
+       part, units, held != nullptr ? "the given one" : "viscosity rate");
 }
 
 // Warns if the radius of reference is the first one of a distribution, far from the mean: few want its Pe.

@@ -101,9 +101,8 @@ std::vector<Warning> schedule_warnings(const Scene& scene, const Schedule& sched
   std::vector<Warning> warnings;
   if (work > most) {
     warn(warnings, "long",
-         "a seed has {:.2g} steps of {} spheres, of the order of {:.1g} years of a processor: are all "
-         "numbers in "
-         "one system of units?",
+         "a seed has {:.2g} steps of {} spheres, of the order of {:.1g} years of a processor: are "
+         "all numbers in one system of units?",
          steps, scene.particles.count, work / a_second / (365 * 24 * 3600.0));
   }
   return warnings;

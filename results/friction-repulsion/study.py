@@ -184,10 +184,27 @@ def pressed(row, factor=1):
     return stress / math.sqrt(factor * SCENE["contact"]["normal_stiffness"] * energy)
 
 
-def shared(curve, smooth, k):
-    """Returns ln(η_r/η_r without friction) at a place of a curve, over that at its end."""
-    numbers = [[number(row, "viscosity") for row in of] for of in (curve, smooth)]
-    return propagated_lists(numbers, lambda v: float(np.log(v[0][k] / v[1][k]) / np.log(v[0][-1] / v[1][-1])))
+def shares(values, bare):
+    """Returns ln(η_r/η_r without friction) along a curve, over that at its end."""
+    effect = np.log(np.divide(values, bare))
+    return effect / effect[-1]
+
+
+def viscosities(*curves):
+    return [[number(row, "viscosity") for row in curve] for curve in curves]
+
+
+def onset_rows(rows, degrees):
+    """Yields findings about the stress at which friction has half of its effect, by straight lines over ln stress."""
+    smooth = coarse(curve_of(rows, 0.5, 0, 0))
+    for friction in FRICTIONS[1:]:
+        curve = coarse(curve_of(rows, 0.5, friction, 0))
+        places = np.log([pressed(row) for row in curve])
+        half = propagated_lists(
+            viscosities(curve, smooth), lambda v, at=places: float(np.exp(np.interp(0.5, shares(*v), at)))
+        )
+        text = f"φ = 0.5, μ = {friction}, A = 0: σa²/√(k_n kT) at half of the effect of friction"
+        yield Finding(text, "stiffness", *half, degrees)
 
 
 def stiffness_rows(rows, stiffer, degrees):
@@ -201,14 +218,13 @@ def stiffness_rows(rows, stiffer, degrees):
         yield Finding(text, "stiffness", *difference(middle(stiff), middle(soft)), degrees)
     smooth, soft = (coarse(curve_of(rows, 0.5, friction, 0)) for friction in (0, 1))
     stiff = coarse(curve_of(stiffer, 0.5, 1, 0))
-    numbers = [[number(r, "viscosity") for r in of] for of in (smooth, soft, stiff)]
+    numbers = viscosities(smooth, soft, stiff)
     places = [np.log([pressed(row, factor) for row in of]) for of, factor in ((soft, 1), (stiff, STIFFER))]
     for k, peclet in enumerate(PECLET[1:4], 1):
-        for how, at in (("Pe", soft[k]["peclet"]), ("σa²/√(k_n kT)", None)):
+        for how, at in (("Pe", True), ("σa²/√(k_n kT)", False)):
 
             def less(values, k=k, at=at):
-                bare, one, other = np.log(values)
-                share, then = ((of - bare) / (one[-1] - bare[-1]) for of in (one, other))
+                share, then = (shares(of, values[0]) for of in values[1:])
                 return float(then[k] - (share[k] if at else np.interp(places[1][k], places[0], share)))
 
             text = f"Pe = {peclet:g}: share of the effect of friction with 4 k_n less that with k_n at the same {how}"
@@ -224,6 +240,7 @@ def judge():
         yield from thickening_rows(rows, *case, degrees)
     yield from plateau_rows(rows, degrees)
     yield from stress_rows(rows, degrees)
+    yield from onset_rows(rows, degrees)
     yield from stiffness_rows(rows, where(table, method=STIFFER_NAME), degrees)
     text = "φ = 0.5, μ = 0.5, A = 1000 kT, Pe = 10⁴: η_r with implicit steps over that with explicit ones"
     methods = [first(table, method=f"{m} at rate 0.045") for m in ("implicit", "explicit")]
@@ -295,7 +312,10 @@ def draw():
     smooth = coarse(curve_of(rows, 0.5, 0, 0))
     for of, name, factor, mark in ((rows, "k_n", 1, 7), (stiffer, "4 k_n", STIFFER, 4)):
         curve = coarse(curve_of(of, 0.5, 1, 0))
-        points = [(pressed(row, factor), *shared(curve, smooth, k)) for k, row in enumerate(curve)]
+        found = [
+            propagated_lists(viscosities(curve, smooth), lambda v, k=k: float(shares(*v)[k])) for k in range(len(curve))
+        ]
+        points = [(pressed(row, factor), *share) for row, share in zip(curve, found)]
         axes.points(points, name, BLUE, mark, joined=True)
     figure.draw()
 

@@ -91,14 +91,22 @@ def with_noise(table):
     return [r for r in where(table, stiffness=1) if r["peclet"] != "no noise"]
 
 
-def jamming_rows(table):
-    rows = [r for r in without_noise(table, 1) if r["fraction"] <= FITTED]
+def jamming_of(table, low, high):
+    """Returns φ_J and λ of μ = 1 from a range of volume fractions, with errors, and degrees of freedom."""
+    rows = [r for r in without_noise(table, 1) if low <= r["fraction"] <= high]
     fractions, numbers = [r["fraction"] for r in rows], [number(r, "pairs") for r in rows]
     found = propagated(numbers, lambda values: jammed_and_exponent(fractions, values), 100)
-    (jammed, exponent), (jammed_error, exponent_error) = found
+    return *zip(*found), len(rows) - 2
+
+
+def jamming_rows(table):
+    (jammed, jammed_error), (exponent, exponent_error), degrees = jamming_of(table, FRACTIONS[1][0], FITTED)
     text = f"μ = 1, no noise: φ_J of η_r of pairs, φ = 0.4 to {FITTED:g}, less that at rest, 0.587 in print"
-    yield Statement(text, "L 4.2.6", jammed - JAMMED_AT_REST, jammed_error, high=0, degrees=len(rows) - 2)
-    yield Finding("μ = 1, no noise: its λ", "L 4.2.6", exponent, exponent_error, len(rows) - 2)
+    yield Statement(text, "L 4.2.6", jammed - JAMMED_AT_REST, jammed_error, high=0, degrees=degrees)
+    yield Finding("μ = 1, no noise: its λ", "L 4.2.6", exponent, exponent_error, degrees)
+    for low in (0.4, 0.5):
+        found, _, degrees = jamming_of(table, low, 0.56)
+        yield Finding(f"μ = 1, no noise: φ_J of η_r of pairs, φ = {low:g} to 0.56", "L 4.2.6", *found, degrees)
 
 
 def contact_rows(table):

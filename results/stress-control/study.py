@@ -8,8 +8,8 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.driver import BLUE, Check, Figure, Finding, GREEN, ORANGE, RED, REFERENCE_SCENE, during, entries, estimate
-from studies.driver import exact_rows, in_brownian_times, in_strains, main, merged, number, quotient, read_numbers
-from studies.driver import read_rows, row_ratio, scaled, where, write_numbers, write_rows
+from studies.driver import exact_rows, in_brownian_times, in_strains, main, merged, number, propagated, quotient
+from studies.driver import read_numbers, read_rows, row_ratio, scaled, where, write_numbers, write_rows
 
 TITLE = "Flow at a given stress"
 # Lengths are in radii, viscosities over the solvent's. The unit of force is the critical load for grains; the unit of
@@ -133,6 +133,9 @@ def judge():
             ratio = row_ratio(by_stress, by_rate, "viscosity")
             text = f"{kind}, rate {by_rate['at']:g} {unit}: viscosity at the stress over that at the rate"
             yield Check(text, "both controls", *ratio, 0.92, 1.08, by_rate["seeds"] - 1)
+        ratios = [row_ratio(b, a, "viscosity") for a, b in pairs_of(rows, kind)]
+        mean = propagated(ratios, lambda values: sum(values) / len(values))
+        yield Finding(f"{kind}: mean of these five ratios", "both controls", *mean)
     value, error, degrees = read_numbers(HERE / "diffusion.csv")["diffusion"]
     exact = exact_rows()[DIFFUSING]
     product = value * exact["viscosity"], math.hypot(error * exact["viscosity"], value * exact["viscosity_error"])
