@@ -10,9 +10,9 @@ verdict of a study follows from its statements, by the first rule that applies:
 
     "findings only"             there are no statements
     "does not hold"             an essential statement does not hold
-    "not yet"                   a statement is open
+    "not yet"                   an essential statement is open
     "holds"                     all statements hold
-    "holds with a difference"   a statement that is not essential does not hold
+    "holds with a difference"   a statement that is not essential does not hold or is open
 
 Failed checks are counted behind it: "holds (2 checks failed)". A statement is not essential if its bound depends on a
 number or a definition that is not published, or on a vague word such as "weakly".
@@ -165,14 +165,14 @@ def rows_of(study):
 
 def verdict_of_statements(rows):
     statements = [row for row in rows if row.kind == "statement"]
-    answers = [row.answer() for row in statements]
     if not statements:
         return "findings only"
-    if any(answer == "does not hold" and row.essential for answer, row in zip(answers, statements)):
+    essential = [row.answer() for row in statements if row.essential]
+    if "does not hold" in essential:
         return "does not hold"
-    if "open" in answers:
+    if "open" in essential:
         return "not yet"
-    return "holds" if all(answer == "holds" for answer in answers) else "holds with a difference"
+    return "holds" if all(row.answer() == "holds" for row in statements) else "holds with a difference"
 
 
 def with_failed_checks(text, rows):

@@ -88,12 +88,13 @@ class Answers(unittest.TestCase):
 
 class Verdicts(unittest.TestCase):
     holds, fails, open_ = (statement(v, e, 0.9, 1.1) for v, e in ((1, 0.01), (2, 0.01), (1.1, 0.2)))
-    fails_beside = statement(2, 0.01, 0.9, 1.1, essential=False)
+    fails_beside, open_beside = (statement(v, e, 0.9, 1.1, essential=False) for v, e in ((2, 0.01), (1.1, 0.2)))
     failed, finding = Check("", "", 2, 0.01, 0.9, 1.1), Finding("", "", 2, 0.01)
 
     def test_follow_from_the_statements(self):
         self.assertEqual(verdict([self.holds, self.holds]), "holds")
         self.assertEqual(verdict([self.holds, self.fails_beside]), "holds with a difference")
+        self.assertEqual(verdict([self.holds, self.open_beside]), "holds with a difference")
         self.assertEqual(verdict([self.holds, self.open_]), "not yet")
         self.assertEqual(verdict([self.holds, self.fails_beside, self.open_]), "not yet")
         self.assertEqual(verdict([self.holds, self.open_, self.fails]), "does not hold")
