@@ -240,7 +240,7 @@ def draw_prices(figure, prices):
 
 
 def colour_of(fraction):
-    return shade((BLUE, GREEN, RED), (fraction - min(WINDOWS)) / (max(WINDOWS) - min(WINDOWS)))
+    return shade((fraction - min(WINDOWS)) / (max(WINDOWS) - min(WINDOWS)))
 
 
 def draw():

@@ -5,7 +5,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib import ticker
-from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.colors import LinearSegmentedColormap, to_hex
 from peclet.drawing import mathtext, parts_of, set_ticks
 
 from studies.tables import number
@@ -25,11 +25,9 @@ def formatted(text):
     return mathtext(parts_of(str(text)))
 
 
-def shade(colours, position):
-    """Returns the colour at a position in [0, 1] of a scale through equally spaced colours."""
-    scale = np.array([[int(c[k : k + 2], 16) for k in (1, 3, 5)] for c in colours])
-    places = np.linspace(0, 1, len(scale))
-    return "#" + "".join(f"{round(np.interp(position, places, channel)):02x}" for channel in scale.T)
+def shade(position):
+    """Returns the colour at a position in [0, 1] of a scale from dark blue to an orange that is legible on white."""
+    return to_hex(matplotlib.colormaps["plasma"](0.8 * position))
 
 
 class Panel:

@@ -75,10 +75,11 @@ class Drawn(unittest.TestCase):
         with self.assertRaises(TypeError):
             self.panel(x_rang=(0, 1))
 
-    def test_shades_lie_between_their_colours(self):
-        self.assertEqual(shade(("#000000", "#ff8000"), 0), "#000000")
-        self.assertEqual(shade(("#000000", "#ff8000", "#000000"), 0.5), "#ff8000")
-        self.assertEqual(shade(("#000000", "#646464"), 0.5), "#323232")
+    def test_shades_become_brighter_and_stay_darker_than_the_paper(self):
+        channels = [[int(shade(p)[k : k + 2], 16) for k in (1, 3, 5)] for p in (0, 0.25, 0.5, 0.75, 1)]
+        brightness = [0.3 * red + 0.59 * green + 0.11 * blue for red, green, blue in channels]
+        self.assertEqual(brightness, sorted(set(brightness)))
+        self.assertLess(brightness[-1], 200)
 
 
 class Picture(unittest.TestCase):
