@@ -83,7 +83,8 @@ def measure(program):
 
 
 def judged(row, width):
-    text = f"sizes {row['sizes']}, φ = {row['fraction']:g}, step {row['step']:g}: pressure over that of the equation"
+    step = "automatic step" if row["step"] == 1 else "a quarter of the step"
+    text = f"sizes {row['sizes']}, φ = {row['fraction']:g}, {step}: pressure over that of the equation"
     return Check(text, "exact", *number(row, "ratio"), 1 - width, 1 + width, row["seeds"] - 1)
 
 

@@ -87,6 +87,14 @@ def judge():
         less = over(difference(number(row, "storage"), rest["storage"][frequency]), size)
         text = f"{name}: G′ less that of linear response, over the size of G*"
         yield Check(text, "linear response", *less, -0.03, 0.03, row["seeds"] - 1)
+    for frequency in FREQUENCIES:
+        row, alone = rows[frequency, SMALL], frequency * (1 + 2.5 * FRACTION)  # without pairs, η = kT = a = 1
+        (loss, error), (its, of_rest) = number(row, "loss"), rest["loss"][frequency]
+        pairs = quotient((loss - alone, error), (its - alone, of_rest))
+        storage = quotient(number(row, "storage"), rest["storage"][frequency])
+        for what, found in (("G″ of the pairs", pairs), ("G′", storage)):
+            text = f"ωτ_B = {frequency:.2g}, amplitude {SMALL:g}: {what} over that of linear response"
+            yield Finding(text, "linear response", *found, row["seeds"] - 1)
     for what, found in (
         ("third harmonic over the first", size_of_third),
         ("G″ over that of linear response", lambda row: quotient(number(row, "loss"), rest["loss"][MIDDLE])),
@@ -103,7 +111,7 @@ def draw():
     for name, symbol, colour, points in (("loss", "G″", BLUE, RED), ("storage", "G′", GREEN, ORANGE)):
         curve = [(w, *v) for w, v in sorted(rest[name].items()) if v[0] > 2 * v[1]]
         one.points(curve, f"{symbol}, linear response", colour, 6, joined=True)
-        one.points([(w, *number(rows[w, SMALL], name)) for w in FREQUENCIES], f"{symbol}, to and fro", points, 7, 1.3)
+        one.points([(w, *number(rows[w, SMALL], name)) for w in FREQUENCIES], f"{symbol}, oscillating", points, 7, 1.3)
     one = figure.panel("amplitude", "", f"ωτ_B = {MIDDLE:.2g}", log="xy", y_range=(1e-3, 10), key="top left")
     scale = rest["loss"][MIDDLE][0]
     loss = [(a, *over(number(rows[MIDDLE, a], "loss"), scale)) for a in AMPLITUDES]

@@ -7,8 +7,8 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.driver import BLUE, Check, Figure, Finding, GREEN, ORANGE, RED, REFERENCE_SCENE, during, entries, estimate
-from studies.driver import in_strains, main, merged, number, over, quotient, read_numbers, read_rows, row_ratio, where
-from studies.driver import write_numbers, write_rows
+from studies.driver import in_strains, main, merged, number, over, propagated, quotient, read_numbers, read_rows
+from studies.driver import row_ratio, where, write_numbers, write_rows
 
 TITLE = "Reversal, extension and shear across"
 NONE = {"flow": None, "duration": None}
@@ -98,6 +98,19 @@ def reversed_curve(contacts):
     return [(r["strain"], *number(r, "viscosity")) for r in rows]
 
 
+def places_of(turned, level):
+    """Returns the strains at which a curve is lowest and at which it is back at nine tenths of a level, with errors
+    from those of its points and from the width of a bin."""
+
+    def found(values):
+        pairs = list(zip((strain for strain, *_ in turned), values))
+        lowest, _ = min(pairs, key=lambda pair: pair[1])
+        return lowest, next((s for s, value in pairs if s > lowest and value > 0.9 * level), math.nan)
+
+    places, errors = propagated([(value, error) for _, value, error in turned], found)
+    return [(place, math.hypot(error, AFTER / BINS / math.sqrt(12))) for place, error in zip(places, errors)]
+
+
 def judge():
     for row in read_rows(HERE / "extension.csv"):
         ratio = quotient(number(row, "extension"), number(row, "shear"))
@@ -115,9 +128,8 @@ def judge():
         lowest = min(turned, key=lambda point: point[1])
         text = f"{name}: lowest viscosity after the reversal over that of steady shear"
         yield Finding(text, "reversal", *quotient(lowest[1:], level), degrees)
-        yield Finding(f"{name}: strain at which it is lowest", "reversal", lowest[0], 0.5 * AFTER / BINS, degrees)
-        again = next((p[0] for p in turned if p[0] > lowest[0] and p[1] > 0.9 * level[0]), math.nan)
-        yield Finding(f"{name}: strain at which nine tenths of it are back", "reversal", again, AFTER / BINS, degrees)
+        for what, (place, error) in zip(("it is lowest", "nine tenths of it are back"), places_of(turned, level[0])):
+            yield Finding(f"{name}: strain at which {what}", "reversal", place, error, degrees)
     still, *shaken = read_rows(HERE / "shaken.csv")
     best = min(shaken, key=lambda row: row["viscosity"])
     text = f"shaken across by {best['amplitude']:g} at {best['frequency']:g} γ̇: viscosity over that without"
@@ -136,13 +148,15 @@ def draw():
     for contacts, name, colour in (("friction", "friction 0.5", RED), ("none", "no friction", BLUE)):
         one.points(reversed_curve(contacts), name, colour, 7, 0.6, joined=True)
         one.level(read_numbers(HERE / "levels.csv")[f"steady-{contacts}-whole"][0], None, colour, span=(0, AFTER))
-    two = figure.panel("φ", "η_r", "planar extension and shear", log="y", key="top left")
+    ends = {"x_range": (0, 0.52), "y_range": (0.9, 1.1)}
+    two = figure.panel("φ", "η_E over η of shear", "planar extension at the same invariants", **ends)
+    two.level(1)
     rows = read_rows(HERE / "extension.csv")
-    for name, colour, mark in (("shear", BLUE, 7), ("extension", RED, 6)):
-        two.rows(rows, "fraction", name, name, colour, mark, 1.2)
+    ratios = [(r["fraction"], *quotient(number(r, "extension"), number(r, "shear"))) for r in rows]
+    two.points(ratios, None, RED, 7, 1.2)
     still, *shaken = read_rows(HERE / "shaken.csv")
     place = {"log": "x", "key": "top right", "x_range": (0.2, 5), "y_range": (0, 1.4)}
-    title = f"shaken across, φ = {SHAKEN:.2f}"
+    title = f"shaken along the vorticity, φ = {SHAKEN:.2f}, friction 0.5"
     three = figure.panel("largest rate across / γ̇", "viscosity over that of shear alone", title, **place)
     for amplitude, colour in ((0.01, BLUE), (0.03, GREEN), (0.1, ORANGE)):
         mine = where(shaken, amplitude=amplitude)
