@@ -255,7 +255,7 @@ def draw():
         rates = 1 + (np.roll(velocity, -1) - velocity) * bins / edge(run[0])  # between the bins
         title = f"of the spheres, N = {run[0]}, {run[1]}"
         panel.line(zip(np.arange(1, bins + 1) / bins, rates), title, colour_of(run), width=2)
-    panel = figure.panel("y / L", "volume fraction", key="bottom right", x_range=(0, 1), y_range=(0.4, 0.6))
+    panel = figure.panel("y / L", "volume fraction", key="bottom right", x_range=(0, 1), y_range=(0.34, 0.6))
     for run in [r for r in shown if r[0] == SMALL_COUNT and not r[2]] + waved:
         line(panel, run, middles(profiles[run][0]), profiles[run][0])
     panel = figure.panel("y / L", "volume fraction of a size / its mean", x_range=(0, 1), y_range=(0.6, 1.7))

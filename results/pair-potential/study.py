@@ -7,7 +7,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.driver import BLUE, Check, Figure, Finding, GREEN, RED, Statement, difference, estimate, in_brownian_times
-from studies.driver import logarithm, main, over, read_numbers, write_numbers, write_rows
+from studies.driver import logarithm, main, over, read_numbers, read_rows, write_numbers, write_rows
 import numpy as np
 
 TITLE = "Potential of mean force of two spheres"
@@ -161,12 +161,12 @@ def measure(program):
         table += [dict(zip(names, (named(method, divisor), r, *estimate(values)))) for r, values in shells]
     write_rows(HERE / "table.csv", table, 5)
     write_numbers(HERE / "numbers.csv", numbers)
-    draw(table)
 
 
-def draw(table):
+def draw():
+    table = read_rows(HERE / "table.csv")
     figure = Figure(HERE / "chart.png", columns=2)
-    density = figure.panel("r / a", "g(r)", key="bottom right", x_range=(1.95, 2.8), y_range=(0, 1.3))
+    density = figure.panel("r / a", "g(r)", key="bottom right", x_range=(1.95, 2.8), y_range=(0.85, 1.06))
     energy = figure.panel("r / a", "U / kT", x_range=(1.965, 2.08), y_range=(-0.3, 4))
     for gap, name in ((INNER, "inner gap"), (OUTER, "outer gap")):
         density.upright(gap)
@@ -189,4 +189,4 @@ def quick_measure(program):
             yield row_of(name, found, 0.25)
 
 
-main(HERE, TITLE, measure, quick_measure, judge)
+main(HERE, TITLE, measure, quick_measure, judge, draw)
