@@ -10,14 +10,16 @@
 // Lags are k 2^l samples: k = 1 ... 7 for l = 0 and 4 ... 7 beyond, with origins 2^l samples apart, so that
 // the cost per sample does not grow with the window. Memory: 192 bytes for each particle and level.
 //
-// self_diffusion is the slope between the two longest lags t and 2 t, in three dimensions, relative to the
-// centre, over that of a free sphere of the reference radius a
+// self_diffusion is the slope between lags of a tenth and a fifth of the window, which do not go with the
+// step, in three dimensions, relative to the centre, over that of a free sphere of the reference radius a
 //   D_0 = kT / (pi eta a)   (Li's thesis, ch. 4; three times the one-dimensional kT / (3 pi eta a))
 // It is null without temperature. In shear it is 3/2 of the slope of y and z.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include "engine/observables/observable.h"
@@ -25,7 +27,8 @@
 namespace peclet::engine {
 namespace {
 
-constexpr std::size_t kept_places = 8;  // in each level
+constexpr std::size_t kept_places = 8;       // in each level
+constexpr std::uint64_t least_samples = 10;  // a tenth of the window is at least the shortest lag
 constexpr const char* diffusion_name = "self_diffusion";
 
 Vector3 squares_of(const Vector3& v) { return {v.x * v.x, v.y * v.y, v.z * v.z}; }
@@ -54,7 +57,7 @@ class MeanSquaredDisplacement : public Observable {
         sheared_(plan.scene.physics.flow.rate() > 0 || plan.scene.physics.flow.varies()),
         free_slope_(plan.scene.physics.thermal_energy / (std::numbers::pi * plan.scene.physics.viscosity *
                                                          plan.scene.particles.reference_radius)) {
-    plan.need_samples("mean_squared_displacement", 8);
+    plan.need_samples("mean_squared_displacement", least_samples);
     const std::vector<double> radii = radii_in(plan.scene);
     set_classes(plan.scene.particles, radii);
     levels_.resize(levels_in(plan.samples()), Level(class_of_.size(), radii.size()));
@@ -212,19 +215,25 @@ class MeanSquaredDisplacement : public Observable {
   }
 
   Json self_diffusion() const {
+    if (samples_ < least_samples) return nullptr;
+    const double lag = 0.1 * static_cast<double>(samples_);
+    return (spread_after(2 * lag) - spread_after(lag)) / (time_ * lag * free_slope_);
+  }
+
+  // Returns |Δr|² about the centre after a lag [samples]: a power of the lag between two lags of the curves.
+  double spread_after(double samples) const {
     const std::vector<Lag> all = lags();
-    const auto spread = [&](const Lag& lag) {
-      const Vector3 own = of_all(lag) - of_centre(lag);
-      return sheared_ ? 1.5 * (own.y + own.z) : own.x + own.y + own.z;
-    };
-    for (auto longer = all.rbegin(); longer != all.rend(); ++longer) {
-      for (auto shorter = longer; shorter != all.rend(); ++shorter) {
-        if (2 * shorter->samples != longer->samples) continue;
-        const double time = time_ * static_cast<double>(shorter->samples);
-        return (spread(*longer) - spread(*shorter)) / (time * free_slope_);
-      }
-    }
-    return nullptr;
+    const auto at = [](const Lag& lag) { return static_cast<double>(lag.samples); };
+    const auto longer = std::ranges::lower_bound(all, samples, {}, at);
+    const auto shorter = longer == all.begin() ? longer : std::prev(longer);
+    const double part =
+        longer == shorter ? 0 : std::log(samples / at(*shorter)) / std::log(at(*longer) / at(*shorter));
+    return std::pow(spread(*shorter), 1 - part) * std::pow(spread(*longer), part);
+  }
+
+  double spread(const Lag& lag) const {
+    const Vector3 own = of_all(lag) - of_centre(lag);
+    return sheared_ ? 1.5 * (own.y + own.z) : own.x + own.y + own.z;
   }
 
   double time_;  // between samples

@@ -32,7 +32,7 @@ TEST(SceneFit, IsRefusedWithTheReason) {
             "/pair_distribution/range: 4: must be at most"},
            {{{"observables", {"mean_squared_displacement"}},
              {"mean_squared_displacement", {{"interval", 1e300}}}},
-            "/mean_squared_displacement/interval: 1 samples: must leave at least 8"}}) {
+            "/mean_squared_displacement/interval: 1 samples: must leave at least 10"}}) {
     EXPECT_TRUE(contains(fault_of(patch), fault));
   }
 }
