@@ -10,7 +10,11 @@ from studies.fits import multiples
 from studies.tables import entries, number, read_rows, where
 
 RESULTS = Path(__file__).resolve().parents[1]
-TIMES = 1e-3 * 10 ** (np.arange(400) / 80)  # grid of the search for tau
+STEP = 10 ** (1 / 80)
+TIMES = 1e-3 * STEP ** np.arange(400)  # grid of the search for tau
+# Longest lags of fits to the correlation [Brownian times]; print does not say its own, and that of a run goes with its
+# step.
+LONGEST, SHORTER = 26, (8, 13)
 SLOWEST = 0.046  # lowest Peclet number at which slow shear has an error of a few per cent
 SLOW_SHEAR = f"slow shear, Pe = {SLOWEST:g}"
 
@@ -63,13 +67,21 @@ def viscosity_up_to(point, unit):
 def fitted(times, values):
     """Returns eta_phi and tau of a least-squares fit of eta_phi (1 - exp(-t / tau)) to values (n,) at times (n,).
 
-    tau is found by a search over the grid TIMES; eta_phi is the linear coefficient.
+    tau is found by a search over the grid TIMES and a parabola through the least residual and its neighbours: without
+    it, tau would jump by steps larger than one seed of many moves it, and jackknife errors would be too large. eta_phi
+    is the linear coefficient.
     """
     later = times > 0
-    shapes = 1 - np.exp(-times[later] / TIMES[:, None])
-    scales, left = multiples(shapes, values[later])
-    best = np.argmin(left)
-    return float(scales[best]), float(TIMES[best])
+
+    def multiples_of(taus):
+        return multiples(1 - np.exp(-times[later] / np.reshape(taus, (-1, 1))), values[later])
+
+    _, left = multiples_of(TIMES)
+    best = int(np.clip(np.argmin(left), 1, len(TIMES) - 2))
+    before, least, after = left[best - 1 : best + 2]
+    tau = TIMES[best] * STEP ** (0.5 * (before - after) / (before - 2 * least + after))
+    (scale,), _ = multiples_of(tau)
+    return float(scale), float(tau)
 
 
 def fit_with_errors(times, seeds):

@@ -7,6 +7,7 @@ import tempfile
 import unittest
 import unittest.mock
 from pathlib import Path
+from statistics import NormalDist
 
 import numpy as np
 
@@ -179,11 +180,11 @@ class Fits(unittest.TestCase):
         )
         self.assertGreater(narrow[1][1], 3 * exact[1][1])
 
-    def test_a_relaxing_viscosity_is_found_within_the_grid(self):
+    def test_a_relaxing_viscosity_is_found_between_the_points_of_the_grid(self):
         times = np.geomspace(1e-3, 10, 200)
         viscosity, tau = fitted(times, 5 * (1 - np.exp(-times / 0.3)))
-        self.assertAlmostEqual(tau, 0.3, delta=0.3 * math.log(10) / 160)  # half a step
-        self.assertAlmostEqual(viscosity, 5, delta=0.05)
+        self.assertAlmostEqual(tau, 0.3, delta=0.3 * math.log(10) / 8000)  # a hundredth of a step
+        self.assertAlmostEqual(viscosity, 5, delta=0.001)
 
     def test_errors_of_that_fit_follow_the_scatter_of_the_seeds(self):
         times = np.geomspace(1e-3, 10, 200)
@@ -192,6 +193,13 @@ class Fits(unittest.TestCase):
         self.assertAlmostEqual(viscosity, 5, delta=0.05)
         self.assertAlmostEqual(error, estimate(scales)[1], delta=0.01)
         self.assertAlmostEqual(tau_error, 0)
+
+    def test_errors_of_many_seeds_are_not_those_of_the_grid(self):
+        times = np.geomspace(1e-3, 10, 200)
+        taus = 0.3 + 0.015 * np.array([NormalDist().inv_cdf((k + 0.5) / 100) for k in range(100)])
+        (_, tau), (_, error) = fit_with_errors(times, 1 - np.exp(-times / taus[:, None]))
+        self.assertAlmostEqual(tau, 0.3, delta=0.002)
+        self.assertAlmostEqual(error / estimate(taus)[1], 1, delta=0.1)
 
 
 class Jamming(unittest.TestCase):
