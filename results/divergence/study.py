@@ -6,8 +6,19 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.driver import BLUE, Check, Figure, Finding, GREEN, JAMMED_AT_REST, JAMMED_IN_STRONG_FLOW, ORANGE, RED
-from studies.driver import Statement, TABLE_SCENE, difference, diverging, entries, first, in_brownian_times, jackknife
+from studies.driver import BLUE, Check, Figure, Finding, GREEN, JAMMED_AT_REST, JAMMED_IN_STRONG_FLOW, LONGEST, ORANGE
+from studies.driver import (
+    RED,
+    SHORTER,
+    Statement,
+    TABLE_SCENE,
+    difference,
+    diverging,
+    entries,
+    first,
+    in_brownian_times,
+    jackknife,
+)
 from studies.driver import jammed_and_exponent, lines, main, merged, number, propagated, read_rows, row_ratio
 from studies.driver import rows_at_rest, shapes_of, table_at_rest, where, write_rows, write_table
 import numpy as np
@@ -22,7 +33,7 @@ SEEDS = 5
 # Volume fractions at rest, with rows of the study zero-shear and lubrication at a small Peclet number.
 REST_FRACTIONS = FRACTIONS[:7]
 SLOW = merged(TABLE_SCENE, in_brownian_times(20, 20), peclet=0.22)
-SLOW_SEEDS = 3
+SLOW_SEEDS = 48
 
 PUBLISHED = {0: (JAMMED_AT_REST, 1.5), 4.6: (None, None), 1e4: (JAMMED_IN_STRONG_FLOW, 1.5)}  # phi_J and lambda
 
@@ -111,6 +122,20 @@ def fit_rows(peclet, name, curve, essential=True):
         yield Finding(text, "form", found, whole, degrees)
 
 
+def lag_rows(curve):
+    """Yields findings about the recipe with shorter lags."""
+    rest, reading = table_at_rest(), "viscosity"
+    for end in SHORTER:
+        rows = []
+        for row in curve:
+            fraction, (pairs, error) = row["fraction"], number(rest[row["fraction"]], f"viscosity to {end}")
+            total = 1 + 2.5 * fraction + row["lubrication"] + pairs, math.hypot(error, row["lubrication_error"])
+            rows.append({"fraction": fraction, **entries(reading, total)})
+        (found, _, error, _), _ = fit_with_error(rows, reading)
+        text = f"Pe → 0 by the published recipe with lags to {end} τ_B, not {LONGEST}: φ_J of {READINGS[reading]}"
+        yield Finding(text, "L4.9a", found, error, min(r["seeds"] for r in curve) - 1)
+
+
 def shift_rows(curves):
     """Yields rows about the shift of φ_J, with λ = 1.5 as published, and with λ fitted."""
     for reading, of in READINGS.items():
@@ -153,7 +178,9 @@ def judge():
     recipe, curves[0] = curves[0], [rest[f] for f in sorted(rest) if f >= FRACTIONS[0]]
     # The published estimate of the limit is the Green-Kubo integral of the structural stress, plus lubrication. It is
     # biased for soft spheres, so that the exact limit, by linear response, is another statement.
-    yield from fit_rows(0, "Pe → 0 by the published recipe", recipe)
+    # What it gives goes with the longest lag, which is not in print.
+    yield from fit_rows(0, "Pe → 0 by the published recipe", recipe, essential=False)
+    yield from lag_rows(recipe)
     yield from fit_rows(0, name, curves[0], essential=False)
     for reading, of in READINGS.items():  # at rest one exponent does not describe all volume fractions
         value, _, error = fit_with_error(curves[0], reading, jammed_at)[0][:3]
