@@ -47,7 +47,8 @@ TEST_P(Moduli, AreThoseOfAStressThatIsASumOfHarmonics) {
   constexpr std::uint64_t steps = 200, cycles = 4;
   const auto made =
       after_stress(oscillating(GetParam(), cycles), steps, cycles, [](std::uint64_t k, double phase) {
-        return amplitude * ((1 + static_cast<double>(k / steps)) * std::sin(phase) + 5 * std::cos(phase) +
+        const std::uint64_t cycle = k / steps;
+        return amplitude * ((1 + static_cast<double>(cycle)) * std::sin(phase) + 5 * std::cos(phase) +
                             2 * std::sin(3 * phase) + 3 * std::cos(3 * phase));
       });
   const Json mean = mean_of(*made);
@@ -71,7 +72,8 @@ TEST(Moduli, HaveAsManyBlocksAsTheirCyclesFill) {
   for (const std::uint64_t cycles : {3U, 4U, 7U, 12U, 31U, 32U, 50U, 100U}) {
     const auto made =
         after_stress(oscillating("implicit", cycles), steps, cycles, [](std::uint64_t k, double phase) {
-          return amplitude * (1 + static_cast<double>(k / steps)) * std::sin(phase);
+          const std::uint64_t cycle = k / steps;
+          return amplitude * (1 + static_cast<double>(cycle)) * std::sin(phase);
         });
     const Json blocks = blocks_of(*made);
     if (cycles < 4) {
