@@ -28,8 +28,8 @@ SCENE = merged(
     repulsion={"form": "exponential", "strength": 0},
 )
 SEEDS, SLOW_SEEDS, METHOD_SEEDS = 5, 8, 18
-# Curves with more seeds and Peclet numbers: their decades from the minimum to the end of the thickening are published.
-MORE, MORE_SEEDS = [(0.5, m, 0) for m in (0.5, 1)], 12
+# Curves with more seeds and Peclet numbers, for the decades of thickening and the width that a repulsion leaves.
+MORE, MORE_SEEDS = [*((0.5, m, 0) for m in (0.5, 1)), *((0.53, 0.5, a) for a in (0, 100, 1000))], 12
 MORE_PECLET = (4.6, 10, 22, 100, 460, 1e3, 2200, 1e4, 1e5, 1e6)
 # Curves with contacts four times as stiff, which move a thickening that softness brings about.
 STIFFER, STIFFER_NAME, STIFFER_STRENGTHS = 4, "four times k_n", (0, 100)
