@@ -30,6 +30,9 @@ NOISY_ROWS = {100: (*COUNTS,), 1: (0, 1), 0.1: (0,), 10: (0, 0.4, 0.7, 1)}
 FIXED_SHARES, COMMON = (0.4, 0.7), 0.69
 # Runs with diffusion faster than the flow, for grains, too: shares and volume fractions.
 SLOW, SLOWEST, SLOW_CASES = "slow", 0.01, ((1, 0.6), (1, 0.62))
+# Cases at the edge of the jam, again with contacts four times as stiff: colloids at a published volume fraction, at
+# Peclet number 1, and a mixture at 100 at the least volume fraction that jams with the stiffness of the map.
+EDGE, EDGE_CASE, EDGE_SEEDS, HARDER, HARD_CASE = "edge", (0, 0.62), 8, 4, (0.4, 0.67)
 # First volume fractions of the search, those at which the study mixtures has jamming without noise, and its steps.
 START = {
     SMOOTH: {0: 0.63, 0.4: 0.71, 0.6: 0.755, 0.7: 0.77, 0.8: 0.75, 0.9: 0.69, 1: 0.63},
@@ -41,14 +44,17 @@ NARROW, ROUNDS = 0.0101, 6  # width at which the search ends; largest number of 
 SOFTEST = 0.003  # mean overlap from which on a point counts as jammed; noise alone gives 0.0009 at most
 
 
-def setting(alpha, fraction, row):
-    """Returns the settings of a point. Grains alone have the hardness of colloids alone, in other units."""
+def setting(alpha, fraction, row, harder=1):
+    """Returns the settings of a point, with `harder` times the stiffness of the map.
+
+    Grains alone have the hardness of colloids alone, in other units.
+    """
     alike, peclet = alpha == 1, colloids_peclet(row, alpha)
     stiffer = 5 if alike else 1 if row == SMOOTH else STIFFER.get(alpha, 1)
     besides = {"/particles/density": DENSITY, **(ALIKE if alike else {}), **windows(alpha, peclet)}
     if math.isfinite(peclet):
         besides |= {"/limits/thermal_energy": THERMAL_ENERGY, **(ALIKE_NOISE if alike else {})}
-    return setting_of(alpha, COUNTS[alpha], fraction, STIFFNESS * stiffer, peclet, besides)
+    return setting_of(alpha, COUNTS[alpha], fraction, STIFFNESS * stiffer * harder, peclet, besides)
 
 
 def colloids_peclet(row, alpha):
@@ -56,7 +62,7 @@ def colloids_peclet(row, alpha):
         return math.inf
     if row == SLOW:
         return SLOWEST
-    return 1 if row == FIXED else row / mean_peclet(alpha, 1)
+    return 1 if row in (FIXED, EDGE) else row / mean_peclet(alpha, 1)
 
 
 def first_fractions(row, alpha):
@@ -107,19 +113,25 @@ def search(program, hours, row, shares):
     return rows, [map_entry(row, alpha, brackets[alpha]) for alpha in shares]
 
 
-def run_row(program, row, cases, hours=None):
+def hard(row):
+    """Returns the name of a row with contacts HARDER times as stiff."""
+    return f"{row}-{HARDER}"
+
+
+def run_row(program, row, cases, hours=None, seeds=SEEDS, harder=1):
     """Runs cases (share of grains, volume fraction) of a row of the map; returns rows of the table, and curves_of()."""
+    name = str(row) if harder == 1 else hard(row)
     scene = merged(SCENE if row in (SMOOTH, ROUGH) else NOISY, contact={"friction": 0 if row == SMOOTH else 1})
-    settings = [setting(alpha, fraction, row) for alpha, fraction in cases]
+    settings = [setting(alpha, fraction, row, harder) for alpha, fraction in cases]
     if hours:
-        hours.plan(str(row), scene, settings)
-    points = program.run(str(row), scene, settings, SEEDS)
+        hours.plan(name, scene, settings)
+    points = program.run(name, scene, settings, seeds)
     if hours:
         hours.add(points)
-    curves, rows = curves_of(program, str(row), cases[0][0]), []
+    curves, rows = curves_of(program, name, cases[0][0]), []
     for (alpha, fraction), one, point in zip(cases, settings, points):
         state = first(curves[alpha]["points"], fraction=fraction)["state"]
-        found = {"row": row, **composition_row(one), "peclet": colloids_peclet(row, alpha), "state": state}
+        found = {"row": name, **composition_row(one), "peclet": colloids_peclet(row, alpha), "state": state}
         rows.append(found | viscosity_row(point, "mean_overlap", "contacts_per_particle"))
     return rows, curves
 
@@ -140,6 +152,9 @@ def measure(program):
         table += rows
         jams += found
     table += run_row(program, SLOW, SLOW_CASES)[0]
+    for harder in (1, HARDER):
+        table += run_row(program, EDGE, [EDGE_CASE], seeds=EDGE_SEEDS, harder=harder)[0]
+    table += run_row(program, 100, [HARD_CASE], harder=HARDER)[0]
     names = "row, alpha, fraction, peclet, count, grains, state, seeds, lost, transient, viscosity±, pairs±, "
     names += "lubrication±, contact±, mean_overlap±, contacts_per_particle±"
     write_table(HERE / "table.csv", names, table, 5)
@@ -180,6 +195,11 @@ class Map:
     def flowing(self, row, alpha):
         return [r["fraction"] for r in self.curve(row, alpha) if r["state"] == "flowing"]
 
+    def jams(self, row, case):
+        """Returns 1.0 if a case (share of grains, volume fraction) does not flow, else 0.0."""
+        alpha, fraction = case
+        return float(fraction not in self.flowing(row, alpha))
+
     def largest_jump(self, row, alpha):
         """Returns the largest ratio of viscosities between neighbours up to 0.01 apart; infinite for a jammed one."""
         curve = self.curve(row, alpha)
@@ -201,7 +221,11 @@ def rows_of_curves(jams):
     power = first(read_rows(HERE.parent / "mixtures" / "jamming.csv"), friction=1, alpha=0.4)
     shift = difference(jams.jammed(100, 0.4), number(power, "jammed"))
     text = "α = 0.4: φ_m at Pe_cg = 100, of the jump, less that without noise, of a power"
-    yield Statement(text, "L5.4a", *shift, -0.01, 0.01)
+    # φ_m with noise goes with the stiffness, which is not in print.
+    yield Statement(text, "L5.4a", *shift, -0.01, 0.01, essential=False)
+    for row, words in ((100, ""), (hard(100), f", contacts {HARDER} times as stiff")):
+        text = f"α = 0.4, φ = {HARD_CASE[1]:g}, Pe_cg = 100{words}: 1 for jammed"
+        yield Finding(text, "stiffness", jams.jams(row, HARD_CASE), 0)
     text = "α = 0.4: φ_m at Pe_cg = 100 less that without noise, both by bisection"
     yield Finding(text, "L5.4a", *jams.shift(100, ROUGH, 0.4))
     text = "α = 0.4: largest factor of η_r within Δφ = 0.01,"
@@ -273,8 +297,14 @@ def rows_of_addition(jams):
         room = over(jams.jammed(100, 0), fraction)
         yield Statement(f"colloids alone, Pe_c = 100: φ_m/{fraction:g} (below 1: jammed)", "L5.6", *room, high=1)
         for row in (1, 0.1):
+            if (row, fraction) == (1, EDGE_CASE[1]):
+                continue
             room = over(jams.jammed(row, 0), fraction)
             yield Statement(f"colloids alone, Pe_c = {row:g}: φ_m/{fraction:g} (above 1: flows)", "L5.6", *room, 1)
+    text = f"colloids alone, Pe_c = 1, φ = {EDGE_CASE[1]:g}"
+    yield Finding(f"{text}: 1 for jammed", "stiffness", jams.jams(EDGE, EDGE_CASE), 0)
+    words = f"contacts {HARDER} times as stiff: 1 for jammed (flows)"
+    yield Statement(f"{text}, {words}", "L5.6", jams.jams(hard(EDGE), EDGE_CASE), 0, 0, 0)
     yield Statement("grains alone, Pe_cg = 1: φ_m", "L5.6", *jams.jammed(1, 1), 0.6, 0.625)
     for fraction in (0.55, 0.6):
         text = f"colloids alone, φ = {fraction:g}: η_r at Pe_c = 1 over that at 0.1"
@@ -282,8 +312,7 @@ def rows_of_addition(jams):
     # Grains alone at the smallest Peclet number of the colloids.
     name, dense = f"Pe_c = {SLOWEST:g}", jams.viscosity(SLOW, 1, 0.6)
     yield Finding(f"{name}: η_r of grains alone, φ = 0.6 (flows)", "L5.6", *dense, DEGREES)
-    jammed = float(0.62 not in jams.flowing(SLOW, 1))
-    yield Statement(f"{name}: grains alone, φ = 0.62, 1 for jammed", "L5.6", jammed, 0, 1, 1)
+    yield Statement(f"{name}: grains alone, φ = 0.62, 1 for jammed", "L5.6", jams.jams(SLOW, (1, 0.62)), 0, 1, 1)
 
 
 def judge():
