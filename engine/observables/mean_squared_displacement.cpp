@@ -10,8 +10,8 @@
 // Lags are k 2^l samples: k = 1 ... 7 for l = 0 and 4 ... 7 beyond, with origins 2^l samples apart, so that
 // the cost per sample does not grow with the window. Memory: 192 bytes for each particle and level.
 //
-// self_diffusion is the slope between lags of a tenth and a fifth of the window, which do not go with the
-// step, in three dimensions, relative to the centre, over that of a free sphere of the reference radius a
+// self_diffusion is the slope between lags of a tenth and a fifth of the window, the same for every step, in
+// three dimensions, relative to the centre, over that of a free sphere of the reference radius a
 //   D_0 = kT / (pi eta a)   (Li's thesis, ch. 4; three times the one-dimensional kT / (3 pi eta a))
 // It is null without temperature. In shear it is 3/2 of the slope of y and z.
 #include <fmt/format.h>

@@ -35,7 +35,7 @@ DILUTE = merged(
 FRACTIONS = (0.001, 0.1, 0.2, 0.3, 0.4, 0.45, 0.5, 0.55)
 CROWDED = merged(AT_REST, in_brownian_times(10, 9), particles={"count": 250}, integrator={"method": "implicit"})
 
-# D is the slope of |Δr|² between this lag and twice as much, both over the Brownian time, by the window.
+# By the window, the shorter of the two lags between which D is the slope of |Δr|² [Brownian times].
 LAGS = {9: 1, 90: 12, 180: 24}
 # Windows ten and twenty times longer, for the limit of long times: volume fractions and ratios by window.
 LONG = {90: ((0.001, 0.1, 0.3, 0.5), (WARM, COLD)), 180: ((0.1, 0.3, 0.5), (COLD,))}
@@ -181,7 +181,7 @@ def line_of(rows):
 def crossover_rows(curves, degrees):
     """Yields statements about the crossover, published at 0.01 for τ_I/τ_B of order 0.01, to half a decade.
 
-    The thesis has two Brownian times, η a³ / kT (3.57) and one with 6π (2.3); the nearer reading decides.
+    The thesis has two Brownian times, η a³ / kT (3.57) and one with 6π (2.3).
     """
     for ratio, words in ((COLD, f"{COLD:g}"), (WARM, f"{WARM / (6 * math.pi):.2g} with 6πηa³/kT (else {WARM:g})")):
         rows = curves[ratio]
@@ -272,7 +272,7 @@ def ballistic_rows(table):
 def judge():
     curves, table = groups(read_rows(HERE / "displacement.csv"), "ratio"), read_rows(HERE / "table.csv")
     crowded, (explicit,) = (where(table, method=method) for method in ("implicit", "explicit"))
-    of, seeds = {(r["ratio"], r["fraction"]): r for r in crowded}, CROWDED_SEEDS
+    of, seeds = {(r["ratio"], r["fraction"]): r for r in crowded}, min(r["seeds"] for r in crowded)
     long = {ratio: where(table, method="implicit, windows of 90", ratio=ratio) for ratio in (WARM, COLD)}
     yield from dilute_statements(curves, DILUTE_SEEDS, 0.02)
     yield from crossover_rows(curves, DILUTE_SEEDS - 1)

@@ -7,20 +7,9 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.driver import BLUE, Check, Figure, Finding, GREEN, JAMMED_AT_REST, JAMMED_IN_STRONG_FLOW, LONGEST, ORANGE
-from studies.driver import (
-    RED,
-    SHORTER,
-    Statement,
-    TABLE_SCENE,
-    difference,
-    diverging,
-    entries,
-    first,
-    in_brownian_times,
-    jackknife,
-)
-from studies.driver import jammed_and_exponent, lines, main, merged, number, propagated, read_rows, row_ratio
-from studies.driver import rows_at_rest, shapes_of, table_at_rest, where, write_rows, write_table
+from studies.driver import RED, SHORTER, Statement, TABLE_SCENE, difference, diverging, entries, first
+from studies.driver import in_brownian_times, jackknife, jammed_and_exponent, lines, main, merged, number, propagated
+from studies.driver import read_rows, row_ratio, rows_at_rest, shapes_of, table_at_rest, where, write_rows, write_table
 import numpy as np
 
 TITLE = "Divergence of the viscosity with volume fraction"
@@ -124,16 +113,18 @@ def fit_rows(peclet, name, curve, essential=True):
 
 def lag_rows(curve):
     """Yields findings about the recipe with shorter lags."""
-    rest, reading = table_at_rest(), "viscosity"
+    rest, degrees = table_at_rest(), min(r["seeds"] for r in curve) - 1
     for end in SHORTER:
         rows = []
         for row in curve:
-            fraction, (pairs, error) = row["fraction"], number(rest[row["fraction"]], f"viscosity to {end}")
-            total = 1 + 2.5 * fraction + row["lubrication"] + pairs, math.hypot(error, row["lubrication_error"])
-            rows.append({"fraction": fraction, **entries(reading, total)})
-        (found, _, error, _), _ = fit_with_error(rows, reading)
-        text = f"Pe → 0 by the published recipe with lags to {end} τ_B, not {LONGEST}: φ_J of {READINGS[reading]}"
-        yield Finding(text, "L4.9a", found, error, min(r["seeds"] for r in curve) - 1)
+            fraction, (brownian, error) = row["fraction"], number(rest[row["fraction"]], f"viscosity to {end}")
+            pairs, error = row["lubrication"] + brownian, math.hypot(error, row["lubrication_error"])
+            both = entries("pairs", (pairs, error)) | entries("viscosity", (1 + 2.5 * fraction + pairs, error))
+            rows.append({"fraction": fraction, **both})
+        for reading, of in READINGS.items():
+            name = f"Pe → 0 by the published recipe with lags to {end} τ_B, not {LONGEST}"
+            for symbol, (found, _, error, _) in zip(("φ_J", "λ"), fit_with_error(rows, reading)):
+                yield Finding(f"{name}: {symbol} of {of}", "L4.9a", found, error, degrees)
 
 
 def shift_rows(curves):

@@ -164,7 +164,7 @@ def groups_of_table():
     text = "Table 4.1: τ_C over the least of the other times (published: an order of magnitude less)"
     yield Statement(text, "L 3.8", contact / least, 0, 0, 0.1)
     thermal = inertial / max(VISCOSITY / energy for number, _, energy in TABLE_4_1 if number <= 1)
-    # The thesis has two Brownian times, η a³ / kT (3.57) and one with 6π (2.3); the nearer reading decides.
+    # The thesis has two Brownian times, η a³ / kT (3.57) and one with 6π (2.3).
     for words, factor in (("", 1), (" with 6πηa³/kT", 6 * math.pi)):
         text = f"Table 4.1, Pe ≤ 1: τ_I/τ_B{words} (published: below 0.01 in what follows)"
         yield Statement(text, "L 4.2.4", thermal / factor, 0, high=THERMAL_BOUND, essential=factor > 1)

@@ -109,11 +109,11 @@ def weak_rows(numbers):
         yield Finding(text, "zero-shear", *answer, rest[fraction]["seeds"] - 1)
     longer = row_ratio(rest[0.56], rest[0.54], "time")
     text = "τ_φ at φ = 0.56 over that at 0.54 (published: stretched for φ above 0.54)"
-    yield Statement(text, "L 4.2.1", *longer, 1, degrees=rest[0.56]["seeds"] - 1)
+    yield Statement(text, "L 4.2.1", *longer, 1, degrees=min(rest[f]["seeds"] for f in (0.54, 0.56)) - 1)
     for low, high in ((0.45, 0.54), (0.54, 0.56)):
         rise = difference(*(logarithm(number(rest[f], "time")) for f in (high, low)))
         text = f"d ln τ_φ / dφ from φ = {low:g} to {high:g}"
-        yield Finding(text, "zero-shear", *over(rise, high - low), rest[high]["seeds"] - 1)
+        yield Finding(text, "zero-shear", *over(rise, high - low), min(rest[f]["seeds"] for f in (low, high)) - 1)
 
 
 def strong_rows(numbers):

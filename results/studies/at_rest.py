@@ -79,7 +79,8 @@ def fitted(times, values):
     _, left = multiples_of(TIMES)
     best = int(np.clip(np.argmin(left), 1, len(TIMES) - 2))
     before, least, after = left[best - 1 : best + 2]
-    tau = TIMES[best] * STEP ** (0.5 * (before - after) / (before - 2 * least + after))
+    shift = float(np.clip(0.5 * (before - after) / (before - 2 * least + after), -1, 1))
+    tau = TIMES[best] * STEP**shift
     (scale,), _ = multiples_of(tau)
     return float(scale), float(tau)
 

@@ -15,7 +15,8 @@ verdict of a study follows from its statements, by the first rule that applies:
     "holds with a difference"   a statement that is not essential does not hold or is open
 
 Failed checks are counted behind it: "holds (2 checks failed)". A statement is not essential if its bound depends on a
-number or a definition that is not published, or on a vague word such as "weakly".
+number or a definition that is not published, or on a vague word such as "weakly"; of two published definitions the
+nearer reading is essential.
 """
 import math
 

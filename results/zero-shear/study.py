@@ -38,7 +38,7 @@ def measured(program, fractions, seeds, patch=None, name="zero-shear"):
         for end in SHORTER:
             row |= entries(f"viscosity to {end}", fit_up_to(end, times, values)[0])
         table.append(row)
-        curves[fraction] = [(t, *estimate(values[:, k])) for k, t in enumerate(times) if t > 0]
+        curves[fraction] = [(t, *estimate(values[:, k])) for k, t in enumerate(times) if 0 < t <= LONGEST]
     return table, curves
 
 
@@ -79,7 +79,7 @@ def distance_of(row, points):
     return over((float(distances[worst]), float(errors[worst])), row["viscosity"])
 
 
-EXPLICIT_NAME = "φ = 0.4: η_φ by implicit steps over that by explicit ones"
+EXPLICIT_NAME = f"φ = 0.4: η_φ from lags to {SHORTER[0]} τ_B by implicit steps over that by explicit ones"
 
 
 def judge():
@@ -129,7 +129,7 @@ def measure(program):
             name = f"φ = {row['fraction']:g}: largest distance of η_B(t) from η_φ (1 - exp(-t/τ)), over η_φ"
             numbers[name] = (*distance_of(row, curves[row["fraction"]]), degrees)
     explicit = measured(program, [0.4], 4, EXPLICIT, "zero-shear-explicit")[0][0]
-    ratio = row_ratio(first(table, fraction=0.4), explicit, "viscosity")
+    ratio = row_ratio(first(table, fraction=0.4), explicit, f"viscosity to {SHORTER[0]}")
     write_numbers(HERE / "numbers.csv", numbers | {EXPLICIT_NAME: (*ratio, explicit["seeds"] - 1)})
 
 

@@ -64,6 +64,15 @@ TEST_F(Flight, HasSquaredDisplacementsOfItsSpeed) {
 TEST_F(Flight, HasASlopeRelativeToTheCentre) { expect_slope(0, 2); }
 TEST_F(Flight, UnderShearHasTheSlopeOfTwoAxesForThree) { expect_slope(0.3, 1.5); }
 
+TEST_F(Flight, OfSpheresThatRestHasNoSlope) {
+  const System system = loose_spheres(2);
+  const auto observable = observable_of(scene_with("mean_squared_displacement"), system, 10);
+  for (int sample = 0; sample < 9; ++sample) observable->sample(system, 0);
+  EXPECT_TRUE(mean_of(*observable)["self_diffusion"].is_null());  // a tenth of nine samples is none
+  observable->sample(system, 0);
+  EXPECT_EQ(mean_of(*observable)["self_diffusion"], 0);
+}
+
 TEST_F(Flight, UnderShearLeavesOutTheDirectionOfTheFlow) {
   System system = loose_spheres(2, /*shear_rate=*/0.3);
   const auto observable = observable_of(scene_with("mean_squared_displacement", {}, 0.3), system, 64);

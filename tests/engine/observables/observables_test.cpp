@@ -24,8 +24,8 @@ TEST(Observables, AreAbsentUnlessAskedFor) {
 TEST(Observables, NeedAWindowWithSamples) {
   const Scene scene = scene_with("mean_squared_displacement", {{"interval", 20}});
   const System system = loose_spheres(2);
-  EXPECT_THROW(observable_of(scene, system, 256), InputError);  // 7 samples
-  EXPECT_NO_THROW(observable_of(scene, system, 281));           // 8
+  EXPECT_THROW(observable_of(scene, system, 360), InputError);  // 9 samples
+  EXPECT_NO_THROW(observable_of(scene, system, 361));           // 10
 }
 
 }  // namespace
