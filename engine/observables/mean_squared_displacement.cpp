@@ -233,7 +233,8 @@ class MeanSquaredDisplacement : public Observable {
 
   double spread(const Lag& lag) const {
     const Vector3 own = of_all(lag) - of_centre(lag);
-    return sheared_ ? 1.5 * (own.y + own.z) : own.x + own.y + own.z;
+    // Rounding may leave less than nothing of spheres that move together.
+    return std::max(sheared_ ? 1.5 * (own.y + own.z) : own.x + own.y + own.z, 0.0);
   }
 
   double time_;  // between samples

@@ -110,7 +110,7 @@ def slope_between(displacement, lag, brownian_time):
     times = np.array(displacement["time"]) / brownian_time
     squares = sum(np.subtract(displacement["all"][axis], displacement["centre"][axis]) for axis in "xyz")
     ends = np.log([lag, 2 * lag])
-    near, far = np.exp(np.interp(ends, np.log(times), np.log(squares), right=np.nan))
+    near, far = np.exp(np.interp(ends, np.log(times), np.log(squares), np.nan, np.nan))
     return float(math.pi * (far - near) / lag)
 
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.driver import BLUE, Check, Figure, RED, REFERENCE_SCENE, entries, in_brownian_times, main, merged, number
-from studies.driver import over, read_rows, where, write_rows
+from studies.driver import BLUE, Check, Figure, Finding, RED, REFERENCE_SCENE, column, entries, groups
+from studies.driver import in_brownian_times, main, merged, number, over, read_rows, weighted_mean, where, write_rows
 
 TITLE = "The pressure at rest"
 FRACTIONS = (0.20, 0.30, 0.40, 0.45, 0.50)
@@ -82,15 +82,23 @@ def measure(program):
     write_rows(HERE / "table.csv", rows, 5)
 
 
+def named(step):
+    return "automatic step" if step == 1 else "a quarter of the step"
+
+
 def judged(row, width):
-    step = "automatic step" if row["step"] == 1 else "a quarter of the step"
-    text = f"sizes {row['sizes']}, φ = {row['fraction']:g}, {step}: pressure over that of the equation"
+    text = f"sizes {row['sizes']}, φ = {row['fraction']:g}, {named(row['step'])}: pressure over that of the equation"
     return Check(text, "exact", *number(row, "ratio"), 1 - width, 1 + width, row["seeds"] - 1)
 
 
 def judge():
-    for row in read_rows(HERE / "table.csv"):
+    table = read_rows(HERE / "table.csv")
+    for row in table:
         yield judged(row, WIDTH)
+    for step, of_step in groups(table, "step").items():
+        mean = weighted_mean(column(of_step, "ratio"), column(of_step, "ratio_error"))
+        text = f"{named(step)}: pressure over that of the equation, weighted mean of {len(of_step)}"
+        yield Finding(text, "exact", *mean, len(of_step) - 1)
 
 
 def draw():

@@ -198,7 +198,7 @@ class Map:
     def jams(self, row, case):
         """Returns 1.0 if a case (share of grains, volume fraction) does not flow, else 0.0."""
         alpha, fraction = case
-        return float(fraction not in self.flowing(row, alpha))
+        return float(first(self.curve(row, alpha), fraction=fraction)["state"] != "flowing")
 
     def largest_jump(self, row, alpha):
         """Returns the largest ratio of viscosities between neighbours up to 0.01 apart; infinite for a jammed one."""

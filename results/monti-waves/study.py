@@ -171,6 +171,12 @@ def judge():
             yield Finding(text, "M fig 10", *number(row, "gathered"), row["seeds"] - 1)
             text = f"{label}: the same of the large spheres less that of the small ones"
             yield Finding(text, "M fig 10", *number(row, "segregated"), row["seeds"] - 1)
+    series, _ = read_series()
+    strains = np.array(strains_of((SMALL_COUNT,)))
+    early = (strains > LARGE_STRAIN / QUARTERS) & (strains < LARGE_STRAIN)
+    waved, still = (series[SMALL_COUNT, "table", wave, True][early].mean() for wave in (True, False))
+    text = f"N = {SMALL_COUNT}, strains 0.75 to 3 as for N = {COUNT}: η_r with the wave over that without"
+    yield Finding(text, "M fig 10", float(waved / still), 0)
     numbers = read_numbers(HERE / "numbers.csv")
     text = f"N = {SMALL_COUNT}, wave: relative change of η_r by the terms of the curvature"
     yield Finding(text, "M eq 9", *numbers["faxen"])

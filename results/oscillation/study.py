@@ -92,6 +92,8 @@ def judge():
         (loss, error), (its, of_rest) = number(row, "loss"), rest["loss"][frequency]
         pairs = quotient((loss - alone, error), (its - alone, of_rest))
         storage = quotient(number(row, "storage"), rest["storage"][frequency])
+        text = f"ωτ_B = {frequency:.2g}, amplitude {SMALL:g}: share of G″ without pairs, ηω(1 + 2.5 φ)"
+        yield Finding(text, "linear response", *over((alone, alone * error / loss), loss), row["seeds"] - 1)
         for what, found in (("G″ of the pairs", pairs), ("G′", storage)):
             text = f"ωτ_B = {frequency:.2g}, amplitude {SMALL:g}: {what} over that of linear response"
             yield Finding(text, "linear response", *found, row["seeds"] - 1)

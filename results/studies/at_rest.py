@@ -14,7 +14,7 @@ STEP = 10 ** (1 / 80)
 TIMES = 1e-3 * STEP ** np.arange(400)  # grid of the search for tau
 # Longest lags of fits to the correlation [Brownian times]; print does not say its own, and that of a run goes with its
 # step.
-LONGEST, SHORTER = 26, (8, 13)
+LONGEST, SHORTER = 26, (6.5, 13)
 SLOWEST = 0.046  # lowest Peclet number at which slow shear has an error of a few per cent
 SLOW_SHEAR = f"slow shear, Pe = {SLOWEST:g}"
 

@@ -36,7 +36,8 @@ def measured(program, fractions, seeds, patch=None, name="zero-shear"):
         viscosity, tau = fit_up_to(LONGEST, times, values)
         row = {"fraction": fraction, "seeds": len(values)} | entries("viscosity", viscosity) | entries("time", tau)
         for end in SHORTER:
-            row |= entries(f"viscosity to {end}", fit_up_to(end, times, values)[0])
+            found = fit_up_to(end, times, values)[0] if times[-1] >= end else (np.nan, np.inf)
+            row |= entries(f"viscosity to {end}", found)
         table.append(row)
         curves[fraction] = [(t, *estimate(values[:, k])) for k, t in enumerate(times) if 0 < t <= LONGEST]
     return table, curves
