@@ -300,7 +300,7 @@ def rows_of_addition(jams):
             room = over(jams.jammed(row, 0), fraction)
             yield Statement(f"colloids alone, Pe_c = {row:g}: φ_m/{fraction:g} (above 1: flows)", "L5.6", *room, 1)
     text = f"colloids alone, Pe_c = 1, φ = {EDGE_CASE[1]:g}"
-    # Print has spheres that are hard.
+    # The stiffness is not in print; that of the harder contacts decides.
     for row, words, essential in ((hard(EDGE), f", contacts {HARDER} times as stiff", True), (EDGE, "", False)):
         name, found = f"{text}{words}: 1 for jammed (flows)", jams.jams(row, EDGE_CASE)
         yield Statement(name, "L5.6", found, 0, 0, 0, essential=essential)
