@@ -81,7 +81,7 @@ def folder_moved(night):
 def folders_below_deleted(night):
     """spool, logs and checkpoints deleted while it runs"""
     run = running(night)
-    night.types("rm -r night.peclet/spool night.peclet/logs night.peclet/checkpoints")
+    night.types("rm -rf night.peclet/{spool,logs,checkpoints} || rm -rf night.peclet/{spool,logs,checkpoints}")
     night.wait_for_answer(run, "made anew")
     night.lets_go()
     night.waits(run, 0, ["were deleted", "made anew: spool/", "2 converged"])
