@@ -6,8 +6,9 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.driver import BLUE, Check, Figure, Finding, GREEN, ORANGE, RED, Statement, TABLE_SCENE, difference, during
-from studies.driver import first, in_strains, log_of_share, main, merged, number, propagated, propagated_lists, quotient
+from studies.driver import BLUE, Check, Figure, Finding, GREEN, ORANGE, RED, Statement, TABLE_SCENE, decades_of_rise
+from studies.driver import difference, during, first, in_strains, log_of_share, main, merged, number, propagated
+from studies.driver import propagated_lists, quotient
 from studies.driver import read_rows, row_ratio, thickening_decades, viscosity_row, where, write_table
 import numpy as np
 
@@ -84,7 +85,7 @@ def middle(curve):
 
 def width(curve):
     """Returns the width of the thickening [decades], from 0.1 to 0.9 of its rise."""
-    return of_curve(curve, lambda x, values: log_of_share(x, values, 0.9) - log_of_share(x, values, 0.1))
+    return of_curve(curve, decades_of_rise)
 
 
 def ratio_of(a, b):

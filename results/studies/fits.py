@@ -82,9 +82,15 @@ def log_of_share(abscissae, values, share):
     return log_of_rise(abscissae, values, share * math.log(last / lowest))
 
 
-def thickening_decades(abscissae, values, share=0.95):
+def thickening_decades(abscissae, values, share):
     """Returns the decades from the lowest point of a curve to this share of its rise in logarithms."""
     return log_of_share(abscissae, values, share) - log_minimum(abscissae, values)
+
+
+def decades_of_rise(abscissae, values):
+    """Returns the decades in which a curve makes the middle four fifths of its rise, from a tenth of it to nine tenths,
+    in logarithms."""
+    return log_of_share(abscissae, values, 0.9) - log_of_share(abscissae, values, 0.1)
 
 
 def divergence(fractions, numbers, start):

@@ -27,8 +27,8 @@ from studies.estimates import (
     weighted_mean,
 )
 from studies.at_rest import SLOW_SHEAR, fit_with_errors, fitted, rows_at_rest
-from studies.fits import divergence, jammed_and_exponent, line_through, lines, log_minimum, log_of_share, multiples
-from studies.fits import thickening_decades
+from studies.fits import decades_of_rise, divergence, jammed_and_exponent, line_through, lines, log_minimum
+from studies.fits import log_of_share, multiples, thickening_decades
 from studies.published import JAMMED_AT_REST, diverging, gap_of, linear_mixture, mari_fit, rod_lengths, rods
 from studies.tables import columns_of, markdown_head, markdown_row, number_text
 
@@ -157,7 +157,9 @@ class Fits(unittest.TestCase):
         # The vertex is at 10. ln rises from 0 to 3, and reaches 2.85 after 0.85 of the last decade.
         values = np.exp([2, 0, 2, 3])
         self.assertAlmostEqual(log_of_share([1, 10, 100, 1000], values, 0.95), 2.85)
-        self.assertAlmostEqual(thickening_decades([1, 10, 100, 1000], values), 1.85)
+        self.assertAlmostEqual(thickening_decades([1, 10, 100, 1000], values, 0.95), 1.85)
+        # ln is 0.3 after 0.15 of the second decade, and 2.7 after 0.7 of the last.
+        self.assertAlmostEqual(decades_of_rise([1, 10, 100, 1000], values), 1.55)
 
     def test_a_divergence_is_found_with_the_errors_that_redrawing_gives(self):
         fractions = np.array([0.3, 0.4, 0.45, 0.5, 0.55])
