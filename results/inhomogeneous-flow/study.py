@@ -18,6 +18,8 @@ from scipy.optimize import least_squares
 
 TITLE = "Flows that vary along their gradient"
 SEEDS = 4
+# More for learned maps, whose errors otherwise are those of the noise in what they learn from and are tested on.
+TRAINING_SEEDS, TEST_SEEDS = {50: 8, 100: 6}, 12  # the first by height
 UNIFORM = (0.40, 0.44, 0.47, 0.50, 0.52, 0.54, 0.56, 0.58, 0.60, 0.61)
 UNIFORM_RATE = 0.01
 UNIFORM_QUANTITIES = "J", "mu", "Theta", "normal"
@@ -38,7 +40,7 @@ def uniform_rows(program, hours):
     patch = {"flow": {"shear_rate": UNIFORM_RATE}, "particles": {"count": 1000}, "profiles": {"bins": 5}}
     scene = merged(SCENE, {"box": None, "flow": None}, patch, in_strains(4, 12))
     settings = [{"/volume_fraction": fraction} for fraction in UNIFORM]
-    hours.plan("uniform", scene, settings)
+    hours.plan("uniform", scene, settings, SEEDS)
     hours.add(program.run("uniform", scene, settings, SEEDS))
     for fraction, results in zip(UNIFORM, program.stored_results("uniform")):
         row = {"fraction": fraction, "seeds": len(results)}
@@ -101,18 +103,24 @@ def flow_row(flow, results, profiles):
 IN_TIME = merged(SCENE, during({"strain": None, "time": 1}, {"strain": None, "time": 1}))
 
 
+def seeds_of(flow):
+    if flow in TRAINING:
+        return TRAINING_SEEDS[flow.height]
+    return TEST_SEEDS if flow in PUBLISHED else SEEDS
+
+
 def results_of(program, flow):
     """Runs the campaign of a flow and returns its points, its whole results, and their Profiles."""
-    points = program.run(flow.name, IN_TIME, [flow.settings()], SEEDS, observable="pressure")
+    points = program.run(flow.name, IN_TIME, [flow.settings()], seeds_of(flow), observable="pressure")
     (results,) = program.stored_results(flow.name)
     return points, results, [profile_of(flow, r["mean"]["profiles"]) for r in results]
 
 
 def measure(program):
-    bins, distinct, flows, hours = [], [], [], Hours(program, SEEDS)
+    bins, distinct, flows, hours = [], [], [], Hours(program)
     uniform = list(uniform_rows(program, hours))
     for one in FLOWS:
-        hours.plan(one.name, IN_TIME, [one.settings()], "pressure")
+        hours.plan(one.name, IN_TIME, [one.settings()], seeds_of(one), "pressure")
         points, results, profiles = results_of(program, one)
         hours.add(points)
         bins += bin_rows(one, profiles)
@@ -229,10 +237,10 @@ def noise_rows(tables):
     symbols = {"mu": "μ", "fraction": "φ_loc", "Theta": "Θ", "lag": "Δ_v", "J": "J"}
     for name, symbol in symbols.items():
         text = f"noise of {symbol} in a bin, relative, median of {len(rows)}"
-        yield Finding(text, f"{SEEDS} seeds", noise(rows, name), 0)
+        yield Finding(text, "six and eight seeds", noise(rows, name), 0)
     less = estimate([noise(distinct, name) / noise(rows, name) for name in symbols])
     text = f"the same of {len(distinct)} bins averaged over symmetries, over that: mean of the five"
-    yield Finding(text, f"{SEEDS} seeds", *less, len(symbols) - 1)
+    yield Finding(text, "six and eight seeds", *less, len(symbols) - 1)
 
 
 def law_rows(tables):

@@ -57,13 +57,15 @@ def name_of(map_, output):
 
 def error_statements(rows):
     """Yields statements about the published maps, by the published method and by the one that is best with flows left
-    out. Volume fractions are not scaled: scaled by their range, the noise of the bins exceeds the published errors."""
+    out. Volume fractions are not scaled: the noise of the bins alone, over their range, exceeds the published errors.
+    That is a reading, and the factor allowed is not in print."""
     for map_, output in CASES:
         printed, name, source = MAPS[map_][1][output], name_of(map_, output), f"L6.{map_ + 1}"
-        what, words = ("raw", "not scaled, ") if output == "fraction" else ("published", "")
+        read = output == "fraction"
+        what, words, most = ("raw", "not scaled, ", 1.5 * printed) if read else ("published", "", printed)
         value = number(rows[map_, output, "published"], what)
         text = f"{name}: error of XGBoost in the published tests, {words}printed: {printed:g}"
-        yield Statement(text, source, *value, high=1.5 * printed, degrees=DEGREES)
+        yield Statement(text, source, *value, high=most, degrees=DEGREES, essential=not read)
         method, best = best_of(rows, map_, output)
         text = f"{name}: the same of the method that is best with flows left out, {method}"
         yield Statement(text, source, *number(best, what), high=printed, degrees=DEGREES, essential=False)
@@ -74,8 +76,8 @@ def floor_rows(rows):
         row = rows[map_, "fraction", "published"]
         text = f"map {map_}, φ_loc: error of XGBoost in the published tests, scaled by the training's range"
         yield Finding(text, f"L6.{map_ + 1}", *number(row, "published"), DEGREES)
-    yield Finding("φ_loc: what the noise of the tests alone makes, scaled", "4 seeds", row["published floor"], 0)
-    yield Finding("φ_loc: the same, not scaled", "4 seeds", row["raw floor"], 0)
+    yield Finding("φ_loc: what the noise of the tests alone makes, scaled", "12 seeds", row["published floor"], 0)
+    yield Finding("φ_loc: the same, not scaled", "12 seeds", row["raw floor"], 0)
 
 
 def baseline_rows(rows, distinct):
@@ -103,11 +105,11 @@ def sentence_statements(numbers):
     yield of("map 1 over map 2, mu", "μ: error of map 1 over that of map 2 (printed: 1.33)", low=1)
     for output in ("fraction", "mu"):
         text = f"{SYMBOLS[output]}: error of map 3 over that of map 2 (nearly identical)"
-        yield of(f"map 3 over map 2, {output}", text, low=0.67, high=1.5)
+        yield of(f"map 3 over map 2, {output}", text, low=0.67, high=1.5, essential=False)
     yield of("beyond over within, mu", "map 2, μ: error at φ ≥ 0.57 or L_y ≥ 120 over that of the tests", low=1)
     for count in (25, 100, 300):
         text = f"map 1: error with {count} points of uniform flow added, over that without"
-        yield of(f"uniform added, {count}", text, low=0.9)
+        yield of(f"uniform added, {count}", text, low=0.9, essential=False)
     pair = max((name for name in numbers if " and " in name), key=lambda name: numbers[name][0])
     given, wanted = pair.split(" to ")
     words = " and ".join(SYMBOLS[name] for name in given.split(" and "))

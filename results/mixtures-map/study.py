@@ -124,7 +124,7 @@ def run_row(program, row, cases, hours=None, seeds=SEEDS, harder=1):
     scene = merged(SCENE if row in (SMOOTH, ROUGH) else NOISY, contact={"friction": 0 if row == SMOOTH else 1})
     settings = [setting(alpha, fraction, row, harder) for alpha, fraction in cases]
     if hours:
-        hours.plan(name, scene, settings)
+        hours.plan(name, scene, settings, seeds)
     points = program.run(name, scene, settings, seeds)
     if hours:
         hours.add(points)
@@ -145,7 +145,7 @@ def map_entry(row, alpha, bracket):
 
 
 def measure(program):
-    table, jams, hours = [], [], Hours(program, SEEDS)
+    table, jams, hours = [], [], Hours(program)
     everything = {SMOOTH: (*COUNTS,), ROUGH: (*COUNTS,), **NOISY_ROWS, FIXED: FIXED_SHARES}
     for row, shares in everything.items():
         rows, found = search(program, hours, row, shares)

@@ -13,15 +13,15 @@ ERROR = 0.05  # relative standard error of prices
 class Hours:
     """Planned and used processor time [h] of campaigns that `peclet plan` has no earlier data for."""
 
-    def __init__(self, program, seeds):
-        self._program, self._seeds = program, seeds
+    def __init__(self, program):
+        self._program = program
         self.planned, self.taken = 0.0, 0.0
 
-    def plan(self, name, scene, settings, observable="relative_viscosity"):
+    def plan(self, name, scene, settings, seeds, observable="relative_viscosity"):
         """Adds the planned time of a campaign, which is not run. Stored in a file, because planning takes seconds."""
         kept = Path(self._program.folder) / f"{name}.planned"
         if not kept.exists():
-            self._program.write(f"plan-{name}", scene, settings, self._seeds, observable)
+            self._program.write(f"plan-{name}", scene, settings, seeds, observable)
             kept.write_text(str(self._program.asked("plan", f"plan-{name}")["cpu_hours_maximum"]))
         self.planned += float(kept.read_text())
 
