@@ -8,8 +8,8 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.driver import BLUE, Check, Figure, Finding, GREEN, ORANGE, RED, Statement, TABLE_SCENE, decades_of_rise
 from studies.driver import difference, during, first, in_strains, log_of_share, main, merged, number, propagated
-from studies.driver import propagated_lists, quotient
-from studies.driver import read_rows, row_ratio, thickening_decades, viscosity_row, where, write_table
+from studies.driver import propagated_lists, quotient, read_rows, row_ratio, thickening_decades, viscosity_row, where
+from studies.driver import write_table
 import numpy as np
 
 TITLE = "Friction and repulsion in flow curves"

@@ -11,15 +11,12 @@ from studies.driver import BLACK, BLUE, Check, Figure, Finding, GREEN, GREY, Hou
 from studies.driver import column, difference, divergence, during, entries, estimate, groups, in_strains, jackknife
 from studies.driver import main, merged, number, propagated, quotient, read_numbers, read_rows, write_numbers
 from studies.driver import write_rows, write_table
-from studies.inhomogeneous import FIGURE, FLOWS, Flow, OTHER, PUBLISHED, SCENE, TRAINING, UNSEEN, bin_rows, growth
-from studies.inhomogeneous import profile_of, symmetric_bin_rows, symmetries, wave
+from studies.inhomogeneous import FIGURE, FLOWS, Flow, OTHER, PUBLISHED, SCENE, SEEDS, TRAINING, TRAINING_SEEDS, UNSEEN
+from studies.inhomogeneous import bin_rows, growth, profile_of, seeds_of, symmetric_bin_rows, symmetries, wave
 import numpy as np
 from scipy.optimize import least_squares
 
 TITLE = "Flows that vary along their gradient"
-SEEDS = 4
-# More for learned maps, whose errors otherwise are those of the noise in what they learn from and are tested on.
-TRAINING_SEEDS, TEST_SEEDS = {50: 8, 100: 6}, 12  # the first by height
 UNIFORM = (0.40, 0.44, 0.47, 0.50, 0.52, 0.54, 0.56, 0.58, 0.60, 0.61)
 UNIFORM_RATE = 0.01
 UNIFORM_QUANTITIES = "J", "mu", "Theta", "normal"
@@ -101,12 +98,6 @@ def flow_row(flow, results, profiles):
 
 
 IN_TIME = merged(SCENE, during({"strain": None, "time": 1}, {"strain": None, "time": 1}))
-
-
-def seeds_of(flow):
-    if flow in TRAINING:
-        return TRAINING_SEEDS[flow.height]
-    return TEST_SEEDS if flow in PUBLISHED else SEEDS
 
 
 def results_of(program, flow):
@@ -233,14 +224,15 @@ def noise(rows, name):
 
 
 def noise_rows(tables):
+    seeds = " and ".join(str(n) for n in sorted(TRAINING_SEEDS.values())) + " seeds"
     rows, distinct = tables.bins(*TRAINING), tables.bins(*TRAINING, distinct=True)
     symbols = {"mu": "μ", "fraction": "φ_loc", "Theta": "Θ", "lag": "Δ_v", "J": "J"}
     for name, symbol in symbols.items():
         text = f"noise of {symbol} in a bin, relative, median of {len(rows)}"
-        yield Finding(text, "six and eight seeds", noise(rows, name), 0)
+        yield Finding(text, seeds, noise(rows, name), 0)
     less = estimate([noise(distinct, name) / noise(rows, name) for name in symbols])
     text = f"the same of {len(distinct)} bins averaged over symmetries, over that: mean of the five"
-    yield Finding(text, "six and eight seeds", *less, len(symbols) - 1)
+    yield Finding(text, seeds, *less, len(symbols) - 1)
 
 
 def law_rows(tables):

@@ -16,6 +16,7 @@ sys.path.insert(0, str(HERE.parent))
 from studies.driver import BLUE, Check, Figure, Finding, GREEN, GREY, ORANGE, RED, Statement, groups, main
 from studies.driver import markdown_head, markdown_row, number, number_text, quotient, read_numbers, read_rows
 from studies.driver import rewrite_part, row_ratio, write_numbers, write_table
+from studies.inhomogeneous import TEST_SEEDS
 from studies.learned_maps import BALANCE, BINS_FOLDER, CANDIDATES, CASES, DEGREES, ERRORS, MAPS, OTHER, PUBLISHED
 from studies.learned_maps import SOLVED, TRAINING, UNSEEN, all_numbers, bins_by_flow, error_rows, solver_rows, together
 from studies.learning import LawOfFraction, METHODS, all_methods, columns_of_rows, taken
@@ -61,11 +62,11 @@ def error_statements(rows):
     That is a reading, and the factor allowed is not in print."""
     for map_, output in CASES:
         printed, name, source = MAPS[map_][1][output], name_of(map_, output), f"L6.{map_ + 1}"
-        read = output == "fraction"
-        what, words, most = ("raw", "not scaled, ", 1.5 * printed) if read else ("published", "", printed)
+        reading = output == "fraction"
+        what, words, most = ("raw", "not scaled, ", 1.5 * printed) if reading else ("published", "", printed)
         value = number(rows[map_, output, "published"], what)
         text = f"{name}: error of XGBoost in the published tests, {words}printed: {printed:g}"
-        yield Statement(text, source, *value, high=most, degrees=DEGREES, essential=not read)
+        yield Statement(text, source, *value, high=most, degrees=DEGREES, essential=not reading)
         method, best = best_of(rows, map_, output)
         text = f"{name}: the same of the method that is best with flows left out, {method}"
         yield Statement(text, source, *number(best, what), high=printed, degrees=DEGREES, essential=False)
@@ -76,8 +77,10 @@ def floor_rows(rows):
         row = rows[map_, "fraction", "published"]
         text = f"map {map_}, φ_loc: error of XGBoost in the published tests, scaled by the training's range"
         yield Finding(text, f"L6.{map_ + 1}", *number(row, "published"), DEGREES)
-    yield Finding("φ_loc: what the noise of the tests alone makes, scaled", "12 seeds", row["published floor"], 0)
-    yield Finding("φ_loc: the same, not scaled", "12 seeds", row["raw floor"], 0)
+    yield Finding(
+        "φ_loc: what the noise of the tests alone makes, scaled", f"{TEST_SEEDS} seeds", row["published floor"], 0
+    )
+    yield Finding("φ_loc: the same, not scaled", f"{TEST_SEEDS} seeds", row["raw floor"], 0)
 
 
 def baseline_rows(rows, distinct):

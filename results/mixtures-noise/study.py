@@ -62,6 +62,7 @@ def line(base, numbers, shares=COLLOIDS_ADDED, fraction=colloids_added):
 
 
 def first_steps(program):
+    """Yields rows of grains alone and of the first colloids among them."""
     for name, (stiffness, seeds, bare_seeds) in FIRST_SEEDS.items():
         cases, bare = line(BASE, NUMBERS[1:-1], FIRST), line(BASE, (math.inf,), FIRST)
         yield from rows_of(program, name, cases, stiffness, FIRST_TIMES, seeds=seeds)
@@ -319,7 +320,7 @@ def rows_of_first_steps(table):
     """Yields statements about the first step as colloids are added to grains, and findings with harder contacts."""
     for peclet in (*NUMBERS[1:-1], math.inf):
         name, end = (f"Pe_c = {peclet:g}", "") if math.isfinite(peclet) else ("without noise", "-bare")
-        text = f"{name}: η_r at α = 0.9 over that of grains alone, 4000 spheres"
+        text = f"{name}: η_r at α = 0.9 over that of grains alone, {FIRST_TIMES * COUNTS[1]} spheres"
         soft, hard = (f"{part}{end}" for part in FIRST_SEEDS)
         ratio, of_hard = (table.ratio(part, (0.9, 1), peclet) for part in (soft, hard))
         yield Statement(text, "L5.2c", *ratio, high=1, degrees=table.degrees(soft))

@@ -179,7 +179,17 @@ OTHER = [
     flow("friction", [wave(0.1)], 50, 0.52, more={"/contact/friction": 0.5}),
     flow("noise", [wave(0.1)], 50, 0.52, more={"/fluid/thermal_energy": 0.00237}),
 ]
+# Seeds of a flow. Learned maps need more, whose errors otherwise are those of the noise in what they learn from and are
+# tested on.
+SEEDS, TEST_SEEDS = 4, 12
+TRAINING_SEEDS = {50: 8, 100: 6}  # by height
 FLOWS = FIGURE + TRAINING + PUBLISHED + UNSEEN + OTHER + BEYOND
+
+
+def seeds_of(flow):
+    if flow in TRAINING:
+        return TRAINING_SEEDS[flow.height]
+    return TEST_SEEDS if flow in PUBLISHED else SEEDS
 
 
 def heights(flow):

@@ -122,41 +122,31 @@ class Controls(PageTest):
         page = self.open()
         quantities = page.evaluate("[...document.getElementById('quantity').options].map(one => one.value)")
         # One call a quantity: all of them together take longer than the browser's patience on a busy machine.
-        drawn = sum(
-            page.evaluate(
-                """(quantity => { const lists = ['quantity', 'axis', 'panels'].map(id => document.getElementById(id));
-                let drawn = 0;
-                for (const axis of [...lists[1].options].slice(0, 2)) for (const panels of lists[2].options) {
-                    [quantity, axis.value, panels.value].forEach((value, i) => { lists[i].value = value; });
-                    lists[0].dispatchEvent(new Event('change'));
-                    for (const box of ['log-x', 'log-y', 'log-x', 'log-y']) document.getElementById(box).click();
-                    drawn += document.querySelectorAll('#sweep svg .mark').length > 0;
-                } return drawn; })"""
-                + f"({json.dumps(quantity)})"
-            )
-            for quantity in quantities
-        )
-        self.assertGreater(drawn, 200)
-        drawn = sum(
-            page.evaluate(
-                """(quantity => { let drawn = 0;
-                const choose = (id, value) => {
-                    const list = document.getElementById(id);
-                    list.value = value;
-                    list.dispatchEvent(new Event('change'));
-                    drawn += document.querySelectorAll('#sweep svg .mark').length > 0;
-                };
-                const values = id => [...document.getElementById(id).options].map(one => one.value);
-                choose('quantity', quantity);
-                for (const id of ['second', 'scale-y', 'scale-x', 'axis'])
-                    for (const value of values(id)) choose(id, value);
-                for (const id of ['second', 'scale-y', 'scale-x', 'axis']) choose(id, values(id)[0]);
-                return drawn; })"""
-                + f"({json.dumps(quantity)})"
-            )
-            for quantity in quantities
-        )
-        self.assertGreater(drawn, 200)
+        for script in (
+            """quantity => { const lists = ['quantity', 'axis', 'panels'].map(id => document.getElementById(id));
+            let drawn = 0;
+            for (const axis of [...lists[1].options].slice(0, 2)) for (const panels of lists[2].options) {
+                [quantity, axis.value, panels.value].forEach((value, i) => { lists[i].value = value; });
+                lists[0].dispatchEvent(new Event('change'));
+                for (const box of ['log-x', 'log-y', 'log-x', 'log-y']) document.getElementById(box).click();
+                drawn += document.querySelectorAll('#sweep svg .mark').length > 0;
+            } return drawn; }""",
+            """quantity => { let drawn = 0;
+            const choose = (id, value) => {
+                const list = document.getElementById(id);
+                list.value = value;
+                list.dispatchEvent(new Event('change'));
+                drawn += document.querySelectorAll('#sweep svg .mark').length > 0;
+            };
+            const values = id => [...document.getElementById(id).options].map(one => one.value);
+            choose('quantity', quantity);
+            for (const id of ['second', 'scale-y', 'scale-x', 'axis'])
+                for (const value of values(id)) choose(id, value);
+            for (const id of ['second', 'scale-y', 'scale-x', 'axis']) choose(id, values(id)[0]);
+            return drawn; }""",
+        ):
+            drawn = sum(page.evaluate(f"({script})({json.dumps(quantity)})") for quantity in quantities)
+            self.assertGreater(drawn, 200)
 
     def test_log_scales_are_chosen_by_themselves_and_by_a_switch(self):
         page = self.open()
