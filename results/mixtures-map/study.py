@@ -10,7 +10,7 @@ sys.path.insert(0, str(HERE.parent))
 from studies.compositions import ALIKE, ALIKE_NOISE, DENSITY, MIXTURE_SCENE, NOISE, STIFFNESS, THERMAL_ENERGY, alike
 from studies.compositions import composition_row, draw_models, from_nearer_model, mean_peclet, setting_of, windows
 from studies.driver import BLACK, BLUE, Check, Figure, Finding, GREEN, Hours, ORANGE, PURPLE, RED, Statement, difference
-from studies.driver import entries, first, main, merged, number, over, place_of_largest, propagated, quotient
+from studies.driver import entries, estimate, first, main, merged, number, over, place_of_largest, propagated, quotient
 from studies.driver import read_numbers, read_rows, row_ratio, viscosity_row, where, write_numbers, write_rows
 from studies.driver import write_table
 import numpy as np
@@ -31,8 +31,10 @@ FIXED_SHARES, COMMON = (0.4, 0.7), 0.69
 # Runs with diffusion faster than the flow, for grains, too: shares and volume fractions.
 SLOW, SLOWEST, SLOW_CASES = "slow", 0.01, ((1, 0.6), (1, 0.62))
 # Cases at the edge of the jam, again with contacts four times as stiff: colloids at a published volume fraction, at
-# Peclet number 1, and a mixture at 100 at the least volume fraction that jams with the stiffness of the map.
+# Peclet number 1, and grains there, whose own Peclet number is 1.25; a mixture at 100 at the least volume fraction that
+# jams with the stiffness of the map, and up to there without noise.
 EDGE, EDGE_CASE, EDGE_SEEDS, HARDER, HARD_CASE = "edge", (0, 0.62), 8, 4, (0.4, 0.67)
+HARD_ROUGH = (0.4, 0.65), (0.4, 0.66), HARD_CASE
 # First volume fractions of the search, those at which the study mixtures has jamming without noise, and its steps.
 START = {
     SMOOTH: {0: 0.63, 0.4: 0.71, 0.6: 0.755, 0.7: 0.77, 0.8: 0.75, 0.9: 0.69, 1: 0.63},
@@ -136,6 +138,13 @@ def run_row(program, row, cases, hours=None, seeds=SEEDS, harder=1):
     return rows, curves
 
 
+def jammed_share(program, name):
+    """Returns the share of seeds of a campaign's only point that are jammed or soft, its error, degrees of freedom."""
+    (results,) = program.stored_results(name)
+    jammed = [float(result["mean"]["mean_overlap"] > SOFTEST) for result in results]
+    return (*estimate(jammed), len(jammed) - 1)
+
+
 def map_entry(row, alpha, bracket):
     flowing, stuck = (math.nan if x is None else x for x in bracket)
     peclet = colloids_peclet(row, alpha)
@@ -154,12 +163,14 @@ def measure(program):
     table += run_row(program, SLOW, SLOW_CASES)[0]
     for harder in (1, HARDER):
         table += run_row(program, EDGE, [EDGE_CASE], seeds=EDGE_SEEDS, harder=harder)[0]
-    table += run_row(program, 100, [HARD_CASE], harder=HARDER)[0]
+    table += run_row(program, SLOW, SLOW_CASES[1:], seeds=EDGE_SEEDS, harder=HARDER)[0]
+    for row, cases in ((100, [HARD_CASE]), (ROUGH, HARD_ROUGH)):
+        table += run_row(program, row, cases, harder=HARDER)[0]
     names = "row, alpha, fraction, peclet, count, grains, state, seeds, lost, transient, viscosity±, pairs±, "
     names += "lubrication±, contact±, mean_overlap±, contacts_per_particle±"
     write_table(HERE / "table.csv", names, table, 5)
     write_rows(HERE / "map.csv", jams, 6)
-    write_numbers(HERE / "numbers.csv", hours.numbers())
+    write_numbers(HERE / "numbers.csv", hours.numbers() | {"slow and hard": jammed_share(program, hard(SLOW))})
 
 
 class Map:
@@ -168,6 +179,7 @@ class Map:
     def __init__(self):
         self._entries = {(str(e["row"]), e["alpha"]): e for e in read_rows(HERE / "map.csv")}
         self._rows = read_rows(HERE / "table.csv")
+        self.jammed_of_hard = read_numbers(HERE / "numbers.csv")["slow and hard"]  # of the slow grains alone
 
     @staticmethod
     def name(row):
@@ -311,7 +323,9 @@ def rows_of_addition(jams):
     # Grains alone at the smallest Peclet number of the colloids.
     name, dense = f"Pe_c = {SLOWEST:g}", jams.viscosity(SLOW, 1, 0.6)
     yield Finding(f"{name}: η_r of grains alone, φ = 0.6 (flows)", "L5.6", *dense, DEGREES)
-    yield Statement(f"{name}: grains alone, φ = 0.62, 1 for jammed", "L5.6", jams.jams(SLOW, (1, 0.62)), 0, 1, 1)
+    yield Statement(f"{name}: grains alone, φ = 0.62, 1 for jammed", "L5.6", jams.jams(SLOW, SLOW_CASES[1]), 0, 1, 1)
+    text = f"{name}: grains alone, φ = 0.62, contacts {HARDER} times as stiff: share of seeds that jam"
+    yield Finding(text, "L5.6", *jams.jammed_of_hard)
 
 
 def judge():
