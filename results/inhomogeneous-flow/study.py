@@ -11,8 +11,9 @@ from studies.driver import BLACK, BLUE, Check, Figure, Finding, GREEN, GREY, Hou
 from studies.driver import column, difference, divergence, during, entries, estimate, groups, in_strains, jackknife
 from studies.driver import main, merged, number, propagated, quotient, read_numbers, read_rows, write_numbers
 from studies.driver import write_rows, write_table
-from studies.inhomogeneous import FIGURE, FLOWS, Flow, OTHER, PUBLISHED, SCENE, SEEDS, TRAINING, TRAINING_SEEDS, UNSEEN
-from studies.inhomogeneous import bin_rows, growth, profile_of, seeds_of, symmetric_bin_rows, symmetries, wave
+from studies.inhomogeneous import FIGURE, FLOWS, Flow, LEARNED_SEEDS, OTHER, PUBLISHED, SCENE, SEEDS, TRAINING, UNSEEN
+from studies.inhomogeneous import bin_rows, growth, profile_of, rows_by_seed, seeds_of, symmetric_bin_rows
+from studies.inhomogeneous import symmetric_rows_by_seed, symmetries, wave
 import numpy as np
 from scipy.optimize import least_squares
 
@@ -108,7 +109,7 @@ def results_of(program, flow):
 
 
 def measure(program):
-    bins, distinct, flows, hours = [], [], [], Hours(program)
+    bins, distinct, seeds, distinct_seeds, flows, hours = [], [], [], [], [], Hours(program)
     uniform = list(uniform_rows(program, hours))
     for one in FLOWS:
         hours.plan(one.name, IN_TIME, [one.settings()], seeds_of(one), "pressure")
@@ -116,9 +117,14 @@ def measure(program):
         hours.add(points)
         bins += bin_rows(one, profiles)
         distinct += symmetric_bin_rows(one, profiles)
+        if one in TRAINING:
+            seeds += rows_by_seed(one, profiles)
+            distinct_seeds += symmetric_rows_by_seed(one, profiles)
         flows.append(flow_row(one, results, profiles))
     write_rows(HERE / "bins.csv", bins, 6)
     write_rows(HERE / "distinct_bins.csv", distinct, 6)
+    write_rows(HERE / "bins_by_seed.csv", seeds, 4)
+    write_rows(HERE / "distinct_bins_by_seed.csv", distinct_seeds, 4)
     names = "flow, mean, height, count, seeds, mirrored, lag±, unevenness±, change±, densest±, contrast±, separation±, "
     write_table(HERE / "flows.csv", names + "separation change±, imbalance±", flows, 5)
     write_rows(HERE / "uniform.csv", uniform, 6)
@@ -224,7 +230,7 @@ def noise(rows, name):
 
 
 def noise_rows(tables):
-    seeds = " and ".join(str(n) for n in sorted(TRAINING_SEEDS.values())) + " seeds"
+    seeds = f"{LEARNED_SEEDS} seeds"
     rows, distinct = tables.bins(*TRAINING), tables.bins(*TRAINING, distinct=True)
     symbols = {"mu": "μ", "fraction": "φ_loc", "Theta": "Θ", "lag": "Δ_v", "J": "J"}
     for name, symbol in symbols.items():

@@ -14,12 +14,15 @@ from studies.inhomogeneous import (
     distinct_bins,
     growth,
     profile_of,
+    rows_by_seed,
     symmetric,
     symmetric_bin_rows,
+    symmetric_rows_by_seed,
     symmetries,
     wave,
     waves_of,
 )
+from studies.learned_maps import ratio_of_means
 from studies.learning import LawOfFraction, Published, left_out, relative_error
 from studies.profile_solver import DRAG, Law, drag_by_share, rates_of, solve, spread, stress_of_drag, velocity_of
 
@@ -136,6 +139,22 @@ class Bins(unittest.TestCase):
         self.assertAlmostEqual(row["fraction"], np.mean(values))
         self.assertAlmostEqual(row["fraction_error"], np.std(values, ddof=1) / 2)
 
+    def test_rows_by_seed_are_those_of_each_realisation(self):
+        sine = Flow("sine", [wave(0.1)], 16, 0.5, 1, 1)
+        stress = np.array([np.full(8, s) for s in (-3.0, -2.0, -1.0, 0.5)])
+        bump = np.array([0.04, 0, 0, 0, 0, 0, 0, 0])
+        profiles = [
+            profile_of(sine, profiles_of(0.5 + k * bump, np.zeros(8), k * stress, np.full(8, 0.04))) for k in (1, 2)
+        ]
+        rows = list(rows_by_seed(sine, profiles))
+        self.assertEqual([(r["seed"], r["y"]) for r in rows], [(k, 2 * n + 1) for k in (0, 1) for n in range(8)])
+        self.assertEqual([r["fraction"] for r in rows[::8]], [0.54, 0.58])
+        self.assertAlmostEqual(rows[8]["Theta"], 0.5 * rows[0]["Theta"])  # eta du / (a P) at twice the pressure
+        # The four images of bin 0 share its bump.
+        distinct = list(symmetric_rows_by_seed(sine, profiles))
+        self.assertEqual([(r["seed"], r["y"]) for r in distinct], [(0, 1), (0, 3), (1, 1), (1, 3)])
+        np.testing.assert_allclose([r["fraction"] for r in distinct], [0.51, 0.5, 0.52, 0.5])
+
     def test_a_profile_that_grows_is_told_from_noise(self):
         shape = np.cos(np.arange(20) * 2 * math.pi / 20)
         halves = np.array([1, 1, 1.1, 1.1])
@@ -167,6 +186,12 @@ class Maps(unittest.TestCase):
         # The training range of ln J is 1e-4 to 5e-2.
         beyond = model.beyond({"fraction": np.array([0.55]), "J": np.array([5e-1]), "mean": np.array([0.55])})
         self.assertAlmostEqual(beyond[0], math.log(10) / math.log(500))
+
+    def test_a_ratio_of_means_has_the_error_of_its_jackknife(self):
+        value, error = ratio_of_means([(1, 1), (2, 2), (3, 1)])
+        self.assertAlmostEqual(value, 6 / 4)
+        left = np.array([5 / 3, 4 / 2, 3 / 3])
+        self.assertAlmostEqual(error, math.sqrt(2 / 3 * np.sum((left - left.mean()) ** 2)))
 
     def test_trees_give_back_what_they_were_shown(self):
         table = {name: np.linspace(1, 2, 40) for name in ("J", "fraction", "mean", "mu")}
