@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Colloids and grains with noise and friction: flow curves as grains are added to colloids, and colloids to grains
 (Li 2023, Figs 5.2, 5.3 a, b and 5.6)."""
+import itertools
 import math
 import sys
 from pathlib import Path
@@ -29,7 +30,7 @@ NUMBERS = (0.1, 1, 10, 100, 1e3, 1e5)  # Peclet numbers of the colloids
 FRACTION, SHARES = 0.565, (0, 0.5, 0.7, 1)  # a constant volume fraction, and its shares of grains
 SLOW_MEANS = (0.3, 1)  # Peclet numbers of the mean radius, for single groups only: a strain of mixtures takes long
 MEANS = (3, 10, 30, 100, 1e3, 1e5)  # Peclet numbers of the mean radius at this volume fraction
-HARD, HARD_SHARES = {f"dense-{factor}": factor for factor in (STIFFER, STIFFER**2)}, (0.8, 0.7)
+HARD, HARD_SHARES = {f"dense-{factor}": factor for factor in (STIFFER, STIFFER**2)}, (1, 0.8, 0.7)
 SEEDS, BARE_SEEDS = 4, 16  # the second without noise
 # The first steps as colloids are added are small: more seeds, and more spheres, because 1000 have few grains.
 FIRST, FIRST_TIMES = (1, 0.9), 4
@@ -90,7 +91,7 @@ def parts(program):
     yield from rows_of(program, "grains-added", line(BASE, (*fast, 1e4), GRAINS_ADDED[:-1], grains_added))
     mixed = [(alpha, FRACTION, mean / mean_peclet(alpha, 1)) for alpha in SHARES[1:-1] for mean in MEANS]
     yield from rows_of(program, "fraction", [(0, FRACTION, mean) for mean in (*SLOW_MEANS, *MEANS)] + mixed)
-    yield from rows_of(program, "size", [(*middle, 1)], count_times=2)
+    yield from rows_of(program, "size", [(*middle, 1)], count_times=2, seeds=FIRST_SEEDS["first-hard"][1])
     yield from rows_of(program, "stiff", [(*middle, p) for p in (1, 1e3)], STIFFER * STIFFNESS)
     for stiffness, name in ((STIFFNESS, "smooth"), (SOFTER, "smooth-soft")):
         yield from rows_of(program, name, [(*middle, 1)], stiffness, besides={"/contact/friction": 0})
@@ -257,9 +258,12 @@ def rows_of_colloids_added(table):
     of = {peclet: drops(table, peclet) for peclet in NUMBERS}
     degrees, of_bare = table.degrees("colloids-added"), table.degrees("no-noise")
     best, fast = factor(of[1]), factor(of[1000])
-    text = "grains at φ₀ = 0.55, Pe_c = 1: η_r at α = 1 over the smallest with colloids added"
+    text = (
+        f"grains at φ₀ = 0.55, Pe_c = 1, {FIRST_TIMES * COUNTS[1]} spheres: η_r at α = 1 over that at 0.7 (printed: 7)"
+    )
+    most = quotient(table.viscosity("first", 1, 1), table.viscosity("size", 0.7, 1))
     # How much colloids lower it at Pe_c = 1, and at which share most, goes with k_n, which is not in print (README).
-    yield Statement(text, "L5.2b", *best, 4, 12, degrees, essential=False)
+    yield Statement(text, "L5.2b", *most, 4, 12, table.degrees("size"), essential=False)
     text = "grains at φ₀ = 0.55, Pe_c = 1: α of the smallest η_r with colloids added"
     yield Statement(text, "L5.2b", *place_of_largest(COLLOIDS_ADDED[1:], of[1]), 0.6, 0.8, essential=False)
     decades = NUMBERS[:-1]
@@ -302,15 +306,13 @@ def rows_of_colloids_added(table):
     yield Statement(text, "L5.2", *further, high=1, degrees=of_bare, essential=False)
     for peclet in (1, 100):
         name = f"grains at φ₀ = 0.60, Pe_c = {peclet:g}: d ln η_r/d ln k_n at α"
-        for alpha in (1, 0.5):
-            slope = table.stiffening("dense-soft", "dense", alpha, peclet)
-            yield Statement(f"{name} = {alpha:g} (jams)", "L5.6", *slope, JAMMED, math.inf, DEGREES)
+        soft, hard = ("dense-soft", "dense"), tuple(HARD)
+        for alpha, pair, words in ((1, soft, ""), (1, hard, ", hard contacts"), (0.5, soft, "")):
+            slope = table.stiffening(*pair, alpha, peclet)
+            yield Statement(f"{name} = {alpha:g}{words} (jams)", "L5.6", *slope, JAMMED, math.inf, DEGREES)
         # In print they flow at some share. The stiffness is not in print; that of the harder contacts decides.
-        for pair, words, essential in (
-            (tuple(HARD), "hard contacts", True),
-            (("dense-soft", "dense"), "soft ones", False),
-        ):
-            slopes = {alpha: table.stiffening(*pair, alpha, peclet) for alpha in HARD_SHARES}
+        for pair, words, essential in ((hard, "hard contacts", True), (soft, "soft ones", False)):
+            slopes = {alpha: table.stiffening(*pair, alpha, peclet) for alpha in HARD_SHARES[1:]}
             alpha = min(slopes, key=lambda share: slopes[share][0])
             text = f"{name} = {alpha:g}, where it is least, {words} (flows)"
             yield Statement(text, "L5.6", *slopes[alpha], high=FLOWING, degrees=DEGREES, essential=essential)
@@ -406,44 +408,46 @@ def judge():
 
 
 COLOURS = {0: BLUE, 0.3: GREEN, 0.4: ORANGE, 0.5: RED, 0.6: ORANGE, 0.7: GREEN, 0.8: PURPLE, 0.9: GREY, 1: BLUE}
+ENDED, TOP = 8, 8e4  # mark and height of points without a seed that ended well
 
 
 def draw():
     rows = read_rows(HERE / "table.csv")
     figure = Figure(HERE / "chart.png", columns=2, rows=2, size=(1100, 900))
 
-    def panel(x, title, log="xy", **settings):
-        return figure.panel(x, "η_r", title, log=log, y_range=(10, 1e5), **settings)
+    def panel(x, title, log="xy", y_range=(10, 1e5), **settings):
+        return figure.panel(x, "η_r", title, log=log, y_range=y_range, **settings)
 
-    def curve(one, part, x, title, colour, **equal):
-        """Draws the rows of a part and its slow part with these values, over their column x."""
-        here = [r for r in where(rows, **equal) if r["part"] in (part, f"{part}-slow") and r["seeds"]]
-        one.rows(sorted(here, key=lambda r: r[x]), x, "viscosity", title, colour, joined=True)
+    def curve(one, parts, x, title, colour, **equal):
+        """Draws the rows of these parts with these values over their column x; a later part replaces earlier ones."""
+        here = {r[x]: r for part in parts for r in where(rows, part=part, **equal)}
+        for ended_well, some in itertools.groupby(sorted(here.items()), lambda of: of[1]["seeds"] > 0):
+            if ended_well:
+                one.rows([row for _, row in some], x, "viscosity", title, colour, joined=True)
+            else:
+                one.points([(place, TOP) for place, _ in some], title, colour, ENDED, 1.3)
+            title = None
 
     powers = {"powers": "x", "x_range": (0.05, 2e5), "key": "top left"}
-    one = panel("Pe_c", "grains added to colloids of φ₀ = 0.55", **{**powers, "key": "center right"})
+    one = panel("Pe_c", "grains added to colloids of φ₀ = 0.55", **{**powers, "key": "center left"})
     for alpha in GRAINS_ADDED:
         part = "colloids-added" if alpha == 0.5 else "grains-added"
         title = f"α = {alpha:g}, φ = {grains_added(alpha, BASE):.3f}"
-        curve(one, part, "peclet", title, COLOURS[alpha], alpha=alpha)
+        curve(one, (f"{part}-slow", part), "peclet", title, COLOURS[alpha], alpha=alpha)
     one = panel("Pe_c", "colloids added to grains of φ₀ = 0.55", **{**powers, "key": "bottom right"})
     for alpha in COLLOIDS_ADDED:
         title = f"α = {alpha:g}, φ = {colloids_added(alpha, BASE):.3f}"
-        curve(one, "colloids-added", "peclet", title, COLOURS[alpha], alpha=alpha)
-    one = panel(
-        "share of grains α",
-        "colloids added to grains, over the share of grains",
-        "y",
-        x_range=(0.55, 1.05),
-        key="top right",
-    )
-    for peclet, colour in ((0.1, GREY), (1, BLUE), (10, GREEN), (100, ORANGE), (1e3, RED)):
-        curve(one, "colloids-added", "alpha", f"Pe_c = {peclet:g}", colour, peclet=peclet)
-    curve(one, "no-noise", "alpha", "without noise", PURPLE)
-    one = panel("Pe_{cg}, of the mean radius", "one volume fraction, 0.565", **powers)
+        parts_of = ("colloids-added-slow", "colloids-added", "first")
+        curve(one, parts_of, "peclet", title, COLOURS[alpha], alpha=alpha)
+    title, ends = "colloids added to grains of φ₀ = 0.60", {"x_range": (1e4, 4e6), "y_range": (10, 1e6)}
+    one = panel("k_n", title, powers="x", key="bottom left", **ends)
+    for alpha, peclet, colour in ((1, 1, BLUE), (0.8, 1, PURPLE), (0.7, 1, GREEN), (0.7, 100, RED)):
+        parts_of = "dense-soft", "dense", *HARD
+        curve(one, parts_of, "stiffness", f"α = {alpha:g}, Pe_c = {peclet}", colour, alpha=alpha, peclet=peclet)
+    one = panel("Pe_{cg}, of the mean radius", "φ = 0.565", **powers)
     for alpha, colour in zip(SHARES, (BLUE, RED, GREEN, GREY)):
         part = "fraction-grains" if alpha == 1 else "fraction"
-        curve(one, part, "mean peclet", f"α = {alpha:g}", colour, alpha=alpha)
+        curve(one, (part,), "mean peclet", f"α = {alpha:g}", colour, alpha=alpha)
     figure.draw()
 
 
