@@ -103,7 +103,8 @@ def errors_of(tables, training, output, found_of, left):
 
 
 def left_out_of(tables, training, make):
-    """Returns the values of a method for each training flow, fitted to the others; make() returns the method."""
+    """Returns the values of a method in the bins `tables` of each training flow, fitted to the training of the others;
+    make() returns the method."""
     return np.concatenate(
         [
             make().fit(together(training, [other for other in TRAINING if other != flow])).predict(tables[flow])
@@ -245,7 +246,7 @@ def uniform_numbers(tables, training):
 
 def tuning_numbers(tables, training):
     """Yields test errors of boosting with settings tuned by leaving out training flows, over those of the defaults."""
-    train, test, means = together(training, TRAINING), together(tables, PUBLISHED), together(tables, TRAINING)
+    train, test = together(training, TRAINING), together(tables, PUBLISHED)
     grid = [{"max_depth": d, "n_estimators": n, "learning_rate": 0.05} for d in (2, 3, 5) for n in (100, 300, 600)]
     for output in ("mu", "fraction"):
         inputs, scale = MAPS[2][0], ends_of(train, output)
@@ -254,8 +255,8 @@ def tuning_numbers(tables, training):
             return Regression(inputs, output, lambda: boosted(**settings))
 
         def left(settings, output=output, scale=scale, tuned=tuned):
-            found = left_out_of(tables, training, lambda: tuned(settings))
-            return relative_error(found, means[output], *scale)
+            found = left_out_of(training, training, lambda: tuned(settings))
+            return relative_error(found, train[output], *scale)
 
         models = tuned(min(grid, key=left)).fit(train), fitted(training, "published", inputs, output)
         errors = tuple(relative_error(model.predict(test), test[output], *scale) for model in models)
