@@ -253,7 +253,7 @@ def draw():
         for flows, title, colour in ((PUBLISHED, "published tests", RED), (UNSEEN, "never used", GREEN)):
             test = together(tables, flows)
             one.points(zip(test["mu"], model.predict(test)), title, colour)
-        one.curve(lambda x: x, None, GREY, span=(0, float(train["mu"].max())), samples=3)
+        one.curve(lambda x: x, None, GREY, span=(0, float(together(tables, UNSEEN)["mu"].max())), samples=3)
     figure.draw()
 
 
