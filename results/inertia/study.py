@@ -26,10 +26,10 @@ FLOW = merged(REFERENCE_SCENE, SMALL, volume_fraction=0.55, flow={"shear_rate": 
 # stays below 0.01. Runs: Pe, seeds, values of tau_I / tau_B, durations.
 THERMAL_BOUND = 0.01
 THERMAL_RUNS = (
-    (0.1, 32, (0.01, 1.8), in_brownian_times(5, 30)),
-    (0.3, 16, (0.01, 0.1, 0.6), in_brownian_times(5, 30)),
+    (0.1, 128, (0.01, 1.8), in_brownian_times(20, 30)),
+    (0.3, 32, (0.01, 0.1, 0.6), in_brownian_times(20, 30)),
     (1, 24, (0.001, 0.003, 0.01, 0.03, 0.18), in_brownian_times(5, 30)),
-    (10, 16, (0.001, 0.003, 0.01, 0.018), in_strains(1, 3)),
+    (10, 64, (0.001, 0.003, 0.01, 0.018), in_strains(1, 3)),
 )
 THERMAL = merged(REFERENCE_SCENE, SMALL, volume_fraction=0.45, fluid={"thermal_energy": THERMAL_ENERGY})
 
@@ -50,11 +50,19 @@ def flow_rows(program, ratios, seeds, patch=None, name="flow", window=6):
     return [row_of(point, "flow", stokes) for stokes, point in zip(ratios, points)]
 
 
-def thermal_rows(program, number, seeds, ratios, parts, patch=None, name=None):
+def thermal_scene(number, parts, patch=None):
     rate = number * THERMAL_ENERGY / (6 * math.pi * VISCOSITY)
-    scene = {**THERMAL, "flow": {"shear_rate": rate}, **parts}
-    settings = [{"/particles/density": r * VISCOSITY**2 / THERMAL_ENERGY} for r in ratios]
-    points = program.run(name or f"thermal-{number:g}", merged(scene, patch or {}), settings, seeds)
+    return merged({**THERMAL, "flow": {"shear_rate": rate}, **parts}, patch or {})
+
+
+def density_at(ratio):
+    """Returns the density that gives tau_I / tau_B."""
+    return ratio * VISCOSITY**2 / THERMAL_ENERGY
+
+
+def thermal_rows(program, number, seeds, ratios, parts, patch=None, name=None):
+    settings = [{"/particles/density": density_at(r)} for r in ratios]
+    points = program.run(name or f"thermal-{number:g}", thermal_scene(number, parts, patch), settings, seeds)
     return [row_of(point, f"Pe {number:g}", r) for r, point in zip(ratios, points)]
 
 
@@ -195,7 +203,9 @@ def measure(program):
     curves = {run[0]: thermal_rows(program, *run) for run in THERMAL_RUNS}
     # At the smallest inertia: a quarter of the automatic step, because explicit steps take too long.
     number, seeds, _, parts = THERMAL_RUNS[-1]
-    fine = thermal_rows(program, number, seeds, (0.001,), parts, {"integrator": {"timestep": 0.0011}}, "thermal-fine")
+    automatic = program.derived(thermal_scene(number, parts, {"particles": {"density": density_at(0.001)}}))["timestep"]
+    quarter = {"integrator": {"timestep": 0.25 * automatic}}
+    fine = thermal_rows(program, number, seeds, (0.001,), parts, quarter, "thermal-fine")
     explicit = {"integrator": {"method": "explicit"}}
     flow_explicit = flow_rows(program, (0.1, 10), 12, explicit, "flow-explicit")
     thermal_explicit = thermal_rows(program, 1, 8, (0.18,), in_brownian_times(5, 20), explicit, "thermal-explicit")
