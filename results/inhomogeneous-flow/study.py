@@ -209,7 +209,7 @@ def steady_rows(tables):
     text = "how much more φ(y) stands out in the second half of the window, relative: mean of ten flows"
     yield Statement(text, "L 6.1", *tables.mean(known, "change"), -0.1, 0.1, len(known) - 1)
     text = "how much more φ(y) stands out in the second half of the window, relative: the most of ten flows"
-    yield Statement(text, "L 6.1", *tables.largest(known, "change"), -0.1, 0.1, SEEDS - 1, essential=False)
+    yield Statement(text, "L 6.1", *tables.largest(known, "change"), -0.1, 0.1, LEARNED_SEEDS - 1, essential=False)
     noiseless = [flow for flow in FLOWS if flow not in NOISY]
     text = "largest of all flows: dσ_xy and drag of a bin together, over the largest σ"
     yield Check(text, "momentum", *tables.largest(noiseless, "imbalance"), high=0.02, degrees=SEEDS - 1)
@@ -274,7 +274,7 @@ def intro_rows(tables):
     jammed = uniform_jam(tables)
     densest = number(tables.flows["sine-100-56"], "densest")
     text = "φ = 0.56, L_y = 100: largest φ_loc less φ_J of uniform flow"
-    yield Statement(text, "L 6", *difference(densest, jammed), 0, degrees=SEEDS - 1, essential=False)
+    yield Statement(text, "L 6", *difference(densest, jammed), 0, degrees=LEARNED_SEEDS - 1, essential=False)
     yield Finding("φ_J of uniform flow, of c (1 − φ/φ_J)^−λ", "uniform flow", *jammed)
     text = "distance of μ from μ(J) of uniform flow, in errors, median of the tenth with the smallest rates"
     yield Statement(text, "L 6", *residuals(tables, -1), 3, degrees=len(TRAINING) - 1)

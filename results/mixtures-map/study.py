@@ -139,9 +139,11 @@ def run_row(program, row, cases, hours=None, seeds=SEEDS, harder=1):
 
 
 def jammed_share(program, name):
-    """Returns the share of seeds of a campaign's only point that are jammed or soft, its error, degrees of freedom."""
+    """Returns the share of seeds of a campaign's only point that are jammed or soft, its error, degrees of freedom. A
+    seed without means has ended with an overlap, and is jammed."""
     (results,) = program.stored_results(name)
-    jammed = [float(result["mean"]["mean_overlap"] > SOFTEST) for result in results]
+    means = [result.get("mean") for result in results]
+    jammed = [float(not mean or mean["mean_overlap"] > SOFTEST) for mean in means]
     return (*estimate(jammed), len(jammed) - 1)
 
 

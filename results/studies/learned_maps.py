@@ -346,7 +346,7 @@ def momentum_number(tables):
 def all_numbers(tables, trainings):
     """Yields all numbers as (name, (value, standard error, degrees of freedom))."""
     for name, found in of_each(numbers_of, tables, trainings).items():
-        yield name, (*(ratio_of_means if isinstance(found[0], tuple) else estimate)(found), DEGREES)
+        yield name, (*(ratio_of_means if isinstance(found[0], tuple) else estimate)(found), len(found) - 1)
     yield "momentum", momentum_number(tables)
 
 
