@@ -8,13 +8,22 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.driver import BLUE, Check, Figure, Finding, GREEN, JAMMED_AT_REST, JAMMED_IN_STRONG_FLOW, LONGEST, ORANGE
 from studies.driver import RED, SHORTER, Statement, TABLE_SCENE, difference, diverging, entries, first
-from studies.driver import in_brownian_times, jackknife, jammed_and_exponent, lines, main, merged, number, propagated
+from studies.driver import (
+    fit_with_error,
+    in_brownian_times,
+    jammed_and_exponent,
+    lines,
+    main,
+    merged,
+    number,
+    propagated,
+)
 from studies.driver import read_rows, row_ratio, rows_at_rest, shapes_of, table_at_rest, where, write_rows, write_table
 import numpy as np
 
 TITLE = "Divergence of the viscosity with volume fraction"
 PECLET = (4.6, 1e4)
-NAMES = {0: "Pe → 0, published recipe", 4.6: "Pe = 4.6", 1e4: "Pe = 10⁴"}
+NAMES = {0: "Pe → 0, by the recipe in print", 4.6: "Pe = 4.6", 1e4: "Pe = 10⁴"}
 FRACTIONS = (0.40, 0.45, 0.48, 0.50, 0.52, 0.54, 0.56, 0.58, 0.59, 0.60, 0.61)
 SHEARED = merged(TABLE_SCENE, duration={"production": {"strain": 3}})
 SEEDS = 5
@@ -32,16 +41,6 @@ def jammed_at(fractions, values):
     jammed, shapes = shapes_of(fractions)
     best = jammed[np.argmin(np.square(np.log(np.maximum(values, 1e-9)) - 1.5 * shapes).sum(axis=1))]
     return float(best), float(best)
-
-
-def fit_with_error(rows, quantity, function=jammed_and_exponent):
-    """Returns, for both numbers of the fit: value, standard error, its part from the viscosities, and its part from
-    leaving out one volume fraction at a time, added in quadrature."""
-    fractions, numbers = np.array([r["fraction"] for r in rows]), [number(r, quantity) for r in rows]
-    values = np.array([v for v, _ in numbers])
-    whole, by_fractions = jackknife(lambda chosen: function(fractions[chosen], values[chosen]), len(rows))
-    _, by_seeds = propagated(numbers, lambda drawn: function(fractions, drawn), 100)
-    return [(value, math.hypot(a, b), a, b) for value, a, b in zip(whole, by_seeds, by_fractions)]
 
 
 def rest_of(rows, quantity, jammed, exponent):
@@ -93,27 +92,25 @@ def fit_rows(peclet, name, curve, essential=True):
     """Yields statements about φ_J and λ.
 
     It is not published whether η_r of pairs, as in the figures, or with 1 + 2.5 φ was fitted; the nearer one decides.
-    φ_J is published with three digits, λ as "about 1.5", which is no essential statement.
+    φ_J is published with three digits, λ as "about 1.5", which is no essential statement. Errors include that by
+    leaving out volume fractions, which tests the form.
     """
     jammed, exponent = PUBLISHED[peclet]
     fits = {reading: fit_with_error(curve, reading) for reading in READINGS}
     nearer = min(fits, key=lambda reading: abs(fits[reading][0][0] - jammed))
     degrees = max(len(curve) - 2, 1)
     for reading, of in READINGS.items():
-        # Statements use the error from seeds; leaving out volume fractions tests the form.
-        (found, whole, error, _), (power, _, power_error, _) = fits[reading]
-        ends, seeds = (jammed - 0.01, jammed + 0.01), min(r["seeds"] for r in curve) - 1
+        (found, error), (power, power_error) = (numbers[:2] for numbers in fits[reading])
+        ends = jammed - 0.01, jammed + 0.01
         text = f"{name}: φ_J of {of} (published: {jammed})"
-        yield Statement(text, "L4.9a", found, error, *ends, seeds, essential and reading == nearer)
+        yield Statement(text, "L4.9a", found, error, *ends, degrees, essential and reading == nearer)
         text = f"{name}: λ of {of} (published: about 1.5)"
-        yield Statement(text, "L4.9a", power, power_error, exponent - 0.2, exponent + 0.2, seeds, False)
-        text = f"{name}: φ_J of {of}, its error with that by leaving out volume fractions"
-        yield Finding(text, "form", found, whole, degrees)
+        yield Statement(text, "L4.9a", power, power_error, exponent - 0.2, exponent + 0.2, degrees, False)
 
 
 def lag_rows(curve):
     """Yields findings about the recipe with shorter lags."""
-    rest, degrees = table_at_rest(), min(r["seeds"] for r in curve) - 1
+    rest = table_at_rest()
     for end in SHORTER:
         rows = []
         for row in curve:
@@ -122,15 +119,15 @@ def lag_rows(curve):
             both = entries("pairs", (pairs, error)) | entries("viscosity", (1 + 2.5 * fraction + pairs, error))
             rows.append({"fraction": fraction, **both})
         for reading, of in READINGS.items():
-            name = f"Pe → 0 by the published recipe with lags to {end} τ_B, not {LONGEST}"
-            for symbol, (found, _, error, _) in zip(("φ_J", "λ"), fit_with_error(rows, reading)):
-                yield Finding(f"{name}: {symbol} of {of}", "L4.9a", found, error, degrees)
+            name = f"{NAMES[0]} with lags to {end} τ_B, not {LONGEST}"
+            for symbol, (found, error, _, _) in zip(("φ_J", "λ"), fit_with_error(rows, reading)):
+                yield Finding(f"{name}: {symbol} of {of}", "L4.9a", found, error, len(rows) - 2)
 
 
 def shift_rows(curves):
     """Yields rows about the shift of φ_J, with λ = 1.5 as published, and with λ fitted."""
     for reading, of in READINGS.items():
-        held = difference(*(fit_with_error(curves[p], reading, jammed_at)[0][::2][:2] for p in PECLET))
+        held = difference(*(fit_with_error(curves[p], reading, jammed_at)[0][:2] for p in PECLET))
         free = difference(*(fit_with_error(curves[p], reading)[0][:2] for p in PECLET))
         text = f"φ_J of {of} at Pe = 4.6 less that at 10⁴, λ = 1.5 (published: marginally increased)"
         yield Statement(text, "L4.9a", *held, 0, 0.02, len(FRACTIONS) - 2, essential=False)
@@ -170,13 +167,12 @@ def judge():
     # The published estimate of the limit is the Green-Kubo integral of the structural stress, plus lubrication. It is
     # biased for soft spheres, so that the exact limit, by linear response, is another statement.
     # What it gives goes with the longest lag, which is not in print.
-    yield from fit_rows(0, "Pe → 0 by the published recipe", recipe, essential=False)
+    yield from fit_rows(0, NAMES[0], recipe, essential=False)
     yield from lag_rows(recipe)
     yield from fit_rows(0, name, curves[0], essential=False)
     for reading, of in READINGS.items():  # at rest one exponent does not describe all volume fractions
-        value, _, error = fit_with_error(curves[0], reading, jammed_at)[0][:3]
-        seeds = min(r["seeds"] for r in curves[0])
-        yield Finding(f"{name}: φ_J of {of}, λ = 1.5", "form", value, error, seeds - 1)
+        found = fit_with_error(curves[0], reading, jammed_at)[0][:2]
+        yield Finding(f"{name}: φ_J of {of}, λ = 1.5", "form", *found, len(curves[0]) - 1)
     yield from fit_rows(1e4, NAMES[1e4], curves[1e4])
     yield from shift_rows(curves)
     yield from lowest_rows(curves, name)

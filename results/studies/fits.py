@@ -4,6 +4,9 @@ import math
 import numpy as np
 from scipy.optimize import curve_fit
 
+from studies.estimates import jackknife, propagated
+from studies.tables import number
+
 
 def line_through(x, y, errors):
     """Returns intercept, slope and the slope's standard error of a least-squares line with weights 1 / error^2."""
@@ -43,6 +46,16 @@ def jammed_and_exponent(fractions, values):
     exponents, left = multiples(shapes, np.log(np.maximum(values, 1e-9)))
     best = np.argmin(left)
     return float(jammed[best]), float(exponents[best])
+
+
+def fit_with_error(rows, quantity, function=jammed_and_exponent):
+    """Returns, for both numbers of the fit: value, standard error, its part from the viscosities, and its part from
+    leaving out one volume fraction at a time, added in quadrature."""
+    fractions, numbers = np.array([r["fraction"] for r in rows]), [number(r, quantity) for r in rows]
+    values = np.array([v for v, _ in numbers])
+    whole, by_fractions = jackknife(lambda chosen: function(fractions[chosen], values[chosen]), len(rows))
+    _, by_seeds = propagated(numbers, lambda drawn: function(fractions, drawn), 100)
+    return [(value, math.hypot(a, b), a, b) for value, a, b in zip(whole, by_seeds, by_fractions)]
 
 
 def log_minimum(abscissae, values):
