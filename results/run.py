@@ -34,7 +34,6 @@ READ = {
     "friction-repulsion": ("literature",),
     "learned-rheology": ("inhomogeneous-flow",),
     "oscillation": ("at-rest",),
-    "steady-state": ("zero-shear",),
 }
 
 
