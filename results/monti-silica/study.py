@@ -11,6 +11,7 @@ from studies.driver import logarithm, main, mari_fit, merged, number, over, prop
 from studies.driver import relative_difference, row_ratio, viscosity_row, where, write_numbers, write_table
 from studies.monti import DRAG, PROGRAM_RATIO, PUBLISHED_RANGE, SCENE, TABLE_RATIO, contact, electrochemistry
 from studies.monti import lubrication, spheres
+import numpy as np
 
 TITLE = "Silica with two concentrations of salt"
 FRACTION, FRICTION = 0.46, 0.5
@@ -74,15 +75,30 @@ def shape_rows(rows):
         yield Finding(text, "M fig 8", *found, curve[0]["seeds"] - 1)
 
 
+def share_of_rise(curve, rate):
+    """Returns the share of the rise of ln η_r, from its least value to that at the highest rate, that is reached at a
+    rate; logarithms are interpolated linearly."""
+    places = np.log([r["rate"] for r in curve])
+
+    def share(values):
+        logs = np.log(values)
+        return float((np.interp(math.log(rate), places, logs) - min(logs)) / (logs[-1] - min(logs)))
+
+    return propagated([number(r, "viscosity") for r in curve], share)
+
+
 def slope_rows(rows, ends):
-    """Yields rows about the slope at a rate of 1, published as "within the shear-thickening region": by their equation
-    (14), and in the units of their program."""
-    by_rate = {round(2 * math.log10(r["rate"])): r for r in curve_of(rows, FREE, TABLE_RATIO)}
-    text = "salt-free: d ln η_r/d ln γ̇ at γ̇/γ̇₀ = 1"
-    found, degrees = slope(*ends), ends[0]["seeds"] - 1
-    yield Statement(f"{text}, F(0) = (F_R ± F_A)/(η a²): thickening", "M 4.2", *found, 0, math.inf, degrees)
-    found, degrees = slope(by_rate[-3], by_rate[-2]), by_rate[-3]["seeds"] - 1
-    yield Finding(f"{text}, F(0) = (F_R + F_A)/(6π η a²), the program's", "M 4.2", *found, degrees)
+    """Yields rows about the rate γ̇₀, published as "within the shear-thickening region": by their equation (14), and in
+    the units of their program. Within is between a tenth and nine tenths of the rise, bounds of ours."""
+    curve = curve_of(rows, FREE, TABLE_RATIO)
+    by_rate, degrees = {round(2 * math.log10(r["rate"])): r for r in curve}, curve[0]["seeds"] - 1
+    slopes = (slope(*ends), ends[0]["seeds"] - 1), (slope(by_rate[-3], by_rate[-2]), degrees)
+    forces = "(F_R + F_A)/(η a²)", "(F_R + F_A)/(6π η a²), the program's"
+    for force, rate, (found, degrees_of_slope) in zip(forces, (1, 1 / DRAG), slopes):
+        name = f"salt-free, γ̇₀ = {force}"
+        text = f"{name}: share of the rise of ln η_r at this rate"
+        yield Statement(text, "M 4.2", *share_of_rise(curve, rate), 0.1, 0.9, degrees, essential=False)
+        yield Finding(f"{name}: d ln η_r/d ln γ̇ at this rate", "M 4.2", *found, degrees_of_slope)
 
 
 def change(program, name, case, patch=None, **others):
@@ -136,20 +152,21 @@ def measure(program):
 def draw():
     rows = read_rows(HERE / "table.csv")[: -len(SLOPE_RATES)]  # without those of the slope
     figure = Figure(HERE / "chart.png", columns=2)
-    ends = {"x_range": (5e-6, 20), "y_range": (5, 1000), "log": "xy", "powers": "x"}
-    panel = figure.panel(
-        "γ̇/γ̇_0, F(0) = F_R + F_A", "η_r", f"φ = {FRACTION}, μ = {FRICTION}, F_R/F_A = 19", key="top left", **ends
-    )
+    ends = {"x_range": (5e-6, 20), "log": "xy", "powers": "x"}
+    title = f"φ = {FRACTION}, μ = {FRICTION}, F_R/F_A = 19"
+    panel = figure.panel("γ̇/γ̇_0, F(0) = F_R + F_A", "η_r", title, key="top left", y_range=(5, 100), **ends)
     for friction, dash in ((1, 2), (0, 3)):
         panel.level(mari_fit(FRACTION, friction), f"Mari fit (published), μ = {friction}", GREY, dash=dash)
-    for x, text in ((1, "γ̇_0, said to lie in the thickening"), (1 / DRAG, "γ̇_0 with 6π")):
+    for x, text in ((1, "γ̇_0 by Eq. 14"), (1 / DRAG, "γ̇_0 with 6π")):
         panel.upright(x)
-        panel.text(text, x * 0.8, 170, "right", rotation=90, fontsize=9)
+        panel.text(text, x * 0.8, 48, "right", rotation=90, fontsize=9)
     for length, colour in ((FREE, BLUE), (SALTED, RED)):
         curve, title = curve_of(rows, length, TABLE_RATIO), f"{SALTS[length]}, λ = {length} a"
         panel.rows(curve, "rate", "viscosity", title, colour, 7, 0.8, joined=True)
-    panel = figure.panel("γ̇/γ̇_0, F(0) = F_R + F_A", "η_r", f"λ = {SALTED} a (0.4 M)", key="top right", **ends)
-    for ratio, colour in zip((TABLE_RATIO, *SCANNED[SALTED]), (RED, ORANGE, GREEN, BLUE, PURPLE)):
+    panel = figure.panel(
+        "γ̇/γ̇_0, F(0) = F_R + F_A", "η_r", f"λ = {SALTED} a (0.4 M)", key="top right", y_range=(5, 1000), **ends
+    )
+    for ratio, colour in zip((TABLE_RATIO, *SCANNED[SALTED]), (RED, ORANGE, GREEN, GREY, PURPLE)):
         curve = curve_of(rows, SALTED, ratio)
         panel.rows(curve, "rate", "viscosity", f"F_R/F_A = {ratio}", colour, 7, 0.8, joined=True)
     figure.draw()
