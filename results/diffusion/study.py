@@ -6,7 +6,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.driver import BLACK, BLUE, Check, Figure, Finding, GREEN, RED, REFERENCE_SCENE, Statement, difference
+from studies.driver import BLACK, BLUE, Check, Figure, Finding, GREEN, GREY, RED, REFERENCE_SCENE, Statement, difference
 from studies.driver import during, estimate, groups, in_brownian_times, line_through, main, merged, over, quotient
 from studies.driver import read_rows, weighted_mean, where, write_rows
 import numpy as np
@@ -309,18 +309,19 @@ def draw():
         times = [r["time"] / INERTIAL_TIME for r in rows]
         panel.line(zip(times, (r["free"] for r in rows)), None if ratio != RATIOS[0] else "L4.1")
         panel.points(zip(times, (r["displacement"] for r in rows)), f"τ_I/τ_B = {ratio:g}", colours[ratio], size=0.7)
-    panel = figure.panel(
-        "φ", "D / D_0", "at lags of 1 and 2 τ_B, and of 12 and 24", x_range=(-0.02, 0.6), y_range=(0, 1.1)
+    panel = figure.panel("φ", "D / D_0", x_range=(-0.02, 0.6), y_range=(0, 1.1))
+
+    def bars(**equal):
+        return [(r["fraction"], r["diffusion"], 2 * r["standard_error"]) for r in where(table, **equal)]
+
+    for ratio in (WARM, COLD):
+        name = f"τ_I/τ_B = {ratio:g}, lags of 12 and 24 τ_B"
+        long = bars(method="implicit, windows of 90", ratio=ratio)
+        panel.points(long, name, colours[ratio], mark=6 if ratio == WARM else 7, size=1.2 if ratio == WARM else 0.7)
+    panel.line([long[0][:2], long[-1][:2]], "line through the first and the last", BLACK)
+    panel.points(
+        bars(method="implicit", ratio=COLD), "τ_I/τ_B = 0.017, lags of 1 and 2 τ_B", GREY, size=0.5, joined=True
     )
-
-    def bars(rows):
-        return [(r["fraction"], r["diffusion"], 2 * r["standard_error"]) for r in rows]
-
-    for ratio in RATIOS:
-        rows = where(table, method="implicit", ratio=ratio)
-        panel.points(bars(rows), f"τ_I/τ_B = {ratio:g}", colours[ratio], size=0.7, joined=True)
-    long = bars(where(table, method="implicit, windows of 90", ratio=COLD))
-    panel.points(long, "τ_I/τ_B = 0.017, 12 and 24 τ_B", BLACK, mark=6, size=1.2)
     figure.draw()
 
 
