@@ -164,6 +164,16 @@ def law_of_fraction(rows):
     return found.x[0] ** 2, float(found.x[1]), float(np.sqrt(np.mean(left(found.x) ** 2)))
 
 
+def shift_of_jam(rows, uniform):
+    """Returns phi_J of bins by Eq. 6.7 less that of uniform flow at the same volume fractions, because a form that does
+    not fit has a phi_J that goes with the range of phi. Bins beyond the range of uniform flow are left out."""
+    fractions, logs = column(uniform, "fraction"), np.log(column(uniform, "J") / column(uniform, "mu"))
+    rows = [r for r in rows if fractions[0] <= r["fraction"] <= fractions[-1]]
+    beside = np.exp(np.interp(column(rows, "fraction"), fractions, logs))
+    there = [{"fraction": r["fraction"], "J": ratio, "mu": 1.0} for r, ratio in zip(rows, beside)]
+    return law_of_fraction(rows)[1] - law_of_fraction(there)[1]
+
+
 def by_flow(flows, tables, function):
     """Returns a function of the bins of flows, and its jackknife error over flows."""
     return jackknife(lambda chosen: function(tables.bins(*(flows[k] for k in chosen))), len(flows))
@@ -208,17 +218,15 @@ def steady_rows(tables):
     known = TRAINING + PUBLISHED
     text = "how much more φ(y) stands out in the second half of the window, relative: mean of ten flows"
     yield Statement(text, "L 6.1", *tables.mean(known, "change"), -0.1, 0.1, len(known) - 1)
-    text = "how much more φ(y) stands out in the second half of the window, relative: the most of ten flows"
-    yield Statement(text, "L 6.1", *tables.largest(known, "change"), -0.1, 0.1, LEARNED_SEEDS - 1, essential=False)
+    text = "how much more φ(y) stands out in the second half of the window, relative: the most of all flows"
+    yield Statement(text, "L 6.1", *tables.largest(FLOWS, "change"), -0.1, 0.1, SEEDS - 1, essential=False)
     noiseless = [flow for flow in FLOWS if flow not in NOISY]
     text = "largest of all flows: dσ_xy and drag of a bin together, over the largest σ"
     yield Check(text, "momentum", *tables.largest(noiseless, "imbalance"), high=0.02, degrees=SEEDS - 1)
     text = "largest of all flows: scatter of σ_yy over y, relative"
     yield Check(text, "momentum", *tables.largest(noiseless, "unevenness"), high=0.02, degrees=SEEDS - 1)
-    text = "bins less their mirror images, in standard errors, median (0.76 expected)"
+    text = f"bins less their mirror images, in standard errors, median (0.69 expected of {LEARNED_SEEDS} seeds)"
     yield Check(text, "error bars", *tables.mean(TRAINING, "mirrored"), 0.5, 1.1, len(TRAINING) - 1)
-    bins = len(tables.bins(*TRAINING))
-    yield Statement("bins of the training flows", "L 6.1", bins, 0, 300, 300)
 
 
 NOISY = OTHER[1:]
@@ -247,12 +255,10 @@ def law_rows(tables):
     yield Finding("Eq. 6.7, uniform flow: rms of ln(J/μ)", "L eq 6.7", uniform[2], 0)
     # Where the flow turns, fluctuations come from the layers beside: the second reading leaves more of that out.
     for least in (0.05, 0.2):
-        where = by_flow(TRAINING, tables, lambda rows, least=least: law_of_fraction(sheared(rows, least))[1])
+        shift = by_flow(TRAINING, tables, lambda rows, least=least: shift_of_jam(sheared(rows, least), tables.uniform))
         text = f"Eq. 6.7: φ_J of the training flows, of rates above {least:g} of the largest, less that of uniform flow"
-        shift = where[0] - uniform[1], where[1]
-        yield Statement(text, "L eq 6.7", *shift, -0.005, 0.005, len(TRAINING) - 1, essential=False)
-    left = by_flow(TRAINING, tables, lambda rows: law_of_fraction(rows)[2])
-    yield Finding("Eq. 6.7, training flows: rms of ln(J/μ)", "L eq 6.7", *left, len(TRAINING) - 1)
+        degrees = len(TRAINING) - 1
+        yield Statement(f"{text} at equal φ", "L eq 6.7", *shift, -0.005, 0.005, degrees, essential=False)
     everything = TRAINING + PUBLISHED
     degrees = len(everything) - 1
     for name, range_, printed in RANGES:
@@ -276,10 +282,9 @@ def intro_rows(tables):
     text = "φ = 0.56, L_y = 100: largest φ_loc less φ_J of uniform flow"
     yield Statement(text, "L 6", *difference(densest, jammed), 0, degrees=LEARNED_SEEDS - 1, essential=False)
     yield Finding("φ_J of uniform flow, of c (1 − φ/φ_J)^−λ", "uniform flow", *jammed)
-    text = "distance of μ from μ(J) of uniform flow, in errors, median of the tenth with the smallest rates"
-    yield Statement(text, "L 6", *residuals(tables, -1), 3, degrees=len(TRAINING) - 1)
-    text = "distance of μ from μ(J) of uniform flow, in errors, median of the tenth with the largest rates"
-    yield Finding(text, "L 6", *residuals(tables, 1), len(TRAINING) - 1)
+    text = "relative distance of μ from μ(J) of uniform flow, median of the tenth with the"
+    yield Statement(f"{text} smallest rates", "L 6", *residuals(tables, -1), 0.1, degrees=len(TRAINING) - 1)
+    yield Finding(f"{text} largest rates", "L 6", *residuals(tables, 1), len(TRAINING) - 1)
 
 
 def uniform_jam(tables):
@@ -290,10 +295,10 @@ def uniform_jam(tables):
 
 
 def residuals(tables, side):
-    """Returns the median of |mu - mu(J)| over its error, and its jackknife error over flows.
+    """Returns the median of |mu / mu(J) - 1|, with mu(J) of uniform flow, and its jackknife error over flows.
 
-    It is taken over the tenth of the bins of each flow with the largest (side 1) or smallest (-1) rates. mu(J) is that
-    of uniform flow, constant beyond its range.
+    It is taken over the tenth of the bins of each flow with the largest (side 1) or smallest (-1) rates, without those
+    whose J is beyond the range of uniform flow.
     """
     order = sorted(tables.uniform, key=lambda r: r["J"])
     known = np.log(column(order, "J")), np.log(column(order, "mu"))
@@ -302,8 +307,8 @@ def residuals(tables, side):
         rows = []
         for flow in (TRAINING[k] for k in chosen):
             rows += sorted(tables.bins(flow), key=lambda r: -side * abs(r["rate"]))[: flow.bins // 10 + 1]
-        expected = np.exp(np.interp(np.log(column(rows, "J")), *known))
-        return float(np.median(np.abs(column(rows, "mu") - expected) / column(rows, "mu_error")))
+        expected = np.exp(np.interp(np.log(column(rows, "J")), *known, np.nan, np.nan))
+        return float(np.nanmedian(np.abs(column(rows, "mu") / expected - 1)))
 
     return jackknife(of, len(TRAINING))
 
@@ -311,8 +316,10 @@ def residuals(tables, side):
 def separation_rows(tables):
     text = "share of the larger spheres where the rate is large less that where it is small, mean of the training flows"
     yield Finding(text, "segregation", *tables.mean(TRAINING, "separation"), len(TRAINING) - 1)
-    text = "how much more that stands out in the second half of the window, relative"
-    yield Finding(text, "segregation", *tables.mean(TRAINING, "separation change"), len(TRAINING) - 1)
+    for height in sorted({flow.height for flow in TRAINING}):
+        flows = [flow for flow in TRAINING if flow.height == height]
+        text = f"how much more that stands out in the second half of the window, relative, L_y = {height:g}"
+        yield Finding(text, "segregation", *tables.mean(flows, "separation change"), len(flows) - 1)
 
 
 def other_rows(tables):
