@@ -6,9 +6,9 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.driver import BLUE, Check, Figure, Finding, GREEN, ORANGE, RED, REFERENCE_SCENE, during, entries, estimate
-from studies.driver import in_strains, main, merged, number, over, propagated, quotient, read_numbers, read_rows
-from studies.driver import row_ratio, where, write_numbers, write_rows
+from studies.driver import BLUE, Check, Figure, Finding, GREEN, ORANGE, RED, REFERENCE_SCENE, difference, during
+from studies.driver import entries, estimate, in_strains, main, merged, number, over, propagated, quotient, read_numbers
+from studies.driver import read_rows, row_ratio, where, write_numbers, write_rows
 
 TITLE = "Reversal, extension and shear across"
 NONE = {"flow": None, "duration": None}
@@ -111,6 +111,12 @@ def places_of(turned, level):
     return [(place, math.hypot(error, AFTER / BINS / math.sqrt(12))) for place, error in zip(places, errors)]
 
 
+def pairs_in_extension(row):
+    """Returns the viscosity of the pairs in extension over that in shear."""
+    alone = 1 + 2.5 * row["fraction"], 0
+    return quotient(*(difference(number(row, flow), alone) for flow in ("extension", "shear")))
+
+
 def judge():
     for row in read_rows(HERE / "extension.csv"):
         ratio = quotient(number(row, "extension"), number(row, "shear"))
@@ -120,6 +126,7 @@ def judge():
             yield Check(text, "Newtonian limit", *over(found, 1 + 2.5 * fraction), 0.99, 1.02, degrees)
         text = f"φ = {fraction:g}: η_E of planar extension over that of shear at the same invariants"
         yield Finding(text, "extension", *ratio, degrees)
+        yield Finding(f"φ = {fraction:g}: the same of the pairs", "extension", *pairs_in_extension(row), degrees)
     for contacts, name in (("friction", "friction 0.5"), ("none", "no friction")):
         turned, levels, degrees = reversed_curve(contacts), read_numbers(HERE / "levels.csv"), REVERSAL_SEEDS - 1
         level, last = levels[f"steady-{contacts}-whole"][:2], levels[f"reversed-{contacts}-end"][:2]
@@ -148,12 +155,11 @@ def draw():
     for contacts, name, colour in (("friction", "friction 0.5", RED), ("none", "no friction", BLUE)):
         one.points(reversed_curve(contacts), name, colour, 7, 0.6, joined=True)
         one.level(read_numbers(HERE / "levels.csv")[f"steady-{contacts}-whole"][0], None, colour, span=(0, AFTER))
-    ends = {"x_range": (0, 0.52), "y_range": (0.9, 1.1)}
-    two = figure.panel("φ", "η_E over η of shear", "planar extension at the same invariants", **ends)
+    ends = {"x_range": (0, 0.52), "y_range": (0.9, 1.3)}
+    two = figure.panel("φ", "η_E of the pairs over that of shear", "planar extension at the same invariants", **ends)
     two.level(1)
     rows = read_rows(HERE / "extension.csv")
-    ratios = [(r["fraction"], *quotient(number(r, "extension"), number(r, "shear"))) for r in rows]
-    two.points(ratios, None, RED, 7, 1.2)
+    two.points([(row["fraction"], *pairs_in_extension(row)) for row in rows], None, RED, 7, 1.2)
     still, *shaken = read_rows(HERE / "shaken.csv")
     place = {"log": "x", "key": "top right", "x_range": (0.2, 5), "y_range": (0, 1.4)}
     title = f"shaken along the vorticity, φ = {SHAKEN:.2f}, friction 0.5"
