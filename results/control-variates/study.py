@@ -100,11 +100,11 @@ def draw():
     figure = Figure(HERE / "chart.png", columns=2, size=(1100, 450))
     axes = {"y_range": (0, 1.2)}
     ends = {"x_range": (0.005, 200), "key": "bottom right", **axes}
-    panel = figure.panel("Pe", "variance over that of η_r", log="x", powers="x", **ends)
+    panel = figure.panel("Pe", "variance of η_r over that without B", log="x", powers="x", **ends)
     for k, (name, colour) in enumerate(COLOURS.items()):
         rows = [(r["peclet"] * 1.12 ** (k - 1), *number(r, "ratio")) for r in table if r["controls"] == name]
         panel.points(sorted(rows), name, colour, joined=True)
-    panel = figure.panel("average over, τ_B", "variance of η_r + B over that of η_r", log="x", key="top left", **axes)
+    panel = figure.panel("average over, τ_B", "variance of η_r over that without B", log="x", key="top left", **axes)
     for peclet, colour in ((0.01, BLUE), (0.1, GREEN), (1, RED)):
         rows = [(r["brownian_times"], *number(r, "ratio")) for r in windows if r["peclet"] == peclet]
         panel.points(rows, f"Pe = {peclet:g}", colour, joined=True)
