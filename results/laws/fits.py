@@ -11,8 +11,6 @@ from studies.tables import read_rows, where, write_rows
 from peclet import laws
 import numpy as np
 
-STRESS_SEEDS = 3  # of stress-control, fewer than an error needs: the spread is that of all points together
-
 
 def arrays(rows, *names):
     return [np.array([row[name] for row in rows]) for name in names]
@@ -28,6 +26,8 @@ def diverging():
     for name, rows, published in (("at rest", rest, 0.587), ("Pe = 10⁴", table, 0.642)):
         for quantity, what, fixed in (
             ("pairs", "η_r of pairs, prefactor 1", {"prefactor": 1}),
+            ("pairs", "η_r of pairs", None),
+            ("viscosity", "η_r, prefactor 1", {"prefactor": 1}),
             ("viscosity", "η_r", None),
         ):
             given = arrays(rows, "fraction", quantity, f"{quantity}_error", "seeds")
@@ -36,13 +36,15 @@ def diverging():
 
 
 def thickening():
-    """Returns the law of Wyart and Cates and the points of stress-control: flowing, and jammed with their bounds."""
+    """Returns fits of the law of Wyart and Cates, the points of stress-control that flow, those of which seeds jam with
+    their bounds, and published numbers."""
     rows = where(read_rows(HERE.parent / "stress-control/table.csv"), kind="thickening", control="stress")
     flowing = [row for row in rows if row["flowing"] == 1]
     fraction, stress, viscosity, error = arrays(flowing, "fraction", "at", "viscosity", "viscosity_error")
+    # Points have fewer seeds than an error needs: the relative spread is that of all points together.
     pooled = math.sqrt(np.mean(np.square(error / viscosity)))
     jammed = [(row["fraction"], row["at"], viscosity.max()) for row in rows if row["flowing"] < 1]
-    seeds = (STRESS_SEEDS - 1) * len(flowing) + 1
+    seeds = sum(row["seeds"] - 1 for row in flowing) + 1
     points = fraction, stress, viscosity, pooled * viscosity
     published = {"phi_0": 0.66, "phi_mu": 0.575, "discontinuous_from": 0.56}
     fits = {
@@ -52,7 +54,7 @@ def thickening():
             *points, seeds, jammed, free=["exponent", "prefactor", "sharpness"]
         ),
     }
-    return fits, points, published
+    return fits, points, jammed, published
 
 
 def uniform():
@@ -77,7 +79,7 @@ def main():
     rows = []
     for title, source, fit, published in diverging():
         rows += rows_of(f"divergence ({source})", title, fit, published)
-    fits, points, published = thickening()
+    fits, points, jammed, published = thickening()
     for title, fit in fits.items():
         rows += rows_of("stress-control", title, fit, published)
     fit, uniform_rows = uniform()
@@ -85,10 +87,10 @@ def main():
         "inhomogeneous-flow, uniform", "P = −tr/3", fit, {"phi_m": 0.585, "mu_1": 0.32, "mu_2": 0.7, "I_0": 0.005}
     )
     write_rows(HERE / "fits.csv", rows, 4)
-    draw(fits["free exponent and prefactor"], points, fit, uniform_rows)
+    draw(fits["free exponent and prefactor"], points, jammed, fit, uniform_rows)
 
 
-def draw(thick, points, fit, rows):
+def draw(thick, points, jammed, fit, rows):
     figure = Figure(HERE / "chart.png", columns=2)
     left = figure.panel("σ [F_{CL}/a²]", "η_r", "thickening", log="xy", key="top left")
     fraction, stress, viscosity, error = points
@@ -99,6 +101,7 @@ def draw(thick, points, fit, rows):
         value, low, high = thick.curve(phi, at)
         known = np.isfinite(value)
         left.line(list(zip(at[known], value[known])), None, colour)
+        left.points([(at, bound) for of, at, bound in jammed if of == phi], None, colour, 9)
     right = figure.panel("J", "μ, φ", "uniform flow", log="xy", key="top left")
     viscous = np.geomspace(min(r["J"] for r in rows), max(r["J"] for r in rows), 200)
     mu, phi = np.split(fit.curve(viscous)[0], 2)
