@@ -97,10 +97,10 @@ class TheList(InAFolder):
         self.assertIsNone(second["processor_hours"])
 
     def test_says_which_read_newer_tables(self):
-        for name, date in (("steady-state", "2026-01-30"), ("zero-shear", "2026-01-31")):
+        for name, date in (("inhomogeneous-flow", "2026-01-31"), ("learned-rheology", "2026-01-30")):
             self.results.add(name, {"processor_hours": 1, "date": date})
         studies = json.loads(self.results.run("--json").stdout)["studies"]
-        self.assertEqual([study["older_than"] for study in studies], [["zero-shear"], []])
+        self.assertEqual([study["older_than"] for study in studies], [[], ["inhomogeneous-flow"]])
 
     def test_names_a_file_that_no_study_leaves(self):
         self.results.add("diffusion", {"processor_hours": 1})
