@@ -29,9 +29,9 @@ RESULTS = Path(__file__).resolve().parent
 # flow-curve: `flow-curve/study.py --from-table` judges it again afterwards.
 READ = {
     "at-rest": ("flow-curve",),
+    "convergence": ("flow-curve",),
     "divergence": ("at-rest", "flow-curve", "zero-shear"),
     "flow-curve": ("literature", "zero-shear"),
-    "friction-repulsion": ("literature",),
     "learned-rheology": ("inhomogeneous-flow",),
     "oscillation": ("at-rest",),
 }
