@@ -38,8 +38,8 @@ def large_spheres(ratio):
     }
 
 
-def repulsion(strength, length):
-    return {"repulsion": {"form": "exponential", "strength": strength, "relative_length": length}}
+def repulsion(strength, length, **others):
+    return {"repulsion": {"form": "exponential", "strength": strength, "relative_length": length, **others}}
 
 
 STARTUP = in_strains(0, 0.75)
@@ -68,6 +68,7 @@ PANELS = {
         ("A 100, kappa 0.01", merged(STARTUP, repulsion(100, 0.01)), 32),
         ("A 1, kappa 0.05", merged(STARTUP, repulsion(1, 0.05)), 8),
         ("A 100, kappa 0.05", merged(STARTUP, repulsion(100, 0.05)), 32),
+        ("A 100, kappa 0.05, cut off at 5", merged(STARTUP, repulsion(100, 0.05, cutoff_lengths=5)), 32),
     ],
     "inertia": [
         (f"St {stokes:g}", {"particles": {"density": 0.1 * stokes / 0.045}}, 4) for stokes in (0.001, 0.01, 0.1, 1, 10)
