@@ -7,18 +7,9 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.driver import BLUE, Check, Figure, Finding, GREEN, JAMMED_AT_REST, JAMMED_IN_STRONG_FLOW, LONGEST, ORANGE
-from studies.driver import RED, SHORTER, Statement, TABLE_SCENE, difference, diverging, entries, first
-from studies.driver import (
-    fit_with_error,
-    in_brownian_times,
-    jammed_and_exponent,
-    lines,
-    main,
-    merged,
-    number,
-    propagated,
-)
-from studies.driver import read_rows, row_ratio, rows_at_rest, shapes_of, table_at_rest, where, write_rows, write_table
+from studies.driver import RED, SHORTER, Statement, TABLE_SCENE, difference, diverging, entries, first, fit_with_error
+from studies.driver import in_brownian_times, jammed_and_exponent, lines, main, merged, number, propagated, read_rows
+from studies.driver import row_ratio, rows_at_rest, shapes_of, table_at_rest, where, write_rows, write_table
 import numpy as np
 
 TITLE = "Divergence of the viscosity with volume fraction"

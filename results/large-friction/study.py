@@ -7,9 +7,10 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.driver import BLUE, Finding, Figure, RED, REFERENCE_SCENE, Statement, TABLE_SCENE, difference, during
-from studies.driver import entries, estimate, fit_with_error, in_brownian_times, in_strains, logarithm, main, mari_fit
-from studies.driver import merged, number, over, read_rows, row_ratio, viscosity_row, where, write_table
+from studies.driver import BLUE, Figure, Finding, FLOWING, JAMMED, RED, REFERENCE_SCENE, Statement, TABLE_SCENE
+from studies.driver import difference, during, entries, estimate, fit_with_error, in_brownian_times, in_strains
+from studies.driver import logarithm, main, mari_fit, merged, number, over, read_rows, row_ratio, viscosity_row, where
+from studies.driver import write_table
 import numpy as np
 
 TITLE = "Large friction"
@@ -27,8 +28,6 @@ DENSE, PECLET, LOWEST, FAST = 0.58, (1, 4.6, 10, 22, 100, 1e3, 1e4), 4.6, 1e4
 SLOW_PECLET = (0.02, 0.1)
 SLOW = in_brownian_times(300, 200)
 STIFF = 4  # factor of the stiffness
-# Bounds of d ln eta / d ln k_n: above the first a point is jammed but soft, below the second it flows.
-JAMMED, FLOWING = 0.5, 0.2
 JAMMED_VISCOSITY = 5e3  # realisations above it are counted as jammed
 NOISY = merged(
     TABLE_SCENE,
@@ -102,10 +101,10 @@ def jamming_rows(table):
 
 
 def contact_rows(table):
-    """Yields statements about contacts at the largest volume fraction that was run."""
+    """Yields statements about contacts at the largest volume fraction of which no realisation is lost."""
     last = {}
     for friction, published in PUBLISHED_CONTACTS.items():
-        row = last[friction] = without_noise(table, friction)[-1]
+        row = last[friction] = [r for r in without_noise(table, friction) if not r["lost"]][-1]
         name = f"μ = {friction}, no noise, φ = {row['fraction']:g}"
         text = f"{name}: contacts of a sphere that carries (published: about {published})"
         yield Statement(text, "L 4.2.7", *number(row, "contacts"), published - 1, published + 1, row["seeds"] - 1)

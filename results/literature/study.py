@@ -5,21 +5,9 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.driver import (
-    BLACK,
-    BLUE,
-    Check,
-    Figure,
-    Finding,
-    GREEN,
-    RED,
-    REFERENCE_SCENE,
-    Statement,
-    TABLE_SCENE,
-    difference,
-)
-from studies.driver import entries, first, in_strains, log_minimum, main, mari_fit, merged, number
-from studies.driver import over, propagated, quotient, read_rows, row_ratio, where, write_table
+from studies.driver import BLACK, BLUE, Check, Figure, Finding, GREEN, RED, REFERENCE_SCENE, Statement, TABLE_SCENE
+from studies.driver import difference, entries, first, in_strains, log_minimum, main, mari_fit, merged, number, over
+from studies.driver import propagated, quotient, read_rows, row_ratio, where, write_table
 
 TITLE = "Published viscosities, and the outer gap"
 GAPS = (0.05, 0.2, 0.5)

@@ -10,10 +10,11 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.compositions import ALIKE, ALIKE_NOISE, MIXTURE_SCENE, NOISE, STIFFNESS, THERMAL_ENERGY, alike
 from studies.compositions import colloids_added, composition_row, grains_added, mean_peclet, setting_of, windows
-from studies.driver import BLUE, Check, Figure, Finding, GREEN, GREY, ORANGE, PURPLE, RED, Statement, decades_of_rise
-from studies.driver import difference, estimate, in_brownian_times, log_minimum, log_of_rise, log_of_share, logarithm
-from studies.driver import main, merged, number, over, place_of_largest, propagated, propagated_lists, quotient
-from studies.driver import read_numbers, read_rows, row_ratio, viscosity_row, where, write_numbers, write_table
+from studies.driver import BLUE, Check, Figure, Finding, FLOWING, GREEN, GREY, JAMMED, ORANGE, PURPLE, RED, Statement
+from studies.driver import decades_of_rise, difference, estimate, in_brownian_times, log_minimum, log_of_rise
+from studies.driver import log_of_share, logarithm, main, merged, number, over, place_of_largest, propagated
+from studies.driver import propagated_lists, quotient, read_numbers, read_rows, row_ratio, viscosity_row, where
+from studies.driver import write_numbers, write_table
 import numpy as np
 
 TITLE = "Colloids and grains with noise"
@@ -40,8 +41,6 @@ FIRST, FIRST_TIMES = (1, 0.9), 4
 # Stiffness, Peclet numbers, and seeds with noise and without.
 FIRST_PARTS = {"first": (STIFFNESS, NUMBERS[1:], 16, 32), "first-hard": (STIFFER * STIFFNESS, NUMBERS[1:-1], 8, 16)}
 FAST, FAST_SEEDS = (1e4, 1e5), 64  # Peclet numbers between which colloids alone no longer thicken
-# Bounds of d ln eta / d ln k_n: above the first a point is jammed but soft, below the second it flows.
-JAMMED, FLOWING = 0.5, 0.2
 
 
 def rows_of(program, part, cases, stiffness=STIFFNESS, count_times=1, besides=None, seeds=SEEDS):
@@ -383,15 +382,13 @@ def checks(table):
     yield alike("φ = 0.55: η_r of grains alone over that of colloids alone, mean of seven", "L5.2b", mean, (1, 0))
     base = table.viscosity("colloids-added", 0.7, 1)
     more = quotient(table.viscosity("size", 0.7, 1), base)
-    yield Check(
-        "α = 0.7, Pe_c = 1: η_r of 4000 spheres over that of 2000", "size", *more, 0.9, 1.1, table.degrees("size")
-    )
+    text = "α = 0.7, Pe_c = 1: η_r of 4000 spheres over that of 2000"
+    yield Check(text, "size", *more, 0.9, 1.1, table.degrees("size"))
     for peclet in (1, 1e3):
         stiff = quotient(table.viscosity("stiff", 0.7, peclet), table.viscosity("colloids-added", 0.7, peclet))
         text = f"α = 0.7, Pe_c = {peclet:g}: η_r with contacts {STIFFER} times as stiff over η_r"
-        yield Finding(
-            text, "stiffness", *stiff, table.degrees("stiff")
-        )  # no check: with noise k_n sets where friction begins
+        # No check: with noise k_n sets where friction begins.
+        yield Finding(text, "stiffness", *stiff, table.degrees("stiff"))
     for steps, soft, hard, seeds in (
         ("2.5·10⁴ to 10⁵", "colloids-added-soft", "colloids-added", MORE_SEEDS),
         ("10⁵ to 4·10⁵", "colloids-added", "stiff", MORE_SEEDS),

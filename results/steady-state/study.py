@@ -18,7 +18,7 @@ WEAK, STRONG = 0.1, 1e4
 # times or a strain of 2, and its late part, which gives the steady viscosity.
 RUNS = {WEAK: (320, "brownian_times", 96, (3, 6), (63, 96)), STRONG: (48, "strain", 8, (2, 3), (5, 8))}
 # The thesis has two Brownian times, η a³ / kT (3.57) and one with 6π (2.3), and does not say which one is meant by 3 to
-# 4 times. As in other studies the nearer reading decides. LATER: 3 to 4 times with 6π, and the rest of the window.
+# 4 times. LATER: 3 to 4 times with 6π, and the rest of the window.
 DIFFUSION_TIME = 6 * math.pi
 LATER = (57, 75), (75, 96)
 

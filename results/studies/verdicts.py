@@ -32,6 +32,8 @@ BEGIN, END = "<!-- rows, written by study.py -->", "<!-- end of rows -->"
 LEGEND = """\
 A row is *open* while its 95 % interval contains a bound ([rules and symbols](../../docs/studies.md)). L and M are
 [the publications](../../docs/statements.md)."""
+# Bounds of d ln η / d ln k_n: above the first a point is jammed but soft, below the second it flows.
+JAMMED, FLOWING = 0.5, 0.2
 ROUNDING = 1e-12  # a relative error below this is due to floating point
 
 
