@@ -96,9 +96,10 @@ def judge():
     for row in table:
         yield judged(row, WIDTH)
     for step, of_step in groups(table, "step").items():
-        mean = weighted_mean(column(of_step, "ratio"), column(of_step, "ratio_error"))
-        text = f"{named(step)}: pressure over that of the equation, weighted mean of {len(of_step)}"
-        yield Finding(text, "exact", *mean, len(of_step) - 1)
+        for words, rows in {"": of_step, **{f", sizes {s}": where(of_step, sizes=s) for s in SIZES}}.items():
+            mean, error = weighted_mean(column(rows, "ratio"), column(rows, "ratio_error"))
+            text = f"{named(step)}{words}: pressure above that of the equation, %, weighted mean of {len(rows)}"
+            yield Finding(text, "exact", 100 * (mean - 1), 100 * error, len(rows) - 1)
 
 
 def draw():

@@ -184,11 +184,22 @@ def by_flow(flows, tables, function):
 RANGES = ("above 10⁻²", (1e-2, 1), 2), ("10⁻³ to 10⁻²", (1e-3, 1e-2), 1.73)
 
 
-def power_law(rows, low, high):
-    """Returns slope and constant of ln(Theta^1.44 mu^2.5) as a line in ln J (Eq. 6.8), for J in [low, high)."""
+def logarithms(rows, low, high):
+    """Returns ln J and ln(Theta^1.44 mu^2.5) of sheared bins with J in [low, high)."""
     rows = [r for r in sheared(rows) if low <= r["J"] < high]
     combined = 1.44 * np.log(column(rows, "Theta")) + 2.5 * np.log(column(rows, "mu"))
-    return np.polyfit(np.log(column(rows, "J")), combined, 1)
+    return np.log(column(rows, "J")), combined
+
+
+def power_law(rows, low, high):
+    """Returns slope and constant of ln(Theta^1.44 mu^2.5) as a line in ln J (Eq. 6.8), for J in [low, high)."""
+    return np.polyfit(*logarithms(rows, low, high), 1)
+
+
+def beyond(line, rows, low, high):
+    """Returns ln(Theta^1.44 mu^2.5) of bins less that of a line in ln J."""
+    place, value = logarithms(rows, low, high)
+    return value - np.polyval(line, place)
 
 
 def step(rows, above, below):
@@ -266,6 +277,14 @@ def law_rows(tables):
         text = f"Eq. 6.8: exponent of J, J {name} (printed: {printed:g})"
         yield Statement(text, "L eq 6.8", *found, printed - 0.1, printed + 0.1, degrees, essential=False)
     (_, high, _), (_, middle, _) = RANGES
+    for range_, words in (((1e-2, 0.1), "10⁻² to 0.1"), ((0.1, 1), "0.1 to 1")):
+        found = by_flow(everything, tables, lambda rows, range_=range_: float(power_law(rows, *range_)[0]))
+        yield Finding(f"Eq. 6.8: exponent of J, J {words}", "L eq 6.8", *found, degrees)
+    line = power_law(tables.bins(*everything), *high)
+    for flows, words in ((everything, "of these ten flows"), (UNSEEN[1:], "of the square wave")):
+        ratios = np.exp(beyond(line, tables.bins(*flows), *high))
+        yield Finding(f"Eq. 6.8, J above 10⁻²: least of a bin {words} over the law", "L eq 6.8", ratios.min(), 0)
+        yield Finding(f"Eq. 6.8, J above 10⁻²: most of a bin {words} over the law", "L eq 6.8", ratios.max(), 0)
     text = "Eq. 6.8: the law above J = 10⁻² over that below, there"
     found = by_flow(everything, tables, lambda rows: step(rows, high, middle))
     yield Statement(text, "L eq 6.8", *found, 0.8, 1.2, degrees, essential=False)
@@ -282,9 +301,10 @@ def intro_rows(tables):
     text = "φ = 0.56, L_y = 100: largest φ_loc less φ_J of uniform flow"
     yield Statement(text, "L 6", *difference(densest, jammed), 0, degrees=LEARNED_SEEDS - 1, essential=False)
     yield Finding("φ_J of uniform flow, of c (1 − φ/φ_J)^−λ", "uniform flow", *jammed)
-    text = "relative distance of μ from μ(J) of uniform flow, median of the tenth with the"
-    yield Statement(f"{text} smallest rates", "L 6", *residuals(tables, -1), 0.1, degrees=len(TRAINING) - 1)
-    yield Finding(f"{text} largest rates", "L 6", *residuals(tables, 1), len(TRAINING) - 1)
+    text, degrees = "relative distance of μ from μ(J) of uniform flow, median of the", len(TRAINING) - 1
+    slow, fast = residuals(tables, -1, 0.1), residuals(tables, 1, 0.5)
+    yield Statement(f"{text} tenth with the smallest rates", "L 6", *slow, 0.1, degrees=degrees)
+    yield Finding(f"{text} half with the largest rates", "L 6", *fast, degrees)
 
 
 def uniform_jam(tables):
@@ -294,11 +314,11 @@ def uniform_jam(tables):
     return divergence(fractions, values, (1, 0.65, 1.6))[1]
 
 
-def residuals(tables, side):
+def residuals(tables, side, share):
     """Returns the median of |mu / mu(J) - 1|, with mu(J) of uniform flow, and its jackknife error over flows.
 
-    It is taken over the tenth of the bins of each flow with the largest (side 1) or smallest (-1) rates, without those
-    whose J is beyond the range of uniform flow.
+    It is taken over a share of the bins of each flow, those with the largest (side 1) or smallest (-1) rates, without
+    bins whose J is beyond the range of uniform flow.
     """
     order = sorted(tables.uniform, key=lambda r: r["J"])
     known = np.log(column(order, "J")), np.log(column(order, "mu"))
@@ -306,7 +326,7 @@ def residuals(tables, side):
     def of(chosen):
         rows = []
         for flow in (TRAINING[k] for k in chosen):
-            rows += sorted(tables.bins(flow), key=lambda r: -side * abs(r["rate"]))[: flow.bins // 10 + 1]
+            rows += sorted(tables.bins(flow), key=lambda r: -side * abs(r["rate"]))[: int(share * flow.bins) + 1]
         expected = np.exp(np.interp(np.log(column(rows, "J")), *known, np.nan, np.nan))
         return float(np.nanmedian(np.abs(column(rows, "mu") / expected - 1)))
 
