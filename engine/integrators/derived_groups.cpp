@@ -351,7 +351,8 @@ void warn_of_soft_contacts_under_stress(const Scene& scene, std::vector<Warning>
 
 // Warns if friction sets in near the stress of this flow only because contacts are as soft as they are.
 // Thermal motion opens contacts that are pressed by much less than sqrt(k_n k_B T), so that the onset goes
-// with k_n, unless a repulsion or a critical load holds spheres apart up to a larger force.
+// with k_n, unless a repulsion or a critical load holds spheres apart up to a larger force. The number of
+// contacts goes with the step, too, and near the onset eta_r with it (results/stability).
 void warn_of_softness_at_onset_of_friction(const Scene& scene, std::vector<Warning>& warnings) {
   // Half of the effect of friction is reached where stress a^2 is this part of sqrt(k_n k_B T), a sixth at a
   // third and nine tenths at ten times that (results/friction-repulsion for phi = 0.45 to 0.53,
@@ -372,7 +373,8 @@ void warn_of_softness_at_onset_of_friction(const Scene& scene, std::vector<Warni
   warn(warnings, "soft",
        "thermal motion opens soft contacts, so that friction sets in near the stress {:g} "
        "sqrt(normal_stiffness k_B T) / a^2, here {:.2g} times {}: see whether four times the "
-       "normal_stiffness changes the viscosity, or give the repulsion that decides it",
+       "normal_stiffness or a quarter of the timestep changes the viscosity, or give the repulsion that "
+       "decides it",
        part, units, held != nullptr ? "the given one" : "viscosity rate");
 }
 
