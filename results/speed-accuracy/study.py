@@ -225,9 +225,10 @@ def add_legend(figure):
     panel.text(LEGEND, 0.02, 0.4, va="top")
 
 
-def draw_chart(rows, picture):
+def draw_chart(rows, picture, pressure=True):
     names = list(dict.fromkeys(r["panel"] for r in rows))
-    with_pressure = [name for name in names if any(r["panel"] == name and r.get("pressure") for r in rows)]
+    measured = {r["panel"] for r in rows if r.get("pressure")}
+    with_pressure = [name for name in names if pressure and name in measured]
     lines = -(-(len(names) + len(with_pressure) + 1) // ACROSS)
     figure = Figure(picture, ACROSS, lines, (ACROSS * 380, lines * 310))
     for name in names:
@@ -242,7 +243,7 @@ def draw():
     """Draws the charts, with LAMMPS in the panels of its cases."""
     rows = read_texts(HERE / "table.csv") + read_texts(HERE / "lammps.csv")
     draw_chart(rows, HERE / "chart.png")
-    draw_chart([row for name in OVERVIEW for row in rows if row["panel"] == name], HERE / "overview.png")
+    draw_chart([row for name in OVERVIEW for row in rows if row["panel"] == name], HERE / "overview.png", False)
 
 
 main(HERE, TITLE, measure, quick_measure, draw=draw)

@@ -50,6 +50,6 @@ PANELS = {
     "radii 1 to 7": Case(SIZES, 2, implicit=dict.fromkeys((0.5, 1, 2))),
     "Pe 100": Case(at_peclet(100), 48, {0.5: 16}, {0.25: 100, 0.5: None, 1: 100, 2: None, 3.99: None}),
     "Pe 10": Case(at_peclet(10), 48, {0.5: 16}, {0.25: 600, 0.5: None, 1: 600, 2: None, 3.99: None}),
-    "Pe 1": Case({**at_peclet(1), **BROWNIAN}, 48, {0.5: 16}, {0.25: 400, 0.5: None, 1: 400, 2: None, 3.99: None}),
+    "Pe 1": Case({**at_peclet(1), **BROWNIAN}, 48, {0.5: 16}, {0.25: 200, 0.5: None, 1: 200, 2: None, 3.99: None}),
     "Pe 0.1": Case({**at_peclet(0.1), **BROWNIAN}, 64, {0.5: 24}, {0.5: None, 1: 128, 2: None}),
 }
