@@ -84,7 +84,8 @@ PANELS = {
         for pe in (0.1, 1, 10, 100, 1e4)
     ],
     "Peclet number and friction": [
-        (f"Pe {pe:g}, mu 1", merged(brownian(pe), friction(1)), 32 if pe < 10 else 128) for pe in (1, 100)
+        (f"Pe {pe:g}, mu 1", merged(brownian(pe), friction(1)), seeds)
+        for pe, seeds in ((1, 32), (10, 64), (100, 128), (1000, 64))
     ],
 }
 QUICK = {"stiffness and volume fraction": 4, "start-up": 2}
