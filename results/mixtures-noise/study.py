@@ -32,6 +32,8 @@ FRACTION, SHARES = 0.565, (0, 0.5, 0.7, 1)  # a constant volume fraction, and it
 SLOW_MEANS = (0.3, 1)  # Peclet numbers of the mean radius, for single groups only: a strain of mixtures takes long
 MEANS = (3, 10, 30, 100, 1e3, 1e5)  # Peclet numbers of the mean radius at this volume fraction
 HARD, HARD_SHARES = {f"dense-{factor}": factor for factor in (STIFFER, STIFFER**2)}, (1, 0.8, 0.7)
+# A point that is jammed here and flows in print, and a later and longer window of it.
+DISPUTED, LATE = (0.7, 100), {"/duration/equilibration/strain": 3, "/duration/production/strain": 3}
 SEEDS, BARE_SEEDS = 4, 16  # the second without noise
 # Seeds at one volume fraction, and at Peclet numbers of the colloids that are compared with other contacts; errors from
 # four seeds of few grains are too small.
@@ -47,7 +49,7 @@ def rows_of(program, part, cases, stiffness=STIFFNESS, count_times=1, besides=No
     """Yields rows for cases (share of grains, volume fraction, Peclet number of the colloids)."""
     settings = []
     for alpha, fraction, peclet in cases:
-        more, count = {**(besides or {}), **windows(alpha, peclet)}, round(count_times * COUNTS[alpha])
+        more, count = {**windows(alpha, peclet), **(besides or {})}, round(count_times * COUNTS[alpha])
         settings.append(setting_of(alpha, count, round(fraction, 4), stiffness, peclet, more))
     scene = NOISY if math.isfinite(cases[0][2]) else SCENE
     for case, setting, point in zip(cases, settings, program.run(part, scene, settings, seeds)):
@@ -63,6 +65,18 @@ def rows_of(program, part, cases, stiffness=STIFFNESS, count_times=1, besides=No
 
 def line(base, numbers, shares=COLLOIDS_ADDED, fraction=colloids_added):
     return [(alpha, fraction(alpha, base), peclet) for peclet in numbers for alpha in shares]
+
+
+def disputed_rows(program):
+    """Yields rows of the disputed point with twice the spheres, half of the step, and a late window."""
+    alpha, peclet = DISPUTED
+    cases, stiffness = [(alpha, colloids_added(alpha, DENSE), peclet)], STIFFER * STIFFNESS
+    yield from rows_of(program, "disputed-size", cases, stiffness, count_times=2)
+    particles, contact = {"count": COUNTS[alpha], "mixture": {"alpha": alpha}}, {"normal_stiffness": stiffness}
+    scene = merged(NOISY, particles=particles, contact=contact, volume_fraction=cases[0][1], peclet=peclet)
+    half = {"method": "implicit", "timestep": program.derived(scene)["timestep"] / 2}
+    yield from rows_of(program, "disputed-step", cases, stiffness, besides={"/integrator": half})
+    yield from rows_of(program, "disputed-late", cases, stiffness, besides=LATE)
 
 
 def first_steps(program):
@@ -84,6 +98,7 @@ def parts(program):
     # Mixtures that flow with hard contacts may look jammed with soft ones.
     for name, factor in HARD.items():
         yield from rows_of(program, name, line(DENSE, (1, 100), HARD_SHARES), factor * STIFFNESS)
+    yield from disputed_rows(program)
     yield from rows_of(program, "no-noise", line(BASE, (math.inf,)), seeds=BARE_SEEDS)
     yield from first_steps(program)
     # Grains alone are colloids in other units, with the same hardness and inertia.
@@ -324,6 +339,11 @@ def rows_of_colloids_added(table):
             alpha = min(slopes, key=lambda share: slopes[share][0])
             text = f"{name} = {alpha:g}, where it is least, {words} (flows)"
             yield Statement(text, "L5.6", *slopes[alpha], high=FLOWING, degrees=DEGREES, essential=essential)
+    alpha, peclet = DISPUTED
+    text = f"grains at φ₀ = 0.60, Pe_c = {peclet:g}, α = {alpha:g}, k_n = 4·10⁵"
+    for part, words in (("size", "twice the spheres"), ("step", "half of the step"), ("late", "the strains 3 to 6")):
+        ratio = quotient(table.viscosity(f"disputed-{part}", alpha, peclet), table.viscosity("dense-4", alpha, peclet))
+        yield Finding(f"{text}: η_r with {words} over η_r", "L5.6", *ratio, DEGREES)
 
 
 def rows_of_first_steps(table):
