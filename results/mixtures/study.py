@@ -31,6 +31,7 @@ DENSE = 0.60
 # Tests of parameters that should not matter: factors of the number of spheres, stiffness and lightness, the share of
 # grains, and the distance below jamming by friction.
 SIZES, STIFFER, LIGHTER, TESTED, FAR = (0.5, 1, 2, 4), 4, 4, 0.5, {0: 0.055, 1: 0.09}
+LATE = {"/duration/equilibration/strain": 3, "/duration/production/strain": 4}
 ORDERED = (0.5, 0.75)  # shares of grains that are searched for layers, without friction
 LAYERED = 0.04  # distance below jamming of this search
 
@@ -46,10 +47,10 @@ def below(friction, alpha, distance):
     return round(PILOT[friction][alpha] - distance, 4)
 
 
-def rows_of(program, part, friction, cases, seeds=SEEDS, stiffer=1, density=SCENE["particles"]["density"]):
-    """Yields rows for cases (share of grains, number of spheres, volume fraction)."""
-    scene = merged(SCENE, contact={"friction": friction}, particles={"density": density})
-    settings = [setting_of(*case, stiffer * stiffness_of(friction, case[0])) for case in cases]
+def rows_of(program, part, friction, cases, seeds=SEEDS, stiffer=1, besides=None):
+    """Yields rows for cases (share of grains, number of spheres, volume fraction), with settings `besides`."""
+    scene = merged(SCENE, contact={"friction": friction})
+    settings = [setting_of(*case, stiffer * stiffness_of(friction, case[0]), besides=besides) for case in cases]
     for setting, point in zip(settings, program.run(f"{part}-{friction}", scene, settings, seeds)):
         yield {
             "part": part,
@@ -88,19 +89,31 @@ def order_rows(program):
             yield row | entries("gradient", estimate(gradient)) | entries("vorticity", estimate(vorticity))
 
 
+def test_rows(program, friction):
+    """Yields rows of a point with other sizes, stiffness, density, step and window."""
+    fraction = below(friction, TESTED, FAR[friction])
+    sizes = [(TESTED, round(factor * COUNTS[TESTED]), fraction) for factor in SIZES]
+    particles = {"count": sizes[0][1], "mixture": {"alpha": TESTED}}
+    contact = {"friction": friction, "normal_stiffness": stiffness_of(friction, TESTED)}
+    step = program.derived(merged(SCENE, particles=particles, contact=contact, volume_fraction=fraction))["timestep"]
+    yield from rows_of(program, "size", friction, sizes)
+    for part, stiffer, besides in (
+        (f"stiff-{STIFFER}", STIFFER, None),
+        (f"light-{LIGHTER}", 1, {"/particles/density": SCENE["particles"]["density"] / LIGHTER}),
+        ("half-step", 1, {"/integrator": {"method": "implicit", "timestep": step / 2}}),
+        ("late", 1, LATE),
+    ):
+        yield from rows_of(program, part, friction, sizes[:1], SEEDS, stiffer, besides)
+
+
 def measure(program):
     rows, jams = [], []
     for friction in ALONE:
         curves = [(a, n, below(friction, a, d)) for a, n in COUNTS.items() for d in BELOW[friction]]
         rows += rows_of(program, "curve", friction, curves)
         jams += jamming_rows(program, friction)
-    for friction, distance in FAR.items():
-        fraction = below(friction, TESTED, distance)
-        sizes = [(TESTED, round(factor * COUNTS[TESTED]), fraction) for factor in SIZES]
-        rows += rows_of(program, "size", friction, sizes)
-        rows += rows_of(program, f"stiff-{STIFFER}", friction, sizes[:1], stiffer=STIFFER)
-        light = SCENE["particles"]["density"] / LIGHTER
-        rows += rows_of(program, f"light-{LIGHTER}", friction, sizes[:1], density=light)
+    for friction in FAR:
+        rows += test_rows(program, friction)
     names = "part, friction, alpha, count, grains, fraction, stiffness, seeds, lost, transient, overlap, viscosity±, "
     write_table(HERE / "table.csv", names + "pairs±, lubrication±, contact±, mean_overlap±", rows, 5)
     names = "friction, alpha, points, jammed±, prefactor±, exponent±, rms, chi squared, degrees, flowing, stuck"
@@ -211,6 +224,7 @@ def consistency_rows(rows):
             yield Check(text, "size", *row_ratio(other, one, "viscosity"), 0.9, 1.1, SEEDS - 1)
         parts = {f"stiff-{STIFFER}": f"contacts {STIFFER} times as stiff"}
         parts |= {f"light-{LIGHTER}": f"a density {LIGHTER} times less"}
+        parts |= {"half-step": "half of the step", "late": "the strains 3 to 7 for 1 to 3"}
         for part, what in parts.items():
             ratio = row_ratio(first(of, part=part), sizes[0], "viscosity")
             yield Check(f"{name}: η_r with {what} over η_r", "Table 5.1", *ratio, 0.95, 1.05, SEEDS - 1)
