@@ -339,10 +339,10 @@ def rows_of_colloids_added(table):
             alpha = min(slopes, key=lambda share: slopes[share][0])
             text = f"{name} = {alpha:g}, where it is least, {words} (flows)"
             yield Statement(text, "L5.6", *slopes[alpha], high=FLOWING, degrees=DEGREES, essential=essential)
-    alpha, peclet = DISPUTED
+    (alpha, peclet), usual = DISPUTED, next(iter(HARD))
     text = f"grains at φ₀ = 0.60, Pe_c = {peclet:g}, α = {alpha:g}, k_n = 4·10⁵"
     for part, words in (("size", "twice the spheres"), ("step", "half of the step"), ("late", "the strains 3 to 6")):
-        ratio = quotient(table.viscosity(f"disputed-{part}", alpha, peclet), table.viscosity("dense-4", alpha, peclet))
+        ratio = quotient(table.viscosity(f"disputed-{part}", alpha, peclet), table.viscosity(usual, alpha, peclet))
         yield Finding(f"{text}: η_r with {words} over η_r", "L5.6", *ratio, DEGREES)
 
 

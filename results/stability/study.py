@@ -103,14 +103,15 @@ def finest_of(scene):
 
 
 def integrators(program, scene):
-    """Yields the columns: method, factor, integrator block, and what `peclet validate` says of it; and last, if it is
-    none of them, the reference."""
+    """Yields the columns: method, factor, integrator block, and the answer if the step is refused, else None; and last,
+    if it is none of them, the reference."""
     implicit = IMPLICIT + ((FINEST,) if finest_of(scene) == ("implicit", FINEST) else ())
     for method, factors, factor_of_auto in (("explicit", EXPLICIT, 0.5), ("implicit", implicit, 1)):
         answer = program.derived(merged(scene, integrator={"method": method}))
         for factor in factors:
             block = {"method": method, "timestep": factor * (answer["timestep"] / factor_of_auto)}
-            yield method, factor, block, program.derived(merged(scene, integrator=block))
+            refused = program.derived(merged(scene, integrator=block)).get("refused")
+            yield method, factor, block, refused
 
 
 # Smallest relative bias that counts, if it also exceeds chance in one of a thousand cells.
@@ -139,20 +140,17 @@ def cells_of(name, case, scene, program):
     label, _, seeds = case
     columns = list(integrators(program, scene))
     identifier = "".join(c if c.isalnum() or c in ".-" else "-" for c in f"{name} {label}")
-    settings = [{"/integrator": block} for _, _, block, said in columns if "refused" not in said]
+    settings = [{"/integrator": block} for _, _, block, refused in columns if not refused]
     of_block = {}
     for point in program.run(identifier, scene, settings, seeds):
         block = point["settings"]["/integrator"]
         of_block[block["method"], block["timestep"]] = point
-    for method, factor, block, said in columns:
-        refused = said.get("refused")
+    for method, factor, block, refused in columns:
         point = Point(realisations=[]) if refused else of_block[method, block["timestep"]]
         lost = collections.Counter(r["ending"]["cause"] for r in point["realisations"] if not r.get("mean"))
         cell = {"panel": name, "case": label, "method": method, "step": factor, "timestep": block["timestep"]}
         cell |= {"seeds": len(point["realisations"]), "commit": " ".join(sorted(program.commits))}
-        soft = any("opens soft contacts" in warning for warning in said.get("warnings", []))
-        warned = flags(point) | ({"soft": len(point.results)} if soft else {})
-        yield cell | {"values": point.by_seed(), "lost": lost, "flags": counts_text(warned), "refused": refused}
+        yield cell | {"values": point.by_seed(), "lost": lost, "flags": counts_text(flags(point)), "refused": refused}
 
 
 def rows_of(name, case, program):

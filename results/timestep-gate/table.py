@@ -2,7 +2,8 @@
 """table.py RUNS.jsonl ...
 
 Prints the effect of each step on the stress: means over windows of the relative difference from the reference step,
-with standard errors, and the answers of the gate about these windows.
+with standard errors, and the answers of the gate about these windows; and how far off single windows are, by what the
+gate says of them.
 """
 import collections
 import json
@@ -79,6 +80,23 @@ def measured(pairs):
     ]
 
 
+def print_windows(pairs):
+    """Prints the number of windows, of those that pass and of those that one of two checks notices, and how far off
+    they are at most."""
+    passed = [pair for pair in pairs if verdicts([pair[0]]) == "1 passed"]
+    crossed = [pair for pair in pairs if pair[0]["stability_share"] >= 1]
+    calm = [pair for pair in crossed if pair[0]["energy_imbalance"] <= TOLERANCE]
+    noticed = [pair for pair in pairs if verdicts([pair[0]]) == "1 flagged timestep"]
+    for text, some in (
+        ("pass, and the scene accepts their step", [p for p in passed if p[0]["timestep"] < LARGEST_OF_SCENE]),
+        ("pass, but for the scene's bound", [p for p in passed if p[0]["timestep"] >= LARGEST_OF_SCENE]),
+        ("fail by the share alone", calm),
+        ("fail by the imbalance alone", noticed),
+    ):
+        most = [max(100 * abs(quantity(a) / quantity(b) - 1) for a, b in some) for quantity in (viscosity, lubrication)]
+        print(f"{len(some)} windows {text}: η_r off by {most[0]:.2f} % at most, lubrication by {most[1]:.2f} %")
+
+
 def main():
     rows = [json.loads(line) for name in sys.argv[1:] for line in open(name)]
     references = {window(row): row for row in rows if row["timestep"] == REFERENCE}
@@ -89,6 +107,8 @@ def main():
         elif row["window"] < 0:
             point = f"μ = {row['friction']}, φ = {row['volume_fraction']}, seed {row['seed']}"
             print(f"{point}: equilibration ended, {row['ending']}")
+    completed = [row for group in points.values() for row in group if row["ending"] == "completed"]
+    print_windows([(row, references[window(row)]) for row in completed])
     print(markdown_head(HEAD))
     for (friction, phi, step), group in sorted(points.items()):
         pairs = [(row, references[window(row)]) for row in group if row["ending"] == "completed"]
