@@ -63,7 +63,7 @@ def row_of(program, sizes, fraction, step, seeds, patch):
     scene = merged(SCENE, patch, particles={"species": species(radii)}, volume_fraction=fraction)
     if step != 1:
         # The automatic step of this scene, not shortened to its windows.
-        scene["integrator"] = {"timestep": step * program.derived(scene, "pressure")["timestep"]}
+        scene["integrator"] = program.part_of_step(step, scene, "pressure")
     name = f"{'one' if len(radii) == 1 else 'two'}-{fraction:g}-{step:g}"
     (point,) = program.run(name, scene, [{"/volume_fraction": fraction}], seeds, "pressure")
     expected = number_density(fraction, radii) * THERMAL_ENERGY * hard_pressure(fraction, radii, softness())

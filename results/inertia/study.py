@@ -206,8 +206,8 @@ def measure(program):
     curves = {run[0]: thermal_rows(program, *run) for run in THERMAL_RUNS}
     # At the smallest inertia: a quarter of the automatic step, because explicit steps take too long.
     number, seeds, _, parts = THERMAL_RUNS[-1]
-    automatic = program.derived(thermal_scene(number, parts, {"particles": {"density": density_at(0.001)}}))["timestep"]
-    quarter = {"integrator": {"timestep": 0.25 * automatic}}
+    lightest = thermal_scene(number, parts, {"particles": {"density": density_at(0.001)}})
+    quarter = {"integrator": program.part_of_step(0.25, lightest)}
     fine = thermal_rows(program, number, seeds, (0.001,), parts, quarter, "thermal-fine")
     explicit = {"integrator": {"method": "explicit"}}
     flow_explicit = flow_rows(program, (0.1, 10), 12, explicit, "flow-explicit")

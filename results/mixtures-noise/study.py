@@ -74,8 +74,8 @@ def disputed_rows(program):
     yield from rows_of(program, "disputed-size", cases, stiffness, count_times=2)
     particles, contact = {"count": COUNTS[alpha], "mixture": {"alpha": alpha}}, {"normal_stiffness": stiffness}
     scene = merged(NOISY, particles=particles, contact=contact, volume_fraction=cases[0][1], peclet=peclet)
-    half = {"method": "implicit", "timestep": program.derived(scene)["timestep"] / 2}
-    yield from rows_of(program, "disputed-step", cases, stiffness, besides={"/integrator": half})
+    half = {"/integrator": program.part_of_step(0.5, scene)}
+    yield from rows_of(program, "disputed-step", cases, stiffness, besides=half)
     yield from rows_of(program, "disputed-late", cases, stiffness, besides=LATE)
 
 

@@ -95,12 +95,12 @@ def test_rows(program, friction):
     sizes = [(TESTED, round(factor * COUNTS[TESTED]), fraction) for factor in SIZES]
     particles = {"count": sizes[0][1], "mixture": {"alpha": TESTED}}
     contact = {"friction": friction, "normal_stiffness": stiffness_of(friction, TESTED)}
-    step = program.derived(merged(SCENE, particles=particles, contact=contact, volume_fraction=fraction))["timestep"]
+    half = program.part_of_step(0.5, merged(SCENE, particles=particles, contact=contact, volume_fraction=fraction))
     yield from rows_of(program, "size", friction, sizes)
     for part, stiffer, besides in (
         (f"stiff-{STIFFER}", STIFFER, None),
         (f"light-{LIGHTER}", 1, {"/particles/density": SCENE["particles"]["density"] / LIGHTER}),
-        ("half-step", 1, {"/integrator": {"method": "implicit", "timestep": step / 2}}),
+        ("half-step", 1, {"/integrator": half}),
         ("late", 1, LATE),
     ):
         yield from rows_of(program, part, friction, sizes[:1], SEEDS, stiffer, besides)

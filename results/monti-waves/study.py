@@ -147,12 +147,12 @@ def step_change(program, seeds):
     """Returns the relative change of eta_r with half of the automatic step, because results do not have the error of
     the step in a wave. Over a strain of 1 runs with the same seed stay correlated."""
     patch = merged(patch_of(1000, "program", True), in_strains(0, 1))
-    automatic = program.derived(merged(SCENE, patch))["timestep"]
-    whole, half = (
+    half = {"integrator": program.part_of_step(0.5, merged(SCENE, patch))}
+    whole, halved = (
         {r["seed"]: r["mean"]["relative_viscosity"] for r in results_of(program, name, merged(patch, step), seeds)[0]}
-        for name, step in (("step-auto", {}), ("step-half", {"integrator": {"timestep": automatic / 2}}))
+        for name, step in (("step-auto", {}), ("step-half", half))
     )
-    return relative_difference(half, whole, paired=True)
+    return relative_difference(halved, whole, paired=True)
 
 
 def judge():

@@ -189,6 +189,10 @@ class Program:
             sys.exit(f"{path}: peclet validate ended with {done.returncode}: {done.stderr.strip()}")
         return json.loads(done.stdout)["points"][0]
 
+    def part_of_step(self, part, scene, observable="relative_viscosity"):
+        """Returns the integrator block of implicit steps of this part of the automatic one of the scene."""
+        return {"method": "implicit", "timestep": part * self.derived(scene, observable)["timestep"]}
+
 
 def term(mean, *names):
     """Returns the sum of the named terms of the shear stress over viscosity * rate; terms that are absent are 0."""
