@@ -28,7 +28,7 @@ RESULTS = Path(__file__).resolve().parent
 # Studies, and the studies whose tables they read and which run before them. flow-curve also reads at-rest, which reads
 # flow-curve: `flow-curve/study.py --from-table` judges it again afterwards.
 READ = {
-    "at-rest": ("flow-curve",),
+    "at-rest": ("flow-curve", "zero-shear"),
     "convergence": ("flow-curve",),
     "divergence": ("at-rest", "flow-curve", "zero-shear"),
     "flow-curve": ("literature", "zero-shear"),

@@ -7,9 +7,10 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
 from studies.driver import BLUE, Check, ERROR, Figure, Finding, GREEN, JAMMED_AT_REST, RED, REFERENCE_SCENE, SLOWEST
-from studies.driver import at_peclet, diverging, entries, estimate, first, flow_over_rest, in_brownian_times, in_errors
-from studies.driver import main, merged, number, over, price, quotient, read_rows, row_ratio, seconds_of_window, shade
-from studies.driver import slow_rows, storage_by_loss, viscosity_at_high_frequency, where, write_rows, write_table
+from studies.driver import at_peclet, diverging, entries, estimate, first, flow_over_rest, in_brownian_times
+from studies.driver import jackknife, main, merged, number, over, price, quotient, read_rows, row_ratio
+from studies.driver import seconds_of_window, shade, slow_rows, storage_by_loss, table_at_rest
+from studies.driver import viscosity_at_high_frequency, where, with_pairs, write_rows, write_table
 import numpy as np
 
 TITLE = "Viscosity at rest by linear response"
@@ -23,7 +24,6 @@ SCENE = merged(
     fluid={"thermal_energy": THERMAL_ENERGY},
     observables=["stress", "linear_response"],
 )
-EQUILIBRATION = 100  # Brownian times
 # Window [Brownian times], at least 80 times the viscosity, and seeds, by volume fraction.
 WINDOWS = {
     0.30: (400, 60),
@@ -32,41 +32,81 @@ WINDOWS = {
     0.48: (1200, 40),
     0.50: (1600, 64),
     0.52: (2400, 24),
-    0.55: (5000, 16),
+    0.55: (10000, 16),
 }
+EQUILIBRATION = 1 / 8  # of the window
 MIDDLE = 0.45
 OTHERS = {0.30: ((1000, 16),), MIDDLE: ((250, 16), (50, 24)), 0.50: ((50, 16),)}  # other particle numbers and seeds
 HALVED_SEEDS = 24
-# Prices in the flow: volume fractions, Peclet numbers, seeds, window [Brownian times].
-PRICED, PECLETS, PRICE_SEEDS, PRICE_WINDOW = (0.30, 0.45, 0.50), (0.001, 0.003, 0.01, 0.03, 0.1), 16, 200
+# Prices in the flow: volume fractions, Peclet numbers, seeds, equilibration and window [Brownian times].
+PRICED, PECLETS, PRICE_SEEDS, PRICE_TIMES = (0.30, 0.45, 0.50), (0.001, 0.003, 0.01, 0.03, 0.1), 16, (100, 200)
 USUAL = {"count": 100, "step": "automatic"}
 FROZEN = 4  # frequency over the Brownian one; above it inertia matters
-# Upper limit of the correlation's integral [Brownian times] over the relative viscosity.
+# Least upper limit of the correlation's integral [Brownian times] over the relative viscosity.
 TIMES_OF_CORRELATION = 2.5
+SETTLED = 0.95  # of the steady stress after a start
+LATER = 1.5  # factor in time over which slopes are taken
 
 
 def scene_at(fraction, patch=None):
-    window = in_brownian_times(EQUILIBRATION, WINDOWS[fraction][0])
-    return merged(SCENE, {"volume_fraction": fraction, **window}, patch or {})
+    window, _ = WINDOWS[fraction]
+    times = in_brownian_times(EQUILIBRATION * window, window)
+    return merged(SCENE, {"volume_fraction": fraction, **times}, patch or {})
 
 
 def point_of(program, name, scene, seeds):
     return program.run(name, scene, [{"/volume_fraction": scene["volume_fraction"]}], seeds, TARGET)[0]
 
 
+def curve(point, axis, name):
+    """Returns the axis of a curve of linear response in Brownian times, and its values by seed."""
+    curves = [mean["linear_response"] for mean in point.means]
+    return np.array(curves[0][axis]) / BROWNIAN_TIME, np.array([c[name] for c in curves])
+
+
 def by_correlation(point):
-    """Returns the viscosity by the correlation up to the first lag beyond TIMES_OF_CORRELATION times the viscosity."""
+    """Returns the viscosity by the correlation up to TIMES_OF_CORRELATION times the viscosity, and its ratio to that by
+    momentum at the same time.
+
+    Both are means over times up to LATER times that: the integral of the correlation up to t is d(t eta)/dt.
+    """
     viscosity, _ = point.measured(TARGET)
-    lag = np.array(point.means[0]["linear_response"]["lag"]) / BROWNIAN_TIME
-    place = int(np.searchsorted(lag, TIMES_OF_CORRELATION * viscosity))
-    return point.measured("linear_response/correlation", place)
+    ends = TIMES_OF_CORRELATION * viscosity * np.array((1, LATER))
+    lag, integrals = curve(point, "lag", "correlation")
+    inner = np.array([ends[0], *lag[(ends[0] < lag) & (lag < ends[1])], ends[1]])
+    up_to = [np.trapz(np.interp(inner, lag, seed), inner) / np.ptp(ends) for seed in integrals]
+    time, moments = curve(point, "time", "viscosity")
+    slopes = [np.diff(np.interp(ends, time, time * seed))[0] / np.ptp(ends) for seed in moments]
+    up_to, slopes = np.array(up_to), np.array(slopes)
+    ratio = jackknife(lambda k: up_to[k].mean() / slopes[k].mean(), len(slopes))
+    return entries("viscosity", estimate(up_to)) | entries("over momentum", ratio)
+
+
+def reached(time, viscosity, level):
+    """Returns the time at which the stress after a start of slow shear over the steady one passes `level`.
+
+    After a start the stress over the rate is d(t eta)/dt, with the eta(t) of Helfand's moment, here its mean from t to
+    LATER t; it counts for the mean of both in log t. Before the minimum of eta(t) it is that of inertia.
+    """
+    begin = time[int(np.argmin(viscosity)) :]
+    begin = begin[LATER * begin <= time[-1]]
+    slope = np.diff([np.interp(t, time, time * viscosity) for t in (begin, LATER * begin)], axis=0)[0] / (LATER - 1)
+    above = slope / begin >= level
+    return float(begin[np.argmax(above)] * math.sqrt(LATER)) if above.any() else math.nan
+
+
+def settling(point):
+    """Returns the Brownian times after a start until the stress has SETTLED of its steady value, and its error."""
+    time, curves = curve(point, "time", "viscosity")
+    steady = np.array([*point.by_seed(TARGET).values()])
+    return jackknife(lambda k: reached(time, curves[k].mean(axis=0), SETTLED * steady[k].mean()), len(steady))
 
 
 def rows_of(fraction, count, step, point):
     head = {"fraction": fraction, "count": count, "step": step, "seeds": len(point.results)}
-    rise = entries("rise", point.measured("zero_shear_rise"))
-    yield {**head, "by": "momentum", **entries("viscosity", point.measured(TARGET)), **rise}
-    yield {**head, "by": "correlation", **entries("viscosity", by_correlation(point))}
+    more = entries("rise", point.measured("zero_shear_rise")) | entries("settling", settling(point))
+    yield {**head, "by": "momentum", **entries("viscosity", point.measured(TARGET)), **more}
+    yield {**head, "by": "correlation", **by_correlation(point)}
 
 
 def curve_rows(fraction, point):
@@ -79,10 +119,14 @@ def curve_rows(fraction, point):
             yield {"fraction": fraction, "curve": name, "at": place * scale, **entries("value", value)}
 
 
-def price_row(fraction, peclet, point, window, quantity, viscosity, foretold=1.0, count=100):
-    """Returns the row of a price; `foretold` is the estimate of `peclet plan` for the price over that at rest."""
+def price_row(fraction, peclet, point, times, quantity, viscosity, foretold=1.0, count=100):
+    """Returns the row of a price.
+
+    `times` are proportional to the equilibration and the window; `foretold` is the estimate of `peclet plan` for the
+    price over that at rest.
+    """
     values = [*point.by_seed(quantity).values()]
-    seconds = [seconds_of_window(result, EQUILIBRATION, window) for result in point.results]
+    seconds = [seconds_of_window(result, *times) for result in point.results]
     row = {"fraction": fraction, "peclet": peclet, "count": count, "seeds": len(values), "foretold": foretold}
     return row | entries("viscosity", point.measured(quantity)) | entries("seconds", price(values, seconds, viscosity))
 
@@ -91,47 +135,44 @@ def price_rows(program, fraction, viscosity):
     """Yields the rows of prices in the flow."""
     for peclet in PECLETS:
         patch = {"fluid": {"thermal_energy": None}, "observables": None, "volume_fraction": fraction}
-        scene = merged(SCENE, patch, at_peclet(peclet), in_brownian_times(EQUILIBRATION, PRICE_WINDOW))
+        scene = merged(SCENE, patch, at_peclet(peclet), in_brownian_times(*PRICE_TIMES))
         (point,) = program.run(f"price-{fraction:g}-{peclet:g}", scene, [{"/volume_fraction": fraction}], PRICE_SEEDS)
         foretold = flow_over_rest(peclet, fraction, SCENE["particles"]["species"])
-        yield price_row(fraction, peclet, point, PRICE_WINDOW, "relative_viscosity", viscosity, foretold)
+        yield price_row(fraction, peclet, point, PRICE_TIMES, "relative_viscosity", viscosity, foretold)
 
 
 def measure(program):
     rows, curves, prices = [], [], []
-    for fraction, (window, seeds) in WINDOWS.items():
+    at_rest_times = (EQUILIBRATION, 1)
+    for fraction, (_, seeds) in WINDOWS.items():
         at_rest = point_of(program, f"rest-{fraction:g}", scene_at(fraction), seeds)
         rows += rows_of(fraction, 100, "automatic", at_rest)
         curves += curve_rows(fraction, at_rest)
         viscosity, _ = at_rest.measured(TARGET)
         if fraction in PRICED:
-            prices.append(price_row(fraction, 0, at_rest, window, TARGET, viscosity))
+            prices.append(price_row(fraction, 0, at_rest, at_rest_times, TARGET, viscosity))
             prices += price_rows(program, fraction, viscosity)
         for count, other_seeds in OTHERS.get(fraction, ()):
             scene = scene_at(fraction, {"particles": {"count": count}})
             others = point_of(program, f"rest-{fraction:g}-{count}", scene, other_seeds)
             rows += rows_of(fraction, count, "automatic", others)
             if count < 100:
-                prices.append(price_row(fraction, 0, others, window, TARGET, viscosity, count=count))
-    half = 0.5 * program.derived(scene_at(MIDDLE), TARGET)["timestep"]
-    patch = {"integrator": {"method": "implicit", "timestep": half}}
-    halved = point_of(program, "halved", scene_at(MIDDLE, patch), HALVED_SEEDS)
+                prices.append(price_row(fraction, 0, others, at_rest_times, TARGET, viscosity, count=count))
+    half = {"integrator": program.part_of_step(0.5, scene_at(MIDDLE), TARGET)}
+    halved = point_of(program, "halved", scene_at(MIDDLE, half), HALVED_SEEDS)
     rows += rows_of(MIDDLE, 100, "half of it", halved)
-    write_table(HERE / "table.csv", "fraction, count, step, by, seeds, viscosity±, rise±", rows, 5)
+    names = "fraction, count, step, by, seeds, viscosity±, rise±, settling±, over momentum±"
+    write_table(HERE / "table.csv", names, rows, 5)
     write_rows(HERE / "curves.csv", curves, 5)
     write_table(HERE / "prices.csv", "fraction, peclet, count, seeds, viscosity±, seconds±, foretold", prices, 4)
 
 
-def viscosities_in_errors(a, b):
-    """Returns the difference of two rows' viscosities over its standard error, and an error of 0."""
-    return in_errors(number(a, "viscosity"), number(b, "viscosity"))
-
-
 def compared(table, label, **which):
-    """Returns the check that both estimates of one point agree."""
-    row, other = (first(table, by=by, **which) for by in ("momentum", "correlation"))
-    text = f"{label}: by correlation less by momentum, in standard errors"
-    return Check(text, "two forms", *viscosities_in_errors(other, row), -3, 3)
+    """Returns the check that both estimates of one point agree at the same time."""
+    row = first(table, by="correlation", **which)
+    when = f"{TIMES_OF_CORRELATION:g} to {TIMES_OF_CORRELATION * LATER:g} η_r τ_B"
+    text = f"{label}: by correlation over by momentum, at {when}"
+    return Check(text, "two forms", *number(row, "over momentum"), 0.9, 1.1, row["seeds"] - 1)
 
 
 def two_forms(table):
@@ -139,6 +180,8 @@ def two_forms(table):
         found = number(row, "viscosity")
         yield Finding(f"φ = {fraction:g}: η_r at rest", "linear response", *found, row["seeds"] - 1)
         yield compared(table, f"φ = {fraction:g}", fraction=fraction, **USUAL)
+        text = f"φ = {fraction:g}: Brownian times after a start of slow shear until η_r has {SETTLED:g} of that"
+        yield Finding(text, "linear response", *number(row, "settling"), row["seeds"] - 1)
         text = f"φ = {fraction:g}: rise from half of the time on, over η_r"
         yield Check(text, "the window", *quotient(number(row, "rise"), found), -0.1, 0.1, row["seeds"] - 1)
 
@@ -150,16 +193,23 @@ def usual_rows(table):
 
 def size_and_step(table):
     counts = [(fraction, count) for fraction, runs in OTHERS.items() for count, _ in runs]
-    others = {(f, f"N = {n} less N = 100"): {"count": n, "step": "automatic"} for f, n in counts}
-    others[MIDDLE, "half the step less the automatic one"] = {"count": 100, "step": "half of it"}
+    others = {(f, f"N = {n} over N = 100"): {"count": n, "step": "automatic"} for f, n in counts}
+    others[MIDDLE, "half the step over the automatic one"] = {"count": 100, "step": "half of it"}
     for (fraction, text), which in others.items():
         usual, other = (first(table, fraction=fraction, by="momentum", **w) for w in (USUAL, which))
-        text = f"φ = {fraction:g}: {text}, in standard errors"
-        yield Check(text, "size and step", *viscosities_in_errors(other, usual), -3, 3)
+        text = f"φ = {fraction:g}, η_r: {text}"
+        yield Check(text, "size and step", *row_ratio(other, usual, "viscosity"), 0.9, 1.1, other["seeds"] - 1)
     yield compared(table, "φ = 0.3, N = 1000", fraction=0.3, count=1000, step="automatic")
+    for fraction, row in table_at_rest().items():
+        if fraction in WINDOWS:
+            exact = with_pairs(usual_rows(table)[fraction])
+            text = f"φ = {fraction:g}: η_φ by the recipe in print over η_r of pairs at rest"
+            yield Finding(
+                text, "zero-shear", *quotient(number(row, "viscosity"), number(exact, "pairs")), exact["seeds"] - 1
+            )
     for fraction, row in slow_rows().items():
-        text = f"φ = {fraction:g}: η_r at Pe = {SLOWEST:g} less at rest, in standard errors"
-        yield Finding(text, "slow shear", *viscosities_in_errors(row, usual_rows(table)[fraction]))
+        text = f"φ = {fraction:g}: η_r at Pe = {SLOWEST:g} over that at rest"
+        yield Finding(text, "slow shear", *row_ratio(row, usual_rows(table)[fraction], "viscosity"), row["seeds"] - 1)
 
 
 def modulus(curves, fraction, name):
