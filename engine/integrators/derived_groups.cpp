@@ -349,33 +349,43 @@ void warn_of_soft_contacts_under_stress(const Scene& scene, std::vector<Warning>
        overlap, most);
 }
 
-// Warns if friction sets in near the stress of this flow only because contacts are as soft as they are.
-// Thermal motion opens contacts that are pressed by much less than sqrt(k_n k_B T), so that the onset goes
-// with k_n, unless a repulsion or a critical load holds spheres apart up to a larger force. The number of
-// contacts goes with the step, too, and near the onset eta_r with it (results/stability).
-void warn_of_softness_at_onset_of_friction(const Scene& scene, std::vector<Warning>& warnings) {
-  // Half of the effect of friction is reached where stress a^2 is this part of sqrt(k_n k_B T), a sixth at a
-  // third and nine tenths at ten times that (results/friction-repulsion for phi = 0.45 to 0.53,
-  // results/mixtures-noise for k_n that differ 60-fold).
-  constexpr double part = 0.03;
+// Half of the effect of friction is reached where stress a^2 is this part of sqrt(k_n k_B T), a sixth at a
+// third and nine tenths at ten times that (results/friction-repulsion for phi = 0.45 to 0.53,
+// results/mixtures-noise for k_n that differ 60-fold).
+constexpr double onset_over_thermal_load = 0.03;
+
+// Returns the stress near which friction sets in only because contacts are as soft as they are; empty without
+// noise or friction. Thermal motion opens contacts that are pressed by much less than sqrt(k_n k_B T), so
+// that the onset goes with k_n, unless a repulsion or a critical load holds spheres apart up to a larger
+// force; it is then empty, too.
+std::optional<double> onset_of_friction_by_softness(const Scene& scene) {
   const Physics& physics = scene.physics;
+  if (!(physics.thermal_energy > 0) || !physics.contact || !(physics.contact->friction > 0)) return {};
   const std::optional<Mixture>& mixture = scene.particles.mixture;
   const double a = mixture && mixture->alpha > 0 ? mixture->grain_radius : scene.particles.reference_radius;
-  const double onset = part * std::sqrt(physics.contact->normal_stiffness * physics.thermal_energy);
+  const double load =
+      onset_over_thermal_load * std::sqrt(physics.contact->normal_stiffness * physics.thermal_energy);
   const double repulsion = physics.repulsion ? -of_pair(*physics.repulsion, a, a).slope(0.0) : 0;
-  if (std::max(repulsion, physics.contact->critical_load) > onset) return;
+  if (std::max(repulsion, physics.contact->critical_load) > load) return {};
+  return load / (a * a);
+}
+
+// Warns if friction sets in near the stress of this flow only because contacts are as soft as they are.
+void warn_of_softness_at_onset_of_friction(const Scene& scene, std::vector<Warning>& warnings) {
+  const std::optional<double> onset = onset_of_friction_by_softness(scene);
+  if (!onset) return;
+  const Physics& physics = scene.physics;
   const ControlledShear* const held = physics.flow.deformation().at_stress();
   const double unit = held != nullptr ? held->stress() : physics.viscosity * physics.flow.rate();
   // At a given rate the viscosity is not known; that of suspensions that friction may thicken is 3 to 100.
   const auto [least, most] = held != nullptr ? std::pair(0.1, 10.0) : std::pair(3.0, 100.0);
-  const double units = onset / (a * a * unit);
+  const double units = *onset / unit;
   if (!(least < units && units < most)) return;
   warn(warnings, "soft",
        "thermal motion opens soft contacts, so that friction sets in near the stress {:g} "
        "sqrt(normal_stiffness k_B T) / a^2, here {:.2g} times {}: see whether four times the "
-       "normal_stiffness or a quarter of the timestep changes the viscosity, or give the repulsion that "
-       "decides it",
-       part, units, held != nullptr ? "the given one" : "viscosity rate");
+       "normal_stiffness or explicit steps change the viscosity, or give the repulsion that decides it",
+       onset_over_thermal_load, units, held != nullptr ? "the given one" : "viscosity rate");
 }
 
 // Warns if the radius of reference is the first one of a distribution, far from the mean: few want its Pe.
@@ -439,9 +449,23 @@ std::vector<Warning> warnings_before_run(const Scene& scene) {
          "softer ones; a larger normal_stiffness cures it",
          *stiffness, stiff);
   }
-  if (physics.thermal_energy > 0 && physics.contact && physics.contact->friction > 0)
-    warn_of_softness_at_onset_of_friction(scene, warnings);
+  warn_of_softness_at_onset_of_friction(scene, warnings);
   return warnings;
+}
+
+void warn_of_step_at_onset_of_friction(const Scene& scene, double stress, std::vector<Warning>& warnings) {
+  // At the onset eta_r is 19 % too high at the automatic step, 12 and 5 % at a quarter and a sixteenth of it.
+  constexpr double near = 3, fine = 1.0 / 64;
+  const std::optional<double> onset = onset_of_friction_by_softness(scene);
+  if (!onset || !(stress > *onset / near && stress < *onset * near)) return;
+  const double share = scene.timestep ? *scene.timestep / automatic_timestep(scene).value : 1;
+  if (scene.method != Method::implicit_steps || share <= fine * (1 + 1e-9)) return;
+  warn(
+      warnings, "timestep",
+      "the stress is {:.2g} times that up to which thermal motion opens soft contacts, so that friction sets "
+      "in near it: too many are closed after long steps, and at the automatic one the viscosity may be a "
+      "fifth too high; explicit steps, or 1/{:g} of the automatic one, do not have this error",
+      stress / *onset, 1 / fine);
 }
 
 }  // namespace peclet::engine

@@ -66,5 +66,8 @@ void warn(std::vector<Warning>& warnings, const char* code, fmt::format_string<A
 std::vector<Warning> scene_warnings(const Scene& scene);
 // Returns warnings that the result makes superfluous: spheres that are too soft, or too dense to be packed.
 std::vector<Warning> warnings_before_run(const Scene& scene);
+// Warns if friction sets in near this mean shear stress because thermal motion opens contacts. How many are
+// closed then goes with the size of implicit steps, and eta_r with it (results/stability).
+void warn_of_step_at_onset_of_friction(const Scene& scene, double stress, std::vector<Warning>& warnings);
 
 }  // namespace peclet::engine

@@ -8,6 +8,7 @@
 
 #include "contract/provenance.h"
 #include "contract/sha256.h"
+#include "engine/flow/controlled_shear.h"
 #include "engine/integrators/derived_groups.h"
 #include "engine/integrators/stability.h"
 #include "engine/kernels/instruction_set.h"
@@ -242,6 +243,15 @@ std::string warnings(const Json& result) {
   return text.empty() ? line("warnings", "none") : text;
 }
 
+// Returns the mean shear stress; empty if a flow is not steady, or if it is undefined.
+std::optional<double> shear_stress(const Scene& scene, const Json& mean) {
+  const ImposedFlow& flow = scene.physics.flow;
+  if (const ControlledShear* const held = flow.deformation().at_stress()) return held->stress();
+  const Json& viscosity = mean.at("relative_viscosity");
+  if (!(flow.steady_rate() > 0) || !viscosity.is_number()) return {};
+  return scene.physics.viscosity * flow.steady_rate() * viscosity.get<double>();
+}
+
 }  // namespace
 
 Json make_result(const ResultHeader& header, const Scene& scene, const Simulation& simulation,
@@ -288,7 +298,6 @@ Json make_result(const ResultHeader& header, const Scene& scene, const Simulatio
   if (ending.cause == Ending::Cause::jammed) {
     warnings.push_back({"jammed", ending.message + "; its rate is 0, and it has no viscosity"});
   }
-  result["warnings"] = warnings;
   result["gate"] = {{"largest_stability_share", simulation.step_errors().largest_stability_share},
                     {"energy_imbalance", or_null(imbalance)},
                     {"half_step_difference", or_null(difference)},
@@ -298,7 +307,12 @@ Json make_result(const ResultHeader& header, const Scene& scene, const Simulatio
   ArchiveWriter state;
   save(simulation.system(), state);
   result["final_state_sha256"] = sha256(state.bytes());
-  if (is_measured(ending.cause)) add_measurements(scene, simulation, ending, result);
+  if (is_measured(ending.cause)) {
+    add_measurements(scene, simulation, ending, result);
+    if (const std::optional<double> stress = shear_stress(scene, result["mean"]))
+      warn_of_step_at_onset_of_friction(scene, *stress, warnings);
+  }
+  result["warnings"] = warnings;
   return result;
 }
 

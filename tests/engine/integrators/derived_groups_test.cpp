@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "engine/flow/shear.h"
+#include "engine/integrators/stability.h"
 #include "engine/observables/scene_reading.h"
 #include "tests/contract/refusal.h"
 #include "tests/engine/small_scene.h"
@@ -201,12 +202,15 @@ TEST(WarningsBeforeRun, ACriticalLoadOfAnotherUnitIsSaid) {
 }
 
 // k_B T = 0.02: 0.03 sqrt(k_n k_B T) is 0.424 at k_n = 10^4 and 4.24 at 10^6.
-Codes codes_of_rough_noisy_scene(const Json& patch) {
+Scene rough_noisy_scene(const Json& patch) {
   const Json rough = {{"repulsion", nullptr},
                       {"flow", {{"shear_rate", 0.1}}},  // viscosity times rate is 0.01
                       {"contact", {{"rolling_stiffness", nullptr}, {"rolling_friction", nullptr}}},
                       {"duration", {{"production", {{"time", 10}}}}}};
-  return codes_of(warnings_before_run(read_scene(small_scene(together({rough, patch})), "scene.json")));
+  return read_scene(small_scene(together({rough, patch})), "scene.json");
+}
+Codes codes_of_rough_noisy_scene(const Json& patch) {
+  return codes_of(warnings_before_run(rough_noisy_scene(patch)));
 }
 const auto with_stiffness = [](double stiffness) {
   return Json{{"contact", {{"normal_stiffness", stiffness}}}};
@@ -262,6 +266,29 @@ TEST(WarningsBeforeRun, TheOnsetOfFrictionInMixturesIsThatOfTheGrains) {
   };
   EXPECT_EQ(codes(0), Codes{"soft"});
   EXPECT_EQ(codes(0.5), Codes{});  // 42.4 / 25 times viscosity rate
+}
+
+TEST(WarningsOfTheStress, ImplicitStepsAtTheOnsetOfFrictionAreSaid) {
+  const auto with = [](const char* method, const Json& step) {
+    return Json{{"integrator", {{"method", method}, {"timestep", step}}}};
+  };
+  const Json usual = with("implicit", "auto");
+  const auto codes = [&](double stress, const Json& patch) {
+    std::vector<Warning> warnings;
+    warn_of_step_at_onset_of_friction(rough_noisy_scene(together({usual, patch})), stress, warnings);
+    return codes_of(warnings);
+  };
+  const Codes said{"timestep"}, none;
+  EXPECT_EQ(codes(0.141, usual), none);
+  EXPECT_EQ(codes(0.142, usual), said);  // a third of 0.4243 is 0.1414
+  EXPECT_EQ(codes(1.27, usual), said);   // three times is 1.2728
+  EXPECT_EQ(codes(1.28, usual), none);
+  EXPECT_EQ(codes(0.4, {{"contact", {{"friction", 0}}}}), none);
+  EXPECT_EQ(codes(0.4, {{"contact", {{"critical_load", 0.43}}}}), none);
+  EXPECT_EQ(codes(0.4, with("explicit", "auto")), none);
+  const double automatic = automatic_timestep(rough_noisy_scene(usual)).value;
+  EXPECT_EQ(codes(0.4, with("implicit", automatic / 63)), said);
+  EXPECT_EQ(codes(0.4, with("implicit", automatic / 64)), none);
 }
 
 // Radii 1 and 2 in equal numbers have the mean 1.5.

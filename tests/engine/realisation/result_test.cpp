@@ -68,6 +68,24 @@ TEST(Result, ViscosityAndNormalStressesAreThoseOfTheTotal) {
   EXPECT_GT(mean.at("pressure"), 0);
 }
 
+// Friction sets in at 0.03 sqrt(1e4 kT): 2.1 for kT = 0.5, and 0.03 for 1e-4. The stress is some 1 to 6, that
+// of relative viscosities of 5 to 30.
+TEST(Result, AStressAtTheOnsetOfFrictionIsSaid) {
+  const Json by_rate = Json::object(), by_stress = {{"flow", {{"shear_rate", nullptr}, {"stress", 2}}}};
+  for (const Json& flow : {by_rate, by_stress}) {
+    for (const double energy : {0.5, 1e-4}) {
+      const Json result =
+          result_of(together({flow,
+                              {{"repulsion", nullptr},
+                               {"fluid", {{"thermal_energy", energy}}},
+                               {"integrator", {{"method", "implicit"}, {"timestep", "auto"}}}}}));
+      const std::string warnings = result.at("warnings").dump();
+      EXPECT_EQ(warnings.find("so that friction sets in near it") != std::string::npos, energy == 0.5)
+          << warnings;
+    }
+  }
+}
+
 // Single spheres in a wave with m u^2 = 5 have the kinetic stress n kT relative to the flow, though kT = 0.02
 // is small. 60 spheres over 100 velocity decay times give a standard error of about 2 %.
 TEST(Result, TheStressOfTheMotionIsRelativeToWavesToo) {
