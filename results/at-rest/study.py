@@ -24,7 +24,7 @@ SCENE = merged(
     fluid={"thermal_energy": THERMAL_ENERGY},
     observables=["stress", "linear_response"],
 )
-# Window [Brownian times], at least 80 times the viscosity, and seeds, by volume fraction.
+# Window [Brownian times], some 70 to 170 times the viscosity, and seeds, by volume fraction.
 WINDOWS = {
     0.30: (400, 60),
     0.40: (500, 40),
@@ -45,6 +45,7 @@ FROZEN = 4  # frequency over the Brownian one; above it inertia matters
 # Least upper limit of the correlation's integral [Brownian times] over the relative viscosity.
 TIMES_OF_CORRELATION = 2.5
 SETTLED = 0.95  # of the steady stress after a start
+RISING = 3  # standard errors of the rise from which on the window is too short to show a steady stress
 LATER = 1.5  # factor in time over which slopes are taken
 
 
@@ -91,8 +92,12 @@ def reached(time, viscosity, level):
     begin = time[int(np.argmin(viscosity)) :]
     begin = begin[LATER * begin <= time[-1]]
     slope = np.diff([np.interp(t, time, time * viscosity) for t in (begin, LATER * begin)], axis=0)[0] / (LATER - 1)
-    above = slope / begin >= level
-    return float(begin[np.argmax(above)] * math.sqrt(LATER)) if above.any() else math.nan
+    share = slope / begin / level
+    place = int(np.argmax(share >= 1))
+    if share[place] < 1:
+        return math.nan
+    near = slice(max(place - 1, 0), place + 1)
+    return math.sqrt(LATER) * math.exp(np.interp(1, share[near], np.log(begin[near])))
 
 
 def settling(point):
@@ -180,8 +185,10 @@ def two_forms(table):
         found = number(row, "viscosity")
         yield Finding(f"φ = {fraction:g}: η_r at rest", "linear response", *found, row["seeds"] - 1)
         yield compared(table, f"φ = {fraction:g}", fraction=fraction, **USUAL)
-        text = f"φ = {fraction:g}: Brownian times after a start of slow shear until η_r has {SETTLED:g} of that"
-        yield Finding(text, "linear response", *number(row, "settling"), row["seeds"] - 1)
+        rise, error = number(row, "rise")
+        if rise < RISING * error:
+            text = f"φ = {fraction:g}: Brownian times after a start of slow shear until η_r has {SETTLED:g} of that"
+            yield Finding(text, "linear response", *number(row, "settling"), row["seeds"] - 1)
         text = f"φ = {fraction:g}: rise from half of the time on, over η_r"
         yield Check(text, "the window", *quotient(number(row, "rise"), found), -0.1, 0.1, row["seeds"] - 1)
 
@@ -200,10 +207,14 @@ def size_and_step(table):
         text = f"φ = {fraction:g}, η_r: {text}"
         yield Check(text, "size and step", *row_ratio(other, usual, "viscosity"), 0.9, 1.1, other["seeds"] - 1)
     yield compared(table, "φ = 0.3, N = 1000", fraction=0.3, count=1000, step="automatic")
+
+
+def beside_others(table):
+    """Yields findings about the recipe in print and slow shear, of other studies."""
     for fraction, row in table_at_rest().items():
         if fraction in WINDOWS:
             exact = with_pairs(usual_rows(table)[fraction])
-            text = f"φ = {fraction:g}: η_φ by the recipe in print over η_r of pairs at rest"
+            text = f"φ = {fraction:g}: η_φ by the recipe in print, without lubrication, over η_r of pairs"
             yield Finding(
                 text, "zero-shear", *quotient(number(row, "viscosity"), number(exact, "pairs")), exact["seeds"] - 1
             )
@@ -256,6 +267,7 @@ def judge():
     table, curves, prices = (read_rows(HERE / f"{name}.csv") for name in ("table", "curves", "prices"))
     yield from two_forms(table)
     yield from size_and_step(table)
+    yield from beside_others(table)
     yield from moduli(curves, table)
     yield from saved(prices)
 
