@@ -68,6 +68,7 @@ std::vector<Warning> scene_warnings(const Scene& scene);
 std::vector<Warning> warnings_before_run(const Scene& scene);
 // Warns if friction sets in near this mean shear stress because thermal motion opens contacts. How many are
 // closed then goes with the size of implicit steps, and eta_r with it (results/stability).
-void warn_of_step_at_onset_of_friction(const Scene& scene, double stress, std::vector<Warning>& warnings);
+void warn_of_step_at_onset_of_friction(const Scene& scene, double timestep, double stress,
+                                       std::vector<Warning>& warnings);
 
 }  // namespace peclet::engine

@@ -243,8 +243,9 @@ std::string warnings(const Json& result) {
   return text.empty() ? line("warnings", "none") : text;
 }
 
-// Returns the mean shear stress; empty if a flow is not steady, or if it is undefined.
-std::optional<double> shear_stress(const Scene& scene, const Json& mean) {
+// Returns the mean shear stress of a steady flow; empty if it has jammed or is not steady.
+std::optional<double> shear_stress(const Scene& scene, const Ending& ending, const Json& mean) {
+  if (ending.cause == Ending::Cause::jammed) return {};
   const ImposedFlow& flow = scene.physics.flow;
   if (const ControlledShear* const held = flow.deformation().at_stress()) return held->stress();
   const Json& viscosity = mean.at("relative_viscosity");
@@ -309,8 +310,8 @@ Json make_result(const ResultHeader& header, const Scene& scene, const Simulatio
   result["final_state_sha256"] = sha256(state.bytes());
   if (is_measured(ending.cause)) {
     add_measurements(scene, simulation, ending, result);
-    if (const std::optional<double> stress = shear_stress(scene, result["mean"]))
-      warn_of_step_at_onset_of_friction(scene, *stress, warnings);
+    if (const std::optional<double> stress = shear_stress(scene, ending, result["mean"]))
+      warn_of_step_at_onset_of_friction(scene, simulation.schedule().timestep, *stress, warnings);
   }
   result["warnings"] = warnings;
   return result;

@@ -268,16 +268,18 @@ TEST(WarningsBeforeRun, TheOnsetOfFrictionInMixturesIsThatOfTheGrains) {
   EXPECT_EQ(codes(0.5), Codes{});  // 42.4 / 25 times viscosity rate
 }
 
-TEST(WarningsOfTheStress, ImplicitStepsAtTheOnsetOfFrictionAreSaid) {
-  const auto with = [](const char* method, const Json& step) {
-    return Json{{"integrator", {{"method", method}, {"timestep", step}}}};
+TEST(WarningsOfTheStress, LongImplicitStepsAtTheOnsetOfFrictionAreSaid) {
+  const auto by = [](const char* method) {
+    return Json{{"integrator", {{"method", method}, {"timestep", "auto"}}}};
   };
-  const Json usual = with("implicit", "auto");
-  const auto codes = [&](double stress, const Json& patch) {
+  // `share` is that of the automatic step.
+  const auto codes = [&](double stress, const Json& patch, double share = 1) {
+    const Scene scene = rough_noisy_scene(together({by("implicit"), patch}));
     std::vector<Warning> warnings;
-    warn_of_step_at_onset_of_friction(rough_noisy_scene(together({usual, patch})), stress, warnings);
+    warn_of_step_at_onset_of_friction(scene, share * automatic_timestep(scene).value, stress, warnings);
     return codes_of(warnings);
   };
+  const Json usual = Json::object();
   const Codes said{"timestep"}, none;
   EXPECT_EQ(codes(0.141, usual), none);
   EXPECT_EQ(codes(0.142, usual), said);  // a third of 0.4243 is 0.1414
@@ -285,10 +287,9 @@ TEST(WarningsOfTheStress, ImplicitStepsAtTheOnsetOfFrictionAreSaid) {
   EXPECT_EQ(codes(1.28, usual), none);
   EXPECT_EQ(codes(0.4, {{"contact", {{"friction", 0}}}}), none);
   EXPECT_EQ(codes(0.4, {{"contact", {{"critical_load", 0.43}}}}), none);
-  EXPECT_EQ(codes(0.4, with("explicit", "auto")), none);
-  const double automatic = automatic_timestep(rough_noisy_scene(usual)).value;
-  EXPECT_EQ(codes(0.4, with("implicit", automatic / 63)), said);
-  EXPECT_EQ(codes(0.4, with("implicit", automatic / 64)), none);
+  EXPECT_EQ(codes(0.4, by("explicit")), none);
+  EXPECT_EQ(codes(0.4, usual, 1.0 / 63), said);
+  EXPECT_EQ(codes(0.4, usual, 1.0 / 64), none);
 }
 
 // Radii 1 and 2 in equal numbers have the mean 1.5.

@@ -80,7 +80,7 @@ TEST(Result, AStressAtTheOnsetOfFrictionIsSaid) {
                                {"fluid", {{"thermal_energy", energy}}},
                                {"integrator", {{"method", "implicit"}, {"timestep", "auto"}}}}}));
       const std::string warnings = result.at("warnings").dump();
-      EXPECT_EQ(warnings.find("so that friction sets in near it") != std::string::npos, energy == 0.5)
+      EXPECT_EQ(warnings.find("friction sets in near this stress") != std::string::npos, energy == 0.5)
           << warnings;
     }
   }
