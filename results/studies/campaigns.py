@@ -176,12 +176,12 @@ class Program:
         """Returns the JSON output of `peclet COMMAND` for a campaign of write() or run()."""
         return json.loads(ask(self.peclet, command, self._path(f"{name}.json"), "--json", *options))
 
-    def derived(self, scene, observable="relative_viscosity"):
+    def derived(self, scene, observable="relative_viscosity", settings=None):
         """Returns the answer of `peclet validate` for one scene: time step, groups and warnings; or {refused}.
 
-        `observable` may be any number of the results.
+        `observable` may be any number of the results. `settings` are values by JSON pointer, as for run().
         """
-        path = self.write("scene", scene, [{}], 1, observable)
+        path = self.write("scene", scene, [settings or {}], 1, observable)
         done = subprocess.run([self.peclet, "validate", path, "--json"], capture_output=True, text=True)
         if done.returncode == 2:
             return {"refused": done.stderr.strip()}
@@ -189,9 +189,9 @@ class Program:
             sys.exit(f"{path}: peclet validate ended with {done.returncode}: {done.stderr.strip()}")
         return json.loads(done.stdout)["points"][0]
 
-    def part_of_step(self, part, scene, observable="relative_viscosity"):
-        """Returns the integrator block of implicit steps of this part of the automatic one of the scene."""
-        return {"method": "implicit", "timestep": part * self.derived(scene, observable)["timestep"]}
+    def part_of_step(self, part, *scene):
+        """Returns the integrator block of implicit steps of this part of the automatic one of derived(*scene)."""
+        return {"method": "implicit", "timestep": part * self.derived(*scene)["timestep"]}
 
 
 def term(mean, *names):
