@@ -68,14 +68,14 @@ def line(base, numbers, shares=COLLOIDS_ADDED, fraction=colloids_added):
 
 
 def disputed_rows(program):
-    """Yields rows of the disputed point with twice the spheres, half of the step, and a late window."""
+    """Yields rows of the disputed point with twice the spheres, a sixteenth of the step, and a late window."""
     alpha, peclet = DISPUTED
     cases, stiffness = [(alpha, colloids_added(alpha, DENSE), peclet)], STIFFER * STIFFNESS
     yield from rows_of(program, "disputed-size", cases, stiffness, count_times=2)
     particles, contact = {"count": COUNTS[alpha], "mixture": {"alpha": alpha}}, {"normal_stiffness": stiffness}
     scene = merged(NOISY, particles=particles, contact=contact, volume_fraction=cases[0][1], peclet=peclet)
-    half = {"/integrator": program.part_of_step(0.5, scene)}
-    yield from rows_of(program, "disputed-step", cases, stiffness, besides=half)
+    fine = {"/integrator": program.part_of_step(1 / 16, scene)}
+    yield from rows_of(program, "disputed-step", cases, stiffness, besides=fine)
     yield from rows_of(program, "disputed-late", cases, stiffness, besides=LATE)
 
 
@@ -341,7 +341,7 @@ def rows_of_colloids_added(table):
             yield Statement(text, "L5.6", *slopes[alpha], high=FLOWING, degrees=DEGREES, essential=essential)
     (alpha, peclet), usual = DISPUTED, next(iter(HARD))
     text = f"grains at φ₀ = 0.60, Pe_c = {peclet:g}, α = {alpha:g}, k_n = 4·10⁵"
-    for part, words in (("size", "twice the spheres"), ("step", "half of the step"), ("late", "the strains 3 to 6")):
+    for part, words in (("size", "twice the spheres"), ("step", "a sixteenth of the step"), ("late", "the strains 3 to 6")):
         ratio = quotient(table.viscosity(f"disputed-{part}", alpha, peclet), table.viscosity(usual, alpha, peclet))
         yield Finding(f"{text}: η_r with {words} over η_r", "L5.6", *ratio, DEGREES)
 
