@@ -34,7 +34,7 @@ SLOW, SLOWEST, SLOW_CASES = "slow", 0.01, ((1, 0.6), (1, 0.62))
 # Peclet number 1, and grains there, whose own Peclet number is 1.25; a mixture at 100 at the least volume fraction that
 # jams with the stiffness of the map, and up to there without noise.
 EDGE, EDGE_CASE, EDGE_SEEDS, HARDER, HARD_CASE = "edge", (0, 0.62), 8, 4, (0.4, 0.67)
-FINER = 16  # at the edge, again with steps so many times shorter
+FINER = {16: 8, 64: 4}  # at the edge, again with steps so many times shorter: seeds
 HARD_ROUGH = (0.4, 0.65), (0.4, 0.66), HARD_CASE
 # First volume fractions of the search, those at which the study mixtures has jamming without noise, and its steps.
 START = {
@@ -121,14 +121,14 @@ def hard(row):
     return f"{row}-{HARDER}"
 
 
-def fine(row):
-    """Returns the name of a row with steps FINER times shorter."""
-    return f"{row}-fine"
+def fine(row, finer):
+    """Returns the name of a row with steps so many times shorter."""
+    return f"{row}-fine-{finer}"
 
 
 def run_row(program, row, cases, hours=None, seeds=SEEDS, harder=1, finer=1):
     """Runs cases (share of grains, volume fraction) of a row of the map; returns rows of the table, and curves_of()."""
-    name = hard(row) if harder > 1 else fine(row) if finer > 1 else str(row)
+    name = hard(row) if harder > 1 else fine(row, finer) if finer > 1 else str(row)
     scene = merged(SCENE if row in (SMOOTH, ROUGH) else NOISY, contact={"friction": 0 if row == SMOOTH else 1})
     settings = [setting(alpha, fraction, row, harder) for alpha, fraction in cases]
     if finer > 1:
@@ -174,7 +174,8 @@ def measure(program):
     table += run_row(program, SLOW, SLOW_CASES)[0]
     for harder in (1, HARDER):
         table += run_row(program, EDGE, [EDGE_CASE], seeds=EDGE_SEEDS, harder=harder)[0]
-    table += run_row(program, EDGE, [EDGE_CASE], seeds=EDGE_SEEDS, finer=FINER)[0]
+    for finer, seeds in FINER.items():
+        table += run_row(program, EDGE, [EDGE_CASE], seeds=seeds, finer=finer)[0]
     table += run_row(program, SLOW, SLOW_CASES[1:], seeds=EDGE_SEEDS, harder=HARDER)[0]
     for row, cases in ((100, [HARD_CASE]), (ROUGH, HARD_ROUGH)):
         table += run_row(program, row, cases, harder=HARDER)[0]
@@ -182,7 +183,8 @@ def measure(program):
     names += "lubrication±, contact±, mean_overlap±, contacts_per_particle±"
     write_table(HERE / "table.csv", names, table, 5)
     write_rows(HERE / "map.csv", jams, 6)
-    shares = {"slow and hard": jammed_share(program, hard(SLOW)), "edge and fine": jammed_share(program, fine(EDGE))}
+    shares = {"slow and hard": jammed_share(program, hard(SLOW))}
+    shares |= {fine(EDGE, finer): jammed_share(program, fine(EDGE, finer)) for finer in FINER}
     write_numbers(HERE / "numbers.csv", hours.numbers() | shares)
 
 
@@ -193,8 +195,9 @@ class Map:
         self._entries = {(str(e["row"]), e["alpha"]): e for e in read_rows(HERE / "map.csv")}
         self._rows = read_rows(HERE / "table.csv")
         numbers = read_numbers(HERE / "numbers.csv")
-        # Shares of seeds that jam: slow grains alone, and colloids alone at the edge.
-        self.jammed_of_hard, self.jammed_of_fine = numbers["slow and hard"], numbers["edge and fine"]
+        # Shares of seeds that jam: slow grains alone, and colloids alone at the edge by FINER.
+        self.jammed_of_hard = numbers["slow and hard"]
+        self.jammed_of_fine = {finer: numbers[fine(EDGE, finer)] for finer in FINER}
 
     @staticmethod
     def name(row):
@@ -327,11 +330,11 @@ def rows_of_addition(jams):
             room = over(jams.jammed(row, 0), fraction)
             yield Statement(f"colloids alone, Pe_c = {row:g}: φ_m/{fraction:g} (above 1: flows)", "L5.6", *room, 1)
     text = f"colloids alone, Pe_c = 1, φ = {EDGE_CASE[1]:g}"
-    # The stiffness is not in print; that of the harder contacts decides. With that of the map the step does, too.
+    # The stiffness is not in print; that of the harder contacts decides. With that of the map it goes with the step.
     found = jams.jams(hard(EDGE), EDGE_CASE)
     yield Statement(f"{text}, contacts {HARDER} times as stiff: 1 for jammed (flows)", "L5.6", found, 0, 0, 0)
-    name = f"{text}, a sixteenth of the step: share of seeds that jam (flows)"
-    yield Statement(name, "L5.6", *jams.jammed_of_fine[:2], 0, 0, jams.jammed_of_fine[2], essential=False)
+    for finer, (share, error, degrees) in jams.jammed_of_fine.items():
+        yield Finding(f"{text}, 1/{finer} of the step: share of seeds that jam", "step", share, error, degrees)
     yield Finding(f"{text}, the automatic step: 1 for jammed", "step", jams.jams(EDGE, EDGE_CASE), 0)
     yield Statement("grains alone, Pe_cg = 1: φ_m", "L5.6", *jams.jammed(1, 1), 0.6, 0.625)
     for fraction in (0.55, 0.6):

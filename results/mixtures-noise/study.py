@@ -341,7 +341,11 @@ def rows_of_colloids_added(table):
             yield Statement(text, "L5.6", *slopes[alpha], high=FLOWING, degrees=DEGREES, essential=essential)
     (alpha, peclet), usual = DISPUTED, next(iter(HARD))
     text = f"grains at φ₀ = 0.60, Pe_c = {peclet:g}, α = {alpha:g}, k_n = 4·10⁵"
-    for part, words in (("size", "twice the spheres"), ("step", "a sixteenth of the step"), ("late", "the strains 3 to 6")):
+    for part, words in (
+        ("size", "twice the spheres"),
+        ("step", "a sixteenth of the step"),
+        ("late", "the strains 3 to 6"),
+    ):
         ratio = quotient(table.viscosity(f"disputed-{part}", alpha, peclet), table.viscosity(usual, alpha, peclet))
         yield Finding(f"{text}: η_r with {words} over η_r", "L5.6", *ratio, DEGREES)
 

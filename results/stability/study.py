@@ -1,20 +1,23 @@
 #!/usr/bin/python3
 """Failures of each method of integration: a row for each case, a column for each step of each method."""
 import collections
+import statistics
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from studies.driver import Check, Figure, Point, REFERENCE_SCENE, at_peclet, counts_text, during, flags, in_strains
-from studies.driver import main, merged, read_texts, relative_difference, student_quantile, write_table
+from studies.driver import Check, Figure, Point, REFERENCE_SCENE, at_peclet, counts_text, during, entries, flags
+from studies.driver import in_strains, main, merged, read_texts, relative_difference, student_quantile, write_table
 
 TITLE = "Where each method fails, and how"
 BASE = merged(REFERENCE_SCENE, in_strains(0.5, 0.75), particles={"count": 100})
 # Steps of the columns: explicit ones over the largest stable step of the scene, implicit ones over the automatic one.
-EXPLICIT, IMPLICIT = (0.5, 0.999, 2), (0.25, 1, 2, 3.99, 8)
-# Implicit references with noise and friction by Peclet number, no columns: at 100 the step matters most.
-FINEST = {1: 1 / 16, 10: 1 / 16, 100: 1 / 64, 1000: 1 / 16}
+STEPS = {"explicit": (0.5, 0.999, 2), "implicit": (0.25, 1, 2, 3.99, 8)}
+# Further steps with noise and friction by Peclet number, no columns. The first implicit one is the reference. At ONSET
+# the step matters most; onset.csv has all steps there.
+ONSET, USUAL = 100, {"implicit": (1 / 16,)}
+FURTHER = {1: USUAL, 10: USUAL, ONSET: {"explicit": (0.25,), "implicit": (1 / 64, 1 / 16)}, 1000: USUAL}
 
 
 def stiffness(k):
@@ -95,22 +98,24 @@ COLUMNS += "flags", "causes", "seeds", "commit"
 CAUSES_OF_JAMS = {"overlap", "packing"}
 
 
+def further_of(scene):
+    return FURTHER[scene["peclet"]] if "peclet" in scene and scene["contact"].get("friction") else {}
+
+
 def finest_of(scene):
     """Returns method and factor of the reference. Without noise trajectories of one seed stay together for a while;
     explicit steps with noise make contacts too rare, and implicit ones too many, which friction feels."""
     if "peclet" not in scene:
         return "explicit", 0.5
-    return "implicit", FINEST[scene["peclet"]] if scene["contact"].get("friction") else 0.25
+    return "implicit", further_of(scene).get("implicit", (0.25,))[0]
 
 
 def integrators(program, scene):
-    """Yields the columns: method, factor, integrator block, and the answer if the step is refused, else None; and last,
-    if it is none of them, the reference."""
-    kind, finest = finest_of(scene)
-    implicit = IMPLICIT + ((finest,) if kind == "implicit" and finest not in IMPLICIT else ())
-    for method, factors, factor_of_auto in (("explicit", EXPLICIT, 0.5), ("implicit", implicit, 1)):
+    """Yields the columns and further steps: method, factor, integrator block, and the answer if the step is refused,
+    else None."""
+    for method, factor_of_auto in (("explicit", 0.5), ("implicit", 1)):
         answer = program.derived(merged(scene, integrator={"method": method}))
-        for factor in factors:
+        for factor in STEPS[method] + further_of(scene).get(method, ()):
             block = {"method": method, "timestep": factor * (answer["timestep"] / factor_of_auto)}
             refused = program.derived(merged(scene, integrator=block)).get("refused")
             yield method, factor, block, refused
@@ -138,7 +143,7 @@ def verdict_of(difference, values, causes):
 
 
 def cells_of(name, case, scene, program):
-    """Yields a row for each column, without verdict, with `values` by seed and `lost` by cause."""
+    """Yields a row for each step, without verdict, with its `point`, `values` by seed and `lost` by cause."""
     label, _, seeds = case
     columns = list(integrators(program, scene))
     identifier = "".join(c if c.isalnum() or c in ".-" else "-" for c in f"{name} {label}")
@@ -151,7 +156,7 @@ def cells_of(name, case, scene, program):
         point = Point(realisations=[]) if refused else of_block[method, block["timestep"]]
         lost = collections.Counter(r["ending"]["cause"] for r in point["realisations"] if not r.get("mean"))
         cell = {"panel": name, "case": label, "method": method, "step": factor, "timestep": block["timestep"]}
-        cell |= {"seeds": len(point["realisations"]), "commit": " ".join(sorted(program.commits))}
+        cell |= {"seeds": len(point["realisations"]), "commit": " ".join(sorted(program.commits)), "point": point}
         yield cell | {"values": point.by_seed(), "lost": lost, "flags": counts_text(flags(point)), "refused": refused}
 
 
@@ -161,7 +166,7 @@ def rows_of(name, case, program):
     noise = "peclet" in scene  # another step then has other noise
     reference = next(c for c in cells if (c["method"], c["step"]) == finest_of(scene))
     for cell in cells:
-        if cell["step"] not in EXPLICIT + IMPLICIT:
+        if cell["step"] not in STEPS[cell["method"]]:
             continue
         row = {key: cell[key] for key in COLUMNS if key in cell}
         difference = None
@@ -183,6 +188,24 @@ def measure(program, panels=PANELS, path=HERE / "table.csv"):
             rows += rows_of(name, case, program)
             print(f"{name}: {case[0]}", file=sys.stderr, flush=True)
     write_table(path, COLUMNS, rows, digits=4)
+
+
+def onset_rows(program):
+    """Yields rows of all accepted steps at the onset of friction, with the median processor time of a seed."""
+    name = "Peclet number and friction"
+    case = next(c for c in PANELS[name] if c[1]["peclet"] == ONSET)
+    for cell in cells_of(name, case, merged(BASE, case[1]), program):
+        if not cell["refused"]:
+            point = cell["point"]
+            row = {key: cell[key] for key in ("method", "step", "seeds")}
+            row |= entries("contacts", point.measured("contacts_per_particle"))
+            row |= entries("viscosity", point.measured("relative_viscosity"))
+            yield row | {"seconds": statistics.median(r["cost"]["cpu_seconds"] for r in point.results)}
+
+
+def measure_all(program):
+    measure(program)
+    write_table(HERE / "onset.csv", "method, step, seeds, contacts±, viscosity±, seconds", onset_rows(program), 4)
 
 
 def judge(path=HERE / "table.csv"):
@@ -289,4 +312,4 @@ def quick_measure(program):
     return judge(path)
 
 
-main(HERE, TITLE, measure, quick_measure, judge, draw)
+main(HERE, TITLE, measure_all, quick_measure, judge, draw)
